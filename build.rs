@@ -1,0 +1,113 @@
+//! Finds the crate's open sets by their files, so that adding a diagnostic, a target, an
+//! executor, a reference or a snippet is adding a file. Writes one Rust table for each.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+fn main() -> std::io::Result<()> {
+    let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or(std::io::ErrorKind::NotFound)?);
+    let out = PathBuf::from(env::var_os("OUT_DIR").ok_or(std::io::ErrorKind::NotFound)?);
+    fs::write(out.join("codes.rs"), codes(&root.join("src/diagnostic/codes"))?)?;
+    fs::write(out.join("target_names.rs"), target_names(&root.join("src/emit/targets"))?)?;
+    for (folder, entry) in [("emit/targets", "TARGET"), ("harness/executors", "EXECUTOR"), ("harness/references", "REFERENCES")] {
+        let name = folder.rsplit('/').next().unwrap_or(folder);
+        fs::write(out.join(format!("{name}.rs")), modules(&root.join("src").join(folder), entry)?)?;
+    }
+    fs::write(out.join("shaderlib.rs"), embedded(&root.join("shaderlib"))?)
+}
+
+/// Files with the extension, sorted by name; the folder is watched for changes.
+fn files(folder: &Path, extension: &str) -> std::io::Result<Vec<PathBuf>> {
+    println!("cargo::rerun-if-changed={}", folder.display());
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let mut found: Vec<PathBuf> = fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path())).collect::<Result<_, _>>()?;
+    found.retain(|path| path.extension().is_some_and(|found| found == extension));
+    found.sort();
+    Ok(found)
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn constant(stem: &str) -> String {
+    stem.replace('-', "_").to_uppercase()
+}
+
+/// One `Code` constant for each Markdown file: its first line is the title, the rest explains.
+fn codes(folder: &Path) -> std::io::Result<String> {
+    let mut table = String::new();
+    let mut names = String::new();
+    for path in files(folder, "md")? {
+        println!("cargo::rerun-if-changed={}", path.display());
+        let name = stem(&path);
+        let text = fs::read_to_string(&path)?;
+        let (title, explanation) = text.split_once('\n').unwrap_or((&text, ""));
+        let constant = constant(&name);
+        let title = title.trim_start_matches('#').trim();
+        let explanation = explanation.trim();
+        let _ = writeln!(
+            table,
+            "/// {title}\npub const {constant}: Code = Code {{ name: {name:?}, title: {title:?}, explanation: {explanation:?} }};"
+        );
+        let _ = write!(names, "&{constant}, ");
+    }
+    let _ = writeln!(table, "/// Every code, by name.\npub const ALL: &[&Code] = &[{names}];");
+    Ok(table)
+}
+
+fn target_names(folder: &Path) -> std::io::Result<String> {
+    let mut table = String::from("impl Target {\n");
+    let mut names = String::new();
+    for path in files(folder, "rs")? {
+        let name = stem(&path);
+        let constant = constant(&name);
+        let _ = writeln!(table, "/// The target `{name}`.\npub const {constant}: Target = Target({name:?});");
+        let _ = write!(names, "Target::{constant}, ");
+    }
+    let _ = writeln!(table, "/// Every target, by name.\npub const ALL: &'static [Target] = &[{names}];\n}}");
+    Ok(table)
+}
+
+/// Declares each file of the folder as a module and lists the constant `entry` of each.
+fn modules(folder: &Path, entry: &str) -> std::io::Result<String> {
+    let mut table = String::new();
+    let mut entries = String::new();
+    for path in files(folder, "rs")? {
+        let name = stem(&path);
+        let _ = writeln!(table, "#[path = {:?}]\npub mod {name};", path);
+        let _ = write!(entries, "&{name}::{entry}, ");
+    }
+    let _ = writeln!(table, "/// One entry for each file of the folder, by name.\npub const ALL: &[&Entry] = &[{entries}];");
+    Ok(table)
+}
+
+/// The shader library as text, so that an installed binary carries it.
+fn embedded(folder: &Path) -> std::io::Result<String> {
+    let mut found = Vec::new();
+    walk(folder, &mut found)?;
+    found.sort();
+    let mut table = String::from("/// Path below `shaderlib/` and text of every file, by path.\npub const FILES: &[(&str, &str)] = &[\n");
+    for path in found {
+        let relative = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+        let _ = writeln!(table, "({relative:?}, include_str!({path:?})),");
+    }
+    table.push_str("];\n");
+    Ok(table)
+}
+
+fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    println!("cargo::rerun-if-changed={}", folder.display());
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            walk(&path, found)?;
+        } else if path.extension().is_some_and(|found| ["wesl", "wgsl", "glsl", "toml"].contains(&found.to_str().unwrap_or_default())) {
+            found.push(path);
+        }
+    }
+    Ok(())
+}

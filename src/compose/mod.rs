@@ -1,0 +1,67 @@
+//! Weaves the modules that an entry point reaches into one text, with a map back to the authors'.
+
+mod source_map;
+
+pub use source_map::{Segment, SourceMap};
+
+use crate::diagnostic::Diagnostic;
+use crate::permute::Setting;
+
+/// The two source languages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Language {
+    Wesl,
+    Glsl,
+}
+
+/// Stage of an entry point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    Vertex,
+    Fragment,
+    Compute,
+}
+
+/// How imported items are named in the output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Mangle {
+    /// Names stay unless two collide.
+    #[default]
+    Collisions,
+    /// The underscore-count form of the WESL specification, for every imported item.
+    Underscore,
+}
+
+/// What of the root module must be kept, with all that it reaches.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Hash)]
+pub enum Keep {
+    /// Entry points of the root module; its whole content where it has none.
+    #[default]
+    EntryPoints,
+    /// The items of these names (entry points or functions).
+    Items(Vec<String>),
+    /// Everything of every module reached: no dead-code removal.
+    All,
+}
+
+/// How to compose.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Hash)]
+pub struct Options {
+    pub mangle: Mangle,
+    pub keep: Keep,
+}
+
+/// A composed text and where each part of it came from.
+#[derive(Debug, Clone)]
+pub struct Composed {
+    pub language: Language,
+    /// Stage of the text as a whole: always known for GLSL, `None` for WESL.
+    pub stage: Option<Stage>,
+    pub text: String,
+    pub map: SourceMap,
+    /// The settings that were asked for, in the order of asking, with the answers: another
+    /// permutation that answers alike composes to the same text.
+    pub reads: Vec<(String, Setting)>,
+    /// Lints.
+    pub warnings: Vec<Diagnostic>,
+}

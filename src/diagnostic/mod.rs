@@ -1,0 +1,101 @@
+//! The one error type: what is wrong, where in the author's text, and what to do about it.
+//!
+//! Adding a diagnostic is adding a Markdown file to `codes/`: its name is the code, its first
+//! line the title, the rest what `lamplight explain` prints.
+
+pub mod render;
+
+use crate::source::Span;
+
+/// A kind of diagnostic, with its explanation.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Code {
+    /// Kebab-case name, as printed in brackets and taken by `lamplight explain`.
+    pub name: &'static str,
+    /// One line.
+    pub title: &'static str,
+    /// Markdown paragraphs: when it happens, an example, how to mend it.
+    pub explanation: &'static str,
+}
+
+/// Every code, one constant for each file of `codes/`.
+pub mod codes {
+    use super::Code;
+    include!(concat!(env!("OUT_DIR"), "/codes.rs"));
+
+    /// The code of that name.
+    pub fn find(name: &str) -> Option<&'static Code> {
+        ALL.iter().copied().find(|code| code.name == name)
+    }
+}
+
+/// How much a diagnostic weighs. Only errors fail a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    Error,
+    Warning,
+}
+
+/// A span with a few words. The first label of a diagnostic is its place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Label {
+    pub span: Span,
+    pub message: String,
+}
+
+/// Something the author should know.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[must_use]
+pub struct Diagnostic {
+    pub severity: Severity,
+    pub code: &'static Code,
+    pub message: String,
+    pub labels: Vec<Label>,
+    pub notes: Vec<String>,
+}
+
+/// Several diagnostics, at least one of them an error.
+pub type Diagnostics = Vec<Diagnostic>;
+
+impl Diagnostic {
+    /// An error without a place yet.
+    pub fn error(code: &'static Code, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Error, code, message: message.into(), labels: Vec::new(), notes: Vec::new() }
+    }
+
+    /// A warning without a place yet.
+    pub fn warning(code: &'static Code, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, message) }
+    }
+
+    /// Adds a labelled place; the first one added is where the diagnostic stands.
+    pub fn at(mut self, span: Span, message: impl Into<String>) -> Self {
+        self.labels.push(Label { span, message: message.into() });
+        self
+    }
+
+    /// Adds a note under the source excerpt.
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// Adds "did you mean" with the nearest of the known names, if one is near enough.
+    pub fn suggest<'a>(self, wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
+        match nearest(wrong, known) {
+            Some(name) => self.note(format!("help: did you mean `{name}`?")),
+            None => self,
+        }
+    }
+}
+
+/// The known name nearest to a misspelt one; ties go to the alphabetically first.
+pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let allowed = 1 + wrong.chars().count() / 4;
+    known
+        .into_iter()
+        .map(|name| (strsim::damerau_levenshtein(wrong, name), name))
+        .filter(|(distance, name)| *distance <= allowed && *name != wrong)
+        .min()
+        .map(|(_, name)| name)
+}

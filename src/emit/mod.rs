@@ -1,0 +1,1 @@
+//! One output language a file, from a valid module.

@@ -1,0 +1,32 @@
+//! Lamplight: lighting and shadow functions in WGSL and GLSL, composed, compiled and proven.
+//!
+//! Data flows one way, each arrow one function:
+//!
+//! `source -> parse -> resolve -> permute -> compose -> validate -> emit -> bundle`
+
+pub mod bundle;
+
+#[cfg(feature = "compile")]
+pub mod compose;
+#[cfg(feature = "compile")]
+pub mod diagnostic;
+#[cfg(feature = "compile")]
+pub mod emit;
+#[cfg(feature = "compile")]
+pub mod parse;
+#[cfg(feature = "compile")]
+pub mod permute;
+#[cfg(feature = "compile")]
+pub mod resolve;
+#[cfg(feature = "compile")]
+pub mod source;
+#[cfg(feature = "compile")]
+pub mod validate;
+
+#[cfg(feature = "harness")]
+pub mod eval;
+#[cfg(feature = "harness")]
+pub mod harness;
+
+#[cfg(feature = "cli")]
+pub mod cli;

@@ -1,0 +1,1 @@
+//! From text to items, imports and conditions.

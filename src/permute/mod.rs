@@ -1,0 +1,5 @@
+//! What varies: settings, axes, constraints, keys.
+
+mod setting;
+
+pub use setting::{Setting, Settings};

@@ -1,0 +1,47 @@
+//! One value for each axis or feature that a composition may ask for.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The value of an axis or a feature.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Setting {
+    Bool(bool),
+    Int(i64),
+    /// A value of an enum axis, by name.
+    Name(String),
+}
+
+impl Setting {
+    /// `true` and `false`, a decimal integer, or else a name.
+    pub fn parse(text: &str) -> Self {
+        match (text, text.parse()) {
+            ("true", _) => Self::Bool(true),
+            ("false", _) => Self::Bool(false),
+            (_, Ok(number)) => Self::Int(number),
+            _ => Self::Name(text.to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bool(value) => value.fmt(f),
+            Self::Int(value) => value.fmt(f),
+            Self::Name(value) => value.fmt(f),
+        }
+    }
+}
+
+/// What a composition is asked to be: a value for every axis and feature.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
+pub struct Settings {
+    /// By name of the axis or feature, with its chosen value.
+    pub values: BTreeMap<String, Setting>,
+    /// Enum axes with all their values, so that `@if(axis == value)` and the GLSL macros
+    /// `AXIS_VALUE` know them. Names that are not here are plain WESL features.
+    pub enums: BTreeMap<String, Vec<String>>,
+    /// Declared integer axes: those that conditions may compare.
+    pub integers: std::collections::BTreeSet<String>,
+}

@@ -1,0 +1,202 @@
+//! Packages: a name and a root that no path leaves.
+
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+/// Bounds on what is read; each has its own error.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Bytes of one file.
+    pub file_bytes: usize,
+    /// Tokens of one file.
+    pub tokens: usize,
+    /// Nesting of brackets, blocks and conditions.
+    pub nesting: usize,
+    /// Depth of `#include`.
+    pub include_depth: usize,
+    /// Bytes of one composed text.
+    pub expansion_bytes: usize,
+    /// Files of one composition.
+    pub files: usize,
+    /// Permutations of one program.
+    pub permutations: usize,
+}
+
+/// The limits every command uses.
+pub const LIMITS: Limits = Limits {
+    file_bytes: 4 << 20,
+    tokens: 1 << 20,
+    nesting: 256,
+    include_depth: 64,
+    expansion_bytes: 16 << 20,
+    files: 10_000,
+    permutations: 1_000_000,
+};
+
+/// Why a file of a package could not be read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ReadError {
+    /// `..` or a symbolic link leads out of the root.
+    OutsideRoot,
+    /// The bytes are not UTF-8: the lossy text and the offset of the first bad byte in it.
+    NotUtf8 { lossy: String, offset: usize },
+    /// More bytes than [`Limits::file_bytes`].
+    TooLarge { bytes: u64 },
+    /// The operating system's words.
+    Io(String),
+}
+
+/// Where a package's files come from. Paths are relative to the root, `/`-separated.
+pub trait Files: Send + Sync {
+    /// The text of a file; `None` where there is none.
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError>;
+
+    /// Every file with one of the extensions, sorted: for suggestions and listings.
+    fn list(&self, extensions: &[&str]) -> Vec<String>;
+
+    /// How diagnostics name a file of this package.
+    fn display(&self, path: &str) -> String {
+        path.to_owned()
+    }
+}
+
+/// A named set of files. The name is what other packages import it by.
+pub struct Package {
+    /// Name in import paths.
+    pub name: String,
+    /// Its files.
+    pub files: Box<dyn Files>,
+}
+
+/// A folder on disk.
+pub struct Disk {
+    root: PathBuf,
+    shown: PathBuf,
+}
+
+impl Disk {
+    /// The folder `root`; diagnostics name files as `root` was written.
+    pub fn new(root: impl Into<PathBuf>) -> std::io::Result<Self> {
+        let shown = root.into();
+        let folder = if shown.as_os_str().is_empty() { Path::new(".") } else { &shown };
+        Ok(Self { root: folder.canonicalize()?, shown })
+    }
+}
+
+impl Files for Disk {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        if !is_inside(path) {
+            return Err(ReadError::OutsideRoot);
+        }
+        let joined = self.root.join(path);
+        let real = match joined.canonicalize() {
+            Ok(real) => real,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound || error.kind() == std::io::ErrorKind::NotADirectory => {
+                return Ok(None);
+            }
+            Err(error) => return Err(ReadError::Io(error.to_string())),
+        };
+        if !real.starts_with(&self.root) {
+            return Err(ReadError::OutsideRoot);
+        }
+        let metadata = fs::metadata(&real).map_err(|error| ReadError::Io(error.to_string()))?;
+        if !metadata.is_file() {
+            return Ok(None);
+        }
+        if metadata.len() > LIMITS.file_bytes as u64 {
+            return Err(ReadError::TooLarge { bytes: metadata.len() });
+        }
+        decode(fs::read(&real).map_err(|error| ReadError::Io(error.to_string()))?).map(Some)
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut folders = vec![(self.root.clone(), String::new())];
+        while let Some((folder, prefix)) = folders.pop() {
+            for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
+                let Ok(name) = entry.file_name().into_string() else { continue };
+                let Ok(kind) = entry.file_type() else { continue };
+                if name.starts_with('.') || found.len() >= LIMITS.files {
+                    continue;
+                }
+                if kind.is_dir() && name != "target" && name != "node_modules" {
+                    folders.push((entry.path(), format!("{prefix}{name}/")));
+                } else if kind.is_file() && has_extension(&name, extensions) {
+                    found.push(format!("{prefix}{name}"));
+                }
+            }
+        }
+        found.sort();
+        found
+    }
+
+    fn display(&self, path: &str) -> String {
+        self.shown.join(path).to_string_lossy().replace('\\', "/")
+    }
+}
+
+/// The shader library, carried by the binary.
+pub struct Embedded;
+
+mod shaderlib {
+    include!(concat!(env!("OUT_DIR"), "/shaderlib.rs"));
+}
+
+impl Files for Embedded {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        Ok(shaderlib::FILES.binary_search_by(|(name, _)| (*name).cmp(path)).ok().map(|index| shaderlib::FILES[index].1.to_owned()))
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        shaderlib::FILES.iter().filter(|(name, _)| has_extension(name, extensions)).map(|(name, _)| (*name).to_owned()).collect()
+    }
+
+    fn display(&self, path: &str) -> String {
+        format!("lamplight/{path}")
+    }
+}
+
+/// Files held in memory: tests, generated modules, editors' unsaved text.
+#[derive(Default)]
+pub struct Memory(pub std::collections::BTreeMap<String, String>);
+
+impl Files for Memory {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        if !is_inside(path) {
+            return Err(ReadError::OutsideRoot);
+        }
+        match self.0.get(path) {
+            Some(text) if text.len() > LIMITS.file_bytes => Err(ReadError::TooLarge { bytes: text.len() as u64 }),
+            found => Ok(found.cloned()),
+        }
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        self.0.keys().filter(|name| has_extension(name, extensions)).cloned().collect()
+    }
+}
+
+fn has_extension(name: &str, extensions: &[&str]) -> bool {
+    name.rsplit_once('.').is_some_and(|(_, extension)| extensions.contains(&extension))
+}
+
+/// Whether a relative path stays below its root on its own words, links aside.
+fn is_inside(path: &str) -> bool {
+    let mut depth = 0i32;
+    Path::new(path).components().all(|component| {
+        match component {
+            Component::Normal(_) => depth += 1,
+            Component::CurDir => {}
+            Component::ParentDir => depth -= 1,
+            Component::RootDir | Component::Prefix(_) => return false,
+        }
+        depth >= 0
+    })
+}
+
+fn decode(bytes: Vec<u8>) -> Result<String, ReadError> {
+    String::from_utf8(bytes).map_err(|error| {
+        let offset = error.utf8_error().valid_up_to();
+        ReadError::NotUtf8 { lossy: String::from_utf8_lossy(error.as_bytes()).into_owned(), offset }
+    })
+}
