@@ -74,3 +74,60 @@ fn feature(text: &str) -> Result<(String, Setting), String> {
         _ => Err(format!("a feature is `true` or `false`, not `{value}`")),
     }
 }
+
+/// A composed root module with what diagnostics need.
+pub struct Ready {
+    pub project: Project,
+    pub composed: Composed,
+}
+
+impl Input {
+    /// Opens the package, chooses the settings and composes.
+    pub fn compose(&self, form: DiagnosticForm) -> Result<Ready, Failure> {
+        let root = self.root.clone().unwrap_or_else(|| project::root_of(&self.file));
+        let mut project = project::open(&root, SourceSet::default()).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
+        match self.compose_in(&mut project, &root) {
+            Ok(composed) => {
+                warn(&project.sources, &composed.warnings, form);
+                Ok(Ready { project, composed })
+            }
+            Err(diagnostics) => Err(Failure::Input(project.sources, diagnostics)),
+        }
+    }
+
+    fn compose_in(&self, project: &mut Project, root: &Path) -> Result<Composed, Diagnostics> {
+        let path = project::relative(&self.file, root).map_err(|diagnostic| vec![diagnostic])?;
+        let settings = self.settings(project, root, &path)?;
+        let graph = resolve::load(&mut project.sources, &project.packages, &path, self.language())?;
+        compose::compose(&graph, &settings, &self.options())
+    }
+
+    /// The language asked for, or else what the extension says.
+    pub fn language(&self) -> Language {
+        let glsl = self.file.extension().is_some_and(|extension| ["glsl", "vert", "frag", "comp"].iter().any(|known| extension == *known));
+        match (self.lang, glsl) {
+            (Some(name), _) => name.into(),
+            (None, true) => Language::Glsl,
+            (None, false) => Language::Wesl,
+        }
+    }
+
+    fn options(&self) -> Options {
+        let mangle = match self.mangle {
+            MangleName::Collisions => Mangle::Collisions,
+            MangleName::Underscore => Mangle::Underscore,
+        };
+        Options { mangle, keep: if self.keep_all { Keep::All } else { Keep::EntryPoints } }
+    }
+
+    /// The defaults of the program that the file belongs to, if a manifest has one, and what the
+    /// command line chooses.
+    fn settings(&self, project: &mut Project, root: &Path, path: &str) -> Result<Settings, Diagnostics> {
+        let mut settings = match project::manifest(root, &mut project.sources)? {
+            Some(manifest) => manifest.settings_of(path, &self.set)?,
+            None => Settings::default(),
+        };
+        settings.values.extend(self.set.iter().chain(&self.feature).cloned());
+        Ok(settings)
+    }
+}

@@ -1,0 +1,28 @@
+//! Lamplight beside its peers: each benchmark measures all of them in one run and prints ratios.
+
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod corpus;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+type Outcome = Result<(), Box<dyn Error>>;
+
+const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[];
+
+fn main() -> ExitCode {
+    let asked = std::env::args().nth(1).unwrap_or_default();
+    let Some((_, run)) = BENCHMARKS.iter().find(|(name, _)| *name == asked) else {
+        let names: Vec<&str> = BENCHMARKS.iter().map(|(name, _)| *name).collect();
+        eprintln!("usage: cargo xtask bench {} ({} lines)", names.join("|"), corpus::lines(corpus::Dialect::Wesl));
+        return ExitCode::from(2);
+    };
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(1)
+        }
+    }
+}

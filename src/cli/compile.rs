@@ -1,0 +1,107 @@
+//! `lamplight compile FILE --target T`: one shader in the languages asked for.
+
+use std::io::{IsTerminal, Write, stdout};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::{DiagnosticForm, Failure};
+use super::input::{Input, Ready};
+use crate::bundle::Target;
+use crate::diagnostic::{Diagnostics, nearest};
+use crate::emit::{self, Emitted, targets};
+use crate::output;
+use crate::validate::validate;
+
+/// Compose, validate and write one shader, a file for each entry point and target.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    input: Input,
+    /// Output languages: spirv, glsl450, glsl330, essl300, msl, hlsl, wgsl.
+    #[arg(long, value_name = "T,...", value_delimiter = ',', required = true, value_parser = target)]
+    target: Vec<Target>,
+    /// Folder for the files [default: standard output].
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// A target by name, as an option's value.
+pub fn target(name: &str) -> Result<Target, String> {
+    Target::find(name).ok_or_else(|| {
+        let names: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
+        let hint = nearest(name, names.iter().copied()).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        format!("no such target{hint} (targets: {})", names.join(", "))
+    })
+}
+
+struct File {
+    name: String,
+    binary: bool,
+    bytes: Vec<u8>,
+}
+
+pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    let Ready { project, composed } = arguments.input.compose(form)?;
+    let files = validate(&composed).and_then(|validated| files(&validated, &arguments));
+    let files = files.map_err(|diagnostics| Failure::Input(project.sources, diagnostics))?;
+    if files.is_empty() {
+        return Err(Failure::input(format!("`{}` has no entry point", arguments.input.file.display())));
+    }
+    match &arguments.out {
+        Some(folder) => write(&files, folder),
+        None => print(&files),
+    }
+}
+
+fn files(validated: &crate::validate::Validated, arguments: &Arguments) -> Result<Vec<File>, Diagnostics> {
+    let stem = arguments.input.file.file_name().unwrap_or_default().to_string_lossy();
+    let stem = stem.split('.').next().unwrap_or_default();
+    let mut files = Vec::new();
+    for point in &validated.module.entry_points {
+        let isolated = emit::isolate(validated, &point.name)?;
+        for &target in &arguments.target {
+            let Emitted { bytes, .. } = emit::emit(&isolated, &point.name, target).map_err(|diagnostic| vec![diagnostic])?;
+            let Some(entry) = targets::find(target) else { continue };
+            let name = format!("{stem}.{}.{}", point.name, file_extension(point.stage, target, entry.extension));
+            files.push(File { name, binary: entry.binary, bytes });
+        }
+    }
+    Ok(files)
+}
+
+/// Files of several targets must not share a name; GLSL files end as glslang expects.
+fn file_extension(stage: naga::ShaderStage, target: Target, extension: &str) -> String {
+    let stage = match stage {
+        naga::ShaderStage::Vertex => "vert",
+        naga::ShaderStage::Fragment => "frag",
+        _ => "comp",
+    };
+    match target {
+        Target::GLSL450 | Target::GLSL330 | Target::ESSL300 => format!("{target}.{stage}"),
+        _ => extension.to_owned(),
+    }
+}
+
+fn write(files: &[File], folder: &Path) -> Result<(), Failure> {
+    for file in files {
+        let path = folder.join(&file.name);
+        output::write(&path, &file.bytes).map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display())))?;
+        writeln!(stdout(), "{}", path.display())?;
+    }
+    Ok(())
+}
+
+/// Text goes to standard output, with file names where there are several; one binary alone may too.
+fn print(files: &[File]) -> Result<(), Failure> {
+    if files.iter().any(|file| file.binary) && (files.len() > 1 || stdout().is_terminal()) {
+        return Err(Failure::usage("a binary target needs `-o DIR`"));
+    }
+    for file in files {
+        if files.len() > 1 {
+            writeln!(stdout(), "// ==== {}", file.name)?;
+        }
+        stdout().write_all(&file.bytes)?;
+    }
+    Ok(())
+}
