@@ -111,11 +111,11 @@ fn choice(space: &Space, key: &Quoted, start: usize, text: &str) -> Result<(usiz
     let found = &space.axes()[axis];
     let ordinal = match value {
         None if found.kind == Kind::Bool => find_value(found, &Setting::Bool(true), span)?,
-        None => return Err(valueless(found, span)),
-        Some((offset, value)) => {
+        Some((offset, value)) if !value.trim().is_empty() => {
             let (offset, value) = trimmed(start + offset, value);
             find_value(found, &Setting::parse(value), key.span(offset..offset + value.len()))?
         }
+        None | Some(_) => return Err(valueless(found, span)),
     };
     Ok((axis, ordinal, span))
 }
@@ -137,7 +137,12 @@ pub(super) fn find_value(axis: &Axis, value: &Setting, span: Span) -> Result<usi
     axis.ordinal(value).ok_or_else(|| {
         let (names, text) = (axis.value_names(), value.to_string());
         let unknown = Diagnostic::error(codes::UNKNOWN_VALUE, format!("axis `{}` has no value `{text}`", axis.name));
-        let unknown = unknown.at(span, "not one of its values").suggest(&text, names.iter().map(String::as_str));
+        let unknown = unknown.at(span, "not one of its values");
+        let unknown = match axis.kind {
+            _ if names.contains(&text) => unknown.note(format!("help: the axis is {}; write the value without quotes", axis.kind.name())),
+            Kind::Enum => unknown.suggest(&text, names.iter().map(String::as_str)),
+            Kind::Bool | Kind::Int => unknown,
+        };
         unknown.note(format!("values of `{}`: {}", axis.name, names.join(", ")))
     })
 }

@@ -9,6 +9,9 @@ use crate::source::Span;
 /// Warnings about a space; `what` and `place` name its program.
 pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
     let mut warnings: Vec<Diagnostic> = space.constraints().iter().filter_map(|constraint| trivial(space, constraint)).collect();
+    if space.valid_count() == 0 && warnings.iter().any(|warning| warning.code == codes::CONSTRAINT_ALWAYS_FALSE) {
+        return warnings;
+    }
     if space.valid_count() == 0 {
         let message = format!("no permutation of {what} satisfies all constraints");
         warnings.push(Diagnostic::warning(codes::NO_PERMUTATION, message).at(place, "has no permutation"));
@@ -31,13 +34,14 @@ fn trivial(space: &Space, constraint: &Constraint) -> Option<Diagnostic> {
     Some(warning.at(constraint.span, format!("{word} whatever the axes are")))
 }
 
-fn never_valid(axis: &Axis, valid: ValueSet) -> Vec<Diagnostic> {
-    let never = axis.domain().without(valid);
-    let warning = |ordinal: usize| {
-        let message = format!("value `{}` of axis `{}` is in no valid permutation", axis.values[ordinal], axis.name);
-        Diagnostic::warning(codes::VALUE_NEVER_VALID, message).at(axis.span, "the constraints rule this value out")
+fn never_valid(axis: &Axis, valid: ValueSet) -> Option<Diagnostic> {
+    let never: Vec<String> = axis.domain().without(valid).iter().map(|ordinal| format!("`{}`", axis.values[ordinal])).collect();
+    let (subject, label) = match never.as_slice() {
+        [] => return None,
+        [value] => (format!("value {value} of axis `{}` is", axis.name), "the constraints rule this value out"),
+        values => (format!("values {} of axis `{}` are", values.join(", "), axis.name), "the constraints rule these values out"),
     };
-    never.iter().map(warning).collect()
+    Some(Diagnostic::warning(codes::VALUE_NEVER_VALID, format!("{subject} in no valid permutation")).at(axis.span, label))
 }
 
 fn empty(space: &Space, slice: &Slice) -> Option<Diagnostic> {
@@ -46,5 +50,5 @@ fn empty(space: &Space, slice: &Slice) -> Option<Diagnostic> {
         let warning = Diagnostic::warning(codes::EMPTY_SLICE, message).at(slice.span, "selects nothing");
         warning.note("an axis that an entry does not name is at its default")
     };
-    (!space.meets(slice).ok()?).then(warning)
+    (!space.meets(slice)).then(warning)
 }

@@ -79,7 +79,8 @@ impl<'a> Parser<'a> {
             return Err(self.unexpected("an axis, `!` or `(`"));
         }
         let span = self.span();
-        let axis = find_axis(self.axes, self.next_text(), span)?;
+        let name = self.next_text();
+        let axis = find_axis(self.axes, name, span).map_err(|unknown| hinted(unknown, name))?;
         let set = self.values_of(axis, span)?;
         Ok(Formula::Is(axis, set))
     }
@@ -101,6 +102,7 @@ impl<'a> Parser<'a> {
         match ORDERS.iter().find(|(sign, _)| self.tokens[self.at].text == *sign) {
             Some((_, holds)) => self.order(found, *holds),
             None if found.kind == Kind::Bool => Ok(found.ordinal(&Setting::Bool(true)).into_iter().collect()),
+            None if self.kind() == Token::Stray => Err(self.unexpected("a comparison")),
             None => Err(self.bare(found, span)),
         }
     }
@@ -113,7 +115,7 @@ impl<'a> Parser<'a> {
             return Err(Diagnostic::error(codes::CONSTRAINT_TYPE, message).at(sign, "compares integers").at(axis.span, "declared here"));
         }
         let Some(bound) = self.tokens[self.at].text.parse().ok().filter(|_| self.kind() == Token::Number) else {
-            return Err(self.unexpected("an integer"));
+            return Err(self.unexpected("an integer of 64 bits"));
         };
         self.at += 1;
         let number = |value: &Setting| matches!(value, Setting::Int(value) if holds(value, &bound));
@@ -190,11 +192,14 @@ impl<'a> Parser<'a> {
             _ => format!("`{}`", self.tokens[self.at].text),
         };
         let diagnostic = Diagnostic::error(codes::CONSTRAINT_SYNTAX, format!("expected {expected}, found {found}"));
-        let diagnostic = diagnostic.at(self.span(), format!("expected {expected}"));
-        match HINTS.iter().find(|(wrong, _)| *wrong == self.tokens[self.at].text) {
-            Some((_, right)) => diagnostic.note(format!("help: write `{right}`")),
-            None => diagnostic,
-        }
+        hinted(diagnostic.at(self.span(), format!("expected {expected}")), self.tokens[self.at].text)
+    }
+}
+
+fn hinted(diagnostic: Diagnostic, found: &str) -> Diagnostic {
+    match HINTS.iter().find(|(wrong, _)| *wrong == found) {
+        Some((_, right)) => diagnostic.note(format!("help: write `{right}`")),
+        None => diagnostic,
     }
 }
 

@@ -13,17 +13,17 @@ use crate::source::Span;
 const AXIS_KEYS: &[&str] = &["values", "default", "mode", "doc"];
 const CONSTRAINT_KEYS: &[&str] = &["require", "doc"];
 
-/// The axes, by name.
-pub fn axes(reader: &mut Reader, value: &Value) -> Vec<Axis> {
-    let Some(table) = reader.table(value, "`axis`") else { return Vec::new() };
+/// The axes, by name; `None` if one of them could not be read.
+pub fn axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
+    let table = reader.table(value, "`axis`")?;
     if table.len() > MAX {
         let message = format!("a program may have {MAX} axes, and this one has {}", table.len());
         reader.problems.push(Diagnostic::error(codes::AXIS_LIMIT, message).at(reader.span(value.span()), "too many axes"));
-        return Vec::new();
+        return None;
     }
     let axes: Vec<Axis> = table.iter().filter_map(|(name, value)| axis(reader, name, value)).collect();
     reader.problems.extend(names::collisions(&axes));
-    axes
+    (axes.len() == table.len()).then_some(axes)
 }
 
 /// The constraints over the axes, in the order declared.

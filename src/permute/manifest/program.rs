@@ -122,14 +122,11 @@ fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {
     found
 }
 
-/// Axes first: nothing else is looked at while one of them is wrong, since most of what could be
-/// said would only follow from that.
+/// Axes first: nothing else is looked at while one of them is missing, since most of what could
+/// be said would only follow from that.
 fn space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Option<Space> {
     let before = errors(reader);
-    let axes = table.get("axis").map_or(Vec::new(), |value| axes::axes(reader, value));
-    if errors(reader) > before {
-        return None;
-    }
+    let axes = table.get("axis").map_or(Some(Vec::new()), |value| axes::axes(reader, value))?;
     let constraints = table.get("constraint").map_or(Vec::new(), |value| axes::constraints(reader, &axes, value));
     let only = table.get("only").map_or(Vec::new(), |value| lists::only(reader, &axes, value));
     let exclude = table.get("exclude").map_or(Vec::new(), |value| lists::exclude(reader, &axes, value));
@@ -164,9 +161,10 @@ fn check_limit(reader: &mut Reader, program: &Program) {
         return;
     }
     let report = report::report(&program.name, &program.space);
-    let message = format!("program `{}` has {} permutations, and its limit is {}", program.name, report.wanted, program.limit);
+    let limit = report::Count(program.limit as u128);
+    let message = format!("program `{}` has {} permutations, and its limit is {limit}", program.name, report.wanted);
     let diagnostic = Diagnostic::error(codes::TOO_MANY_PERMUTATIONS, message).at(program.span, "declared here");
-    reader
-        .problems
-        .push(diagnostic.note("add a constraint, name the slices you need in `only`, or raise `limit`").note(report.to_string()));
+    let raise = if program.limit < LIMITS.permutations { ", or raise `limit`" } else { "" };
+    let advice = format!("add constraints or name the slices you need in `only`{raise}");
+    reader.problems.push(diagnostic.note(advice).note(report.to_string()));
 }

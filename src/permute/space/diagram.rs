@@ -79,41 +79,43 @@ impl Diagram {
         used
     }
 
-    /// A point within the pinned values, or `None` if there is none: `choose` picks for each
-    /// axis, in the diagram's order, among the ordinals that lead to one.
-    pub fn pick(&self, pins: &[(usize, usize)], mut choose: impl FnMut(usize, ValueSet) -> usize) -> Option<Assignment> {
-        let alive = self.alive(pins);
+    /// Whether it has a point whose values are all among those allowed, by axis.
+    pub fn meets(&self, allowed: &[ValueSet]) -> bool {
+        self.alive(allowed)[self.root as usize]
+    }
+
+    /// A point of the values allowed, by axis, or `None` if there is none: `choose` picks for
+    /// each axis, in the diagram's order, among the ordinals that lead to one.
+    pub fn pick(&self, allowed: &[ValueSet], mut choose: impl FnMut(usize, ValueSet) -> usize) -> Option<Assignment> {
+        let alive = self.alive(allowed);
         let mut node = self.root;
         let mut point = vec![0; self.order.len()];
         if !alive[node as usize] {
             return None;
         }
-        for (level, axis) in self.order.iter().enumerate() {
-            let open = self.open(level, node, pins, &alive);
-            let ordinal = choose(*axis, open);
-            point[*axis] = ordinal as u8;
+        for axis in self.order.iter().copied() {
+            let ordinal = choose(axis, self.open(node, allowed[axis], &alive));
+            point[axis] = ordinal as u8;
             node = self.nodes[node as usize].children[ordinal];
         }
         Some(Assignment(point.into()))
     }
 
-    /// For each node whether a point within the pinned values is below it.
-    fn alive(&self, pins: &[(usize, usize)]) -> Vec<bool> {
+    /// For each node whether a point of the values allowed is below it.
+    fn alive(&self, allowed: &[ValueSet]) -> Vec<bool> {
         let mut alive = vec![false; self.nodes.len()];
         alive[END as usize] = true;
         for node in 2..self.nodes.len() {
-            let level = usize::from(self.nodes[node].level);
-            alive[node] = !self.open(level, node as u32, pins, &alive).is_empty();
+            let axis = self.order[usize::from(self.nodes[node].level)];
+            alive[node] = !self.open(node as u32, allowed[axis], &alive).is_empty();
         }
         alive
     }
 
-    fn open(&self, level: usize, node: u32, pins: &[(usize, usize)], alive: &[bool]) -> ValueSet {
-        let axis = self.order[level];
-        let pinned = pins.iter().find(|(pinned, _)| *pinned == axis).map(|(_, ordinal)| *ordinal);
-        let children = self.nodes[node as usize].children.iter().enumerate();
-        let open = children.filter(|(ordinal, child)| alive[**child as usize] && pinned.is_none_or(|pinned| pinned == *ordinal));
-        open.map(|(ordinal, _)| ordinal).collect()
+    fn open(&self, node: u32, allowed: ValueSet, alive: &[bool]) -> ValueSet {
+        let children = &self.nodes[node as usize].children;
+        let alive = |ordinal: &usize| children.get(*ordinal).is_some_and(|child| alive[*child as usize]);
+        allowed.iter().filter(alive).collect()
     }
 
     fn weigh(&self, weight: impl Fn(usize, &[u128]) -> u128) -> u128 {

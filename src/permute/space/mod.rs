@@ -149,10 +149,17 @@ impl Space {
         self.valid.used()
     }
 
-    /// A valid point with the pinned `(axis, ordinal)` pairs; `choose` picks each other ordinal
-    /// among those that lead to one. `None` if there is none.
+    /// A valid point with the pinned `(axis, ordinal)` pairs; `choose` picks each ordinal among
+    /// those that lead to one. `None` if there is none.
     pub fn pick_valid(&self, pins: &[(usize, usize)], choose: impl FnMut(usize, ValueSet) -> usize) -> Option<Assignment> {
-        self.valid.pick(pins, choose)
+        let mut allowed = domains(&self.axes);
+        pins.iter().for_each(|(axis, ordinal)| allowed[*axis] = ValueSet::single(*ordinal));
+        self.valid.pick(&allowed, choose)
+    }
+
+    /// Whether some valid point is in the slice.
+    pub fn meets(&self, slice: &Slice) -> bool {
+        self.valid.meets(&slice.values)
     }
 
     /// How many points of the full product satisfy one condition.
@@ -161,12 +168,6 @@ impl Space {
         let mut store = Store::new(domains.clone());
         let condition = store.add(formula)?;
         Ok(Diagram::new(&mut store, condition, &domains, order(self.axes.len(), &self.constraints))?.count())
-    }
-
-    /// Whether some valid point is in the slice.
-    pub fn meets(&self, slice: &Slice) -> Result<bool, TooComplex> {
-        let lists = Lists { only: vec![slice.clone()], ..Lists::default() };
-        Ok(diagram(&self.axes, &self.constraints, &lists, order(self.axes.len(), &self.constraints))?.count() > 0)
     }
 
     /// Every axis at its default.
