@@ -2,13 +2,17 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
+mod permute;
+mod shaderlib;
 mod snapshot;
 
 use std::process::ExitCode;
 
+use libtest_mimic::{Arguments, Trial};
+
+const KINDS: &[fn() -> Vec<Trial>] = &[permute::trials, shaderlib::trials, snapshot::trials];
+
 fn main() -> ExitCode {
-    let arguments = libtest_mimic::Arguments::from_args();
-    let kinds = [snapshot::trials];
-    let trials = kinds.iter().flat_map(|kind| kind()).collect();
-    libtest_mimic::run(&arguments, trials).exit_code()
+    let trials = KINDS.iter().flat_map(|kind| kind()).collect();
+    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }
