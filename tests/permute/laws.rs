@@ -126,7 +126,8 @@ fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
         let infeasible: BTreeSet<Pair> = pairs(&product(&space)).difference(&pairs(&valid)).copied().collect();
         ensure(infeasible == cover.infeasible.iter().copied().collect(), format!("infeasible pairs, seed {seed}"))?;
     }
-    Ok(())
+    let small = |axes| Space::new(axes, Vec::new(), Lists::default()).map(|space| pairwise(&space).points.len());
+    ensure(small(Vec::new()) == Ok(1) && small(vec![axis("a".to_owned(), 3)]) == Ok(3), "spaces without pairs are covered too")
 }
 
 fn pairs(points: &[Vec<u8>]) -> BTreeSet<Pair> {
