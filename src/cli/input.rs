@@ -6,11 +6,11 @@ use clap::{Args, ValueEnum};
 
 use super::failure::{DiagnosticForm, Failure, warn};
 use crate::compose::{self, Composed, Keep, Language, Mangle, Options};
-use crate::diagnostic::Diagnostics;
-use crate::permute::{Setting, Settings};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::{Program, Quoted, Setting, Settings, key};
 use crate::project::{self, Project};
 use crate::resolve;
-use crate::source::SourceSet;
+use crate::source::{SourceSet, Span};
 
 /// A root module with its settings.
 #[derive(Args)]
@@ -97,9 +97,12 @@ impl Input {
 
     fn compose_in(&self, project: &mut Project, root: &Path) -> Result<Composed, Diagnostics> {
         let path = project::relative(&self.file, root).map_err(|diagnostic| vec![diagnostic])?;
-        let settings = self.settings(project, root, &path)?;
+        let (settings, mut warnings) = self.settings(project, root, &path)?;
         let graph = resolve::load(&mut project.sources, &project.packages, &path, self.language())?;
-        compose::compose(&graph, &settings, &self.options())
+        let mut composed = compose::compose(&graph, &settings, &self.options())?;
+        warnings.append(&mut composed.warnings);
+        composed.warnings = warnings;
+        Ok(composed)
     }
 
     /// The language asked for, or else what the extension says.
@@ -120,14 +123,30 @@ impl Input {
         Options { mangle, keep: if self.keep_all { Keep::All } else { Keep::EntryPoints } }
     }
 
-    /// The defaults of the program that the file belongs to, if a manifest has one, and what the
-    /// command line chooses.
-    fn settings(&self, project: &mut Project, root: &Path, path: &str) -> Result<Settings, Diagnostics> {
-        let mut settings = match project::manifest(root, &mut project.sources)? {
-            Some(manifest) => manifest.settings_of(path, &self.set)?,
-            None => Settings::default(),
+    /// What the command line chooses, over the defaults of the program that the file belongs to
+    /// where the package's manifest has one.
+    fn settings(&self, project: &mut Project, root: &Path, path: &str) -> Result<(Settings, Diagnostics), Diagnostics> {
+        let manifest = project::manifest(root, &mut project.sources)?;
+        let program = manifest.as_ref().and_then(|manifest| manifest.programs.iter().find(|program| program.files().any(|file| file.path == path)));
+        let (mut settings, warnings) = match program {
+            Some(program) => self.assignment(program, &mut project.sources)?,
+            None => (Settings { values: self.set.iter().cloned().collect(), ..Settings::default() }, Vec::new()),
         };
-        settings.values.extend(self.set.iter().chain(&self.feature).cloned());
-        Ok(settings)
+        settings.values.extend(self.feature.iter().cloned());
+        Ok((settings, warnings))
+    }
+
+    /// The point of the program's space that `--set` names; broken constraints are warnings, since
+    /// the composition has a meaning all the same.
+    fn assignment(&self, program: &Program, sources: &mut SourceSet) -> Result<(Settings, Diagnostics), Diagnostics> {
+        let parts: Vec<String> = self.set.iter().map(|(axis, value)| format!("{axis}={value}")).collect();
+        let id = sources.add("--set", parts.join(","));
+        let point = key::parse(&program.space, &Quoted::whole(sources, id))?;
+        let span = Span::new(id, 0..sources.get(id).text.len());
+        let broken = program.space.broken(&point).map(|constraint| {
+            let warning = Diagnostic::warning(codes::INVALID_KEY, format!("program `{}` has no such permutation", program.name));
+            warning.at(span, "these values").at(constraint.span, "break this constraint")
+        });
+        Ok((program.space.settings(&point), broken.collect()))
     }
 }

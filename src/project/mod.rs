@@ -7,8 +7,9 @@ mod wesl_toml;
 use std::path::{Component, Path, PathBuf};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::{Manifest, manifest};
 use crate::resolve::Packages;
-use crate::source::{Disk, Embedded, Package, SourceSet};
+use crate::source::{self, Disk, Embedded, Package, SourceSet};
 
 /// Import name of the shader library, which every package may use without declaring it.
 pub const LIBRARY: &str = "lamplight";
@@ -85,4 +86,37 @@ fn slashed(path: &Path) -> String {
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Diagnostic {
     Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", path.display()))
+}
+
+/// File name of a manifest.
+pub const MANIFEST: &str = "lamplight.toml";
+
+/// The manifest in the root folder of a package, if there is one.
+pub fn manifest(root: &Path, sources: &mut SourceSet) -> Result<Option<Manifest>, Diagnostics> {
+    let path = root.join(MANIFEST);
+    if path.is_file() { read_manifest(&path, sources).map(Some) } else { Ok(None) }
+}
+
+/// Reads a manifest by its path.
+pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let disk = Disk::new(folder).map_err(|error| vec![unreadable(path, &error)])?;
+    let package = Package { name: String::new(), files: Box::new(disk) };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    parse_manifest(&package, &name, sources)
+}
+
+/// The manifest of the embedded library.
+pub fn library_manifest() -> Result<(SourceSet, Manifest), (SourceSet, Diagnostics)> {
+    let mut sources = SourceSet::default();
+    match parse_manifest(&library().root, MANIFEST, &mut sources) {
+        Ok(manifest) => Ok((sources, manifest)),
+        Err(diagnostics) => Err((sources, diagnostics)),
+    }
+}
+
+fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
+    let id = source::read(sources, package, name).map_err(|error| vec![error])?;
+    let id = id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
+    manifest::parse(sources, id)
 }

@@ -28,6 +28,14 @@ pub struct Program {
     pub span: Span,
 }
 
+impl Program {
+    /// The root files of both languages.
+    pub fn files(&self) -> impl Iterator<Item = &File> {
+        let glsl = self.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
+        self.wesl.iter().chain(glsl)
+    }
+}
+
 /// A file that a manifest names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct File {

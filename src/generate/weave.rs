@@ -1,0 +1,152 @@
+//! One entry point over all permutations.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rayon::prelude::*;
+
+use super::compile::{Unit, compile};
+use super::entry::Entry;
+use super::{Progress, REPORTED};
+use crate::bundle::Target;
+use crate::compose::{self, Composed};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::permute::{Assignment, Key, ReadTree, Space};
+
+/// Permutations composed before their new texts are compiled: bounds the memory that texts take.
+const BATCH: usize = 1024;
+
+/// An entry point, compiled.
+pub struct Woven {
+    pub name: String,
+    pub language: compose::Language,
+    pub stage: naga::ShaderStage,
+    /// One for each distinct text, in the order of the first permutation that has it.
+    pub units: Vec<Unit>,
+    /// For each permutation, the index of its unit.
+    pub unit_of: Vec<u32>,
+    /// The axes that any composition asked for.
+    pub reads: BTreeSet<String>,
+    /// How often anything was composed.
+    pub compositions: usize,
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Compiles an entry point for every permutation.
+pub fn weave(
+    entry: &Entry,
+    space: &Space,
+    points: &[(Key, Assignment)],
+    targets: &[Target],
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Woven, Diagnostics> {
+    let mut loom = Loom::new(entry);
+    for batch in points.chunks(BATCH) {
+        let texts = loom.compose(entry, space, batch)?;
+        let units: Vec<Result<Unit, Diagnostics>> =
+            texts.par_iter().map(|(key, composed)| compile(composed, &entry.name, targets).map_err(|errors| of_permutation(errors, entry, key))).collect();
+        loom.woven.units.extend(collect(units)?);
+        progress(Progress { stage: format!("{} {}", entry.program, entry.name), done: loom.woven.unit_of.len(), total: points.len() });
+    }
+    Ok(loom.woven)
+}
+
+/// What is known so far.
+struct Loom {
+    woven: Woven,
+    tree: ReadTree<u32>,
+    /// Unit by the hash of its text.
+    texts: BTreeMap<[u8; 32], u32>,
+}
+
+impl Loom {
+    fn new(entry: &Entry) -> Self {
+        let woven = Woven {
+            name: entry.name.clone(),
+            language: entry.language,
+            stage: entry.stage,
+            units: Vec::new(),
+            unit_of: Vec::new(),
+            reads: BTreeSet::new(),
+            compositions: 0,
+            warnings: Vec::new(),
+        };
+        Self { woven, tree: ReadTree::default(), texts: BTreeMap::new() }
+    }
+
+    /// Gives every permutation of a batch its unit; the texts that are new, in order.
+    ///
+    /// Settings that no earlier batch answered are composed in parallel, some of them to the same
+    /// text: to compose is cheaper than to wait for each other.
+    fn compose<'k>(&mut self, entry: &Entry, space: &Space, batch: &'k [(Key, Assignment)]) -> Result<Vec<(&'k Key, Composed)>, Diagnostics> {
+        let tree = &self.tree;
+        let composed: Vec<Result<Found, Diagnostics>> = batch
+            .par_iter()
+            .map(|(key, point)| {
+                let settings = space.settings(point);
+                match tree.get(&settings) {
+                    Some(unit) => Ok(Found::Unit(*unit)),
+                    None => compose::compose(&entry.graph, &settings, &entry.options)
+                        .map(|composed| Found::Text(Box::new(composed)))
+                        .map_err(|errors| of_permutation(errors, entry, key)),
+                }
+            })
+            .collect();
+        let found = collect(composed)?;
+        Ok(batch.iter().zip(found).filter_map(|((key, _), found)| self.place(found).map(|composed| (key, composed))).collect())
+    }
+
+    /// Records a permutation's unit; its text, if no earlier one had it.
+    fn place(&mut self, found: Found) -> Option<Composed> {
+        let composed = match found {
+            Found::Unit(unit) => {
+                self.woven.unit_of.push(unit);
+                return None;
+            }
+            Found::Text(composed) => composed,
+        };
+        self.woven.compositions += 1;
+        self.woven.reads.extend(composed.reads.iter().map(|(name, _)| name.clone()));
+        let hash = *blake3::hash(composed.text.as_bytes()).as_bytes();
+        let next = self.texts.len() as u32;
+        let unit = *self.texts.entry(hash).or_insert(next);
+        // A contradiction would only cost a composition that the tree could have saved.
+        let _ = self.tree.insert(&composed.reads, unit);
+        self.woven.unit_of.push(unit);
+        if unit < next {
+            return None;
+        }
+        let new = composed.warnings.iter().filter(|warning| !self.woven.warnings.contains(warning)).cloned().collect::<Vec<_>>();
+        self.woven.warnings.extend(new);
+        Some(*composed)
+    }
+}
+
+enum Found {
+    Unit(u32),
+    Text(Box<Composed>),
+}
+
+/// All values, or the first diagnostics of those that failed, each once.
+fn collect<T>(results: Vec<Result<T, Diagnostics>>) -> Result<Vec<T>, Diagnostics> {
+    let mut values = Vec::with_capacity(results.len());
+    let mut errors: Diagnostics = Vec::new();
+    for result in results {
+        match result {
+            Ok(value) => values.push(value),
+            Err(found) => found.into_iter().for_each(|error| keep(&mut errors, error)),
+        }
+    }
+    if errors.is_empty() { Ok(values) } else { Err(errors) }
+}
+
+/// The same mistake in many permutations is one mistake: the first shows it.
+fn keep(errors: &mut Diagnostics, error: Diagnostic) {
+    let same = |known: &Diagnostic| known.code == error.code && known.message == error.message && known.labels == error.labels;
+    if errors.len() < REPORTED && !errors.iter().any(same) {
+        errors.push(error);
+    }
+}
+
+fn of_permutation(errors: Diagnostics, entry: &Entry, key: &Key) -> Diagnostics {
+    errors.into_iter().map(|error| error.note(format!("in permutation `{key}` of `{}`, entry point `{}`", entry.program, entry.name))).collect()
+}
