@@ -51,9 +51,9 @@ fn codes(folder: &Path) -> std::io::Result<String> {
         let explanation = explanation.trim();
         let _ = writeln!(
             table,
-            "/// {title}\npub const {constant}: Code = Code {{ name: {name:?}, title: {title:?}, explanation: {explanation:?} }};"
+            "/// {title}\npub const {constant}: &Code = &Code {{ name: {name:?}, title: {title:?}, explanation: {explanation:?} }};"
         );
-        let _ = write!(names, "&{constant}, ");
+        let _ = write!(names, "{constant}, ");
     }
     let _ = writeln!(table, "/// Every code, by name.\npub const ALL: &[&Code] = &[{names}];");
     Ok(table)
