@@ -30,5 +30,3 @@ pub mod eval;
 #[cfg(feature = "harness")]
 pub mod harness;
 
-#[cfg(feature = "cli")]
-pub mod cli;

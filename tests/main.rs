@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
+mod compose_glsl;
+mod compose_wesl;
 mod permute;
 mod shaderlib;
 mod snapshot;
@@ -10,7 +12,7 @@ use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Trial};
 
-const KINDS: &[fn() -> Vec<Trial>] = &[permute::trials, shaderlib::trials, snapshot::trials];
+const KINDS: &[fn() -> Vec<Trial>] = &[compose_glsl::trials, compose_wesl::trials, permute::trials, shaderlib::trials, snapshot::trials];
 
 fn main() -> ExitCode {
     let trials = KINDS.iter().flat_map(|kind| kind()).collect();

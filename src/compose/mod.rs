@@ -1,12 +1,14 @@
 //! Weaves the modules that an entry point reaches into one text, with a map back to the authors'.
 
+pub mod glsl;
 mod source_map;
 pub mod wesl;
 
 pub use source_map::{Segment, SourceMap};
 
-use crate::diagnostic::Diagnostic;
-use crate::permute::Setting;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::permute::{Setting, Settings};
+use crate::resolve::Graph;
 
 /// The two source languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -65,4 +67,12 @@ pub struct Composed {
     pub reads: Vec<(String, Setting)>,
     /// Lints.
     pub warnings: Vec<Diagnostic>,
+}
+
+/// Composes a graph's root for the settings. Pure: same input, same bytes.
+pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<Composed, Diagnostics> {
+    match graph {
+        Graph::Wesl(graph) => wesl::compose(graph, settings, options),
+        Graph::Glsl(graph) => glsl::compose(graph, settings, options),
+    }
 }
