@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod compose;
 mod corpus;
 
 use std::error::Error;
@@ -9,7 +10,7 @@ use std::process::ExitCode;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[];
+const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[("compose", compose::run)];
 
 fn main() -> ExitCode {
     let asked = std::env::args().nth(1).unwrap_or_default();
