@@ -1,5 +1,7 @@
 //! Names in the output: as declared where nothing speaks against it, else the qualified path.
 
+use std::collections::HashSet;
+
 use super::reach::{Reached, Thing, name_of};
 use crate::compose::{Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -39,6 +41,7 @@ pub fn choose(graph: &Graph, reached: &Reached, options: &Options, errors: &mut 
     let things = kept(graph, reached);
     let mut table = Table::new(graph, reached, &things);
     let mut renames = Renames { indices: vec![0; reached.len()], texts: Vec::new() };
+    let mut made = HashSet::new();
     for thing in &things {
         let name = name_of(graph, *thing);
         let hold = hold(graph, *thing);
@@ -51,7 +54,8 @@ pub fn choose(graph: &Graph, reached: &Reached, options: &Options, errors: &mut 
         }
         let mangled = options.mangle == Mangle::Underscore && hold == Hold::Loose;
         if mangled || taken || table.claims[name.0 as usize] > 1 {
-            let text = table.unique(mangle(graph, *thing), &renames.texts);
+            let text = table.unique(mangle(graph, *thing), &made);
+            made.insert(text.clone());
             renames.texts.push(text);
             renames.indices[reached.index(*thing)] = renames.texts.len() as u32;
         }
@@ -109,7 +113,7 @@ impl<'a> Table<'a> {
     }
 
     /// The text, with a number behind it if something else has that name.
-    fn unique(&self, text: String, made: &[String]) -> String {
+    fn unique(&self, text: String, made: &HashSet<String>) -> String {
         let mut candidate = text.clone();
         let mut number = 2;
         while made.contains(&candidate) || self.is_taken(&candidate) {
