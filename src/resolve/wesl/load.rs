@@ -97,6 +97,10 @@ impl<'a> Loader<'a> {
 
     fn read(&mut self, package: usize, path: &[String], asker: Span) -> Result<Option<u32>, Diagnostic> {
         for stem in self.stems(package, path) {
+            // A package's own module may have been read under its file's name, or will be.
+            if let Some(known @ (Ok(Some(_)) | Err(_))) = self.known.get(&(package, stem.clone())) {
+                return known.clone();
+            }
             for extension in ["wesl", "wgsl"] {
                 let found = source::read(self.sources, self.package(package), &format!("{stem}.{extension}"))
                     .map_err(|error| error.at(asker, "imported here"))?;
@@ -105,7 +109,9 @@ impl<'a> Loader<'a> {
                         let message = format!("more than {} modules", LIMITS.files);
                         return Err(Diagnostic::error(codes::TOO_MANY_FILES, message).at(asker, "the first one too many"));
                     }
-                    return Ok(Some(self.add(source, package, path.to_vec(), Some(asker))));
+                    let node = self.add(source, package, path.to_vec(), Some(asker));
+                    self.known.insert((package, stem), Ok(Some(node)));
+                    return Ok(Some(node));
                 }
             }
         }

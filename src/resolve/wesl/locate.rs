@@ -96,14 +96,14 @@ impl Loader<'_> {
             None if own => Some(self.nodes[node as usize].package),
             None if segments[0] == Name::CONSTANTS => None,
             None if in_circle => return Err(cyclic(span)),
-            None => return Err(self.unknown_package(first, span)),
+            None => return Err(self.unknown_package(node, first, span)),
         };
         Ok(Absolute { package, segments: segments[1..].to_vec(), conditions: Vec::new() })
     }
 
-    fn unknown_package(&self, first: &str, span: Span) -> Diagnostic {
+    fn unknown_package(&self, node: u32, first: &str, span: Span) -> Diagnostic {
         let error = Diagnostic::error(codes::UNKNOWN_PACKAGE, format!("there is no package `{first}`")).at(span, "not a package");
-        let files = self.packages.root.files.list(&["wesl", "wgsl"]);
+        let files = self.package(self.nodes[node as usize].package).files.list(&["wesl", "wgsl"]);
         let own = files.iter().any(|file| file.split(['/', '.']).next() == Some(first));
         match own {
             true => error.note(format!("help: for the module of this package write `package::{first}`")),
