@@ -60,10 +60,12 @@ impl<'a> Writer<'a> {
 
     /// How many tokens from the first on can be copied as one piece of their file.
     fn run(&self, tokens: &[Tok]) -> usize {
-        if !tokens[0].is_plain() {
+        let first = &tokens[0];
+        let is_spliced = (first.end - first.start) as usize != self.spellings.text(first.symbol).len();
+        if !first.is_plain() || is_spliced {
             return 1;
         }
-        let source = &self.modules[tokens[0].module as usize].tokens;
+        let source = &self.modules[first.module as usize].tokens;
         let follows = |pair: &[Tok]| {
             let next = &pair[1];
             next.is_plain() && next.module == pair[0].module && next.before == pair[0].after + 1 && source[next.before as usize].clean
@@ -133,6 +135,7 @@ impl<'a> Writer<'a> {
         let kept = gap::trailing(text);
         if !kept.is_empty() {
             self.pieces(&[(Span { end: span.start + kept.end as u32, ..span }, &text[kept])], false);
+            self.text.truncate(self.text.trim_end().len());
         }
     }
 
@@ -143,7 +146,10 @@ impl<'a> Writer<'a> {
         }
         let before = self.gap_before(right);
         if left.module == right.module && left.after + 1 == right.before {
-            return self.pieces(&[(before, self.source(right, before))], false);
+            return match self.source(right, before) {
+                "" => self.minimal_gap(left, right),
+                text => self.pieces(&[(before, text)], false),
+            };
         }
         let after = self.gap_after(left);
         let text = self.source(left, after);
@@ -204,6 +210,6 @@ fn indentation(space: &str) -> &str {
 fn glues(left: Option<char>, right: Option<char>) -> bool {
     let (Some(left), Some(right)) = (left, right) else { return false };
     let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let number = |c: char| word(c) || c == '.';
+    let number = |c: char| c.is_ascii_digit() || c == '.';
     (word(left) && word(right)) || (number(left) && number(right)) || ("+-*/%<>=!&|^#".contains(left) && "+-*/<>=&|^#".contains(right))
 }
