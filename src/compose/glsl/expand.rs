@@ -41,6 +41,9 @@ pub struct Expander<'g, 's> {
     depth: usize,
 }
 
+/// The arguments of a call, and its closing parenthesis.
+type Call = (Vec<Vec<Tok>>, Tok);
+
 /// The expansion of a macro while it is scanned.
 struct Frame {
     tokens: Vec<Tok>,
@@ -110,9 +113,9 @@ impl<'g, 's> Expander<'g, 's> {
         match input {
             Input::Source { module, at, end } => {
                 let tokens = &self.graph.modules[*module as usize].tokens[*at as usize..*end as usize];
-                let plain = tokens.iter().take_while(|token| is_plain(token.kind, token.symbol));
-                let first = *at;
-                out.extend(plain.zip(first..).map(|(token, index)| Tok::copy(*module, index, token)).inspect(|_| *at += 1));
+                let plain = tokens.iter().take_while(|token| is_plain(token.kind, token.symbol)).count();
+                out.extend(tokens[..plain].iter().zip(*at..).map(|(token, index)| Tok::copy(*module, index, token)));
+                *at += plain as u32;
             }
             Input::Tokens { tokens, at } => {
                 let plain = tokens[*at..].iter().take_while(|token| is_plain(token.kind, token.symbol)).count();
@@ -241,7 +244,7 @@ impl<'g, 's> Expander<'g, 's> {
     }
 
     /// The arguments between the parentheses, and the closing one; `None` where that is missing.
-    fn arguments(&mut self, name: Tok, floor: usize, input: &mut Input<'_>) -> Result<Option<(Vec<Vec<Tok>>, Tok)>, Fatal> {
+    fn arguments(&mut self, name: Tok, floor: usize, input: &mut Input<'_>) -> Result<Option<Call>, Fatal> {
         self.take(floor, input);
         let mut arguments = vec![Vec::new()];
         let mut depth = 0usize;

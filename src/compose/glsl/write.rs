@@ -91,10 +91,9 @@ impl<'a> Writer<'a> {
     fn gap_before(&self, tok: &Tok) -> Span {
         let module = &self.modules[tok.module as usize];
         let token = &module.tokens[tok.before as usize];
-        let start = match module.text_part(tok.before) {
-            Some(part) if part.tokens.start == tok.before => part.bytes.start,
-            _ => tok.before.checked_sub(1).map_or(0, |previous| module.tokens[previous as usize].end),
-        };
+        let part = if token.first_of_part { module.text_part(tok.before) } else { None };
+        let previous = || tok.before.checked_sub(1).map_or(0, |previous| module.tokens[previous as usize].end);
+        let start = part.map_or_else(previous, |part| part.bytes.start);
         Span { source: module.source, start, end: token.start }
     }
 
@@ -102,9 +101,9 @@ impl<'a> Writer<'a> {
     fn gap_after(&self, tok: &Tok) -> Span {
         let module = &self.modules[tok.module as usize];
         let start = module.tokens[tok.after as usize].end;
-        let end = match module.text_part(tok.after) {
-            Some(part) if part.tokens.end == tok.after + 1 => part.bytes.end,
-            _ => module.tokens.get(tok.after as usize + 1).map_or(start, |next| next.start),
+        let end = match module.tokens.get(tok.after as usize + 1) {
+            Some(next) if !next.first_of_part => next.start,
+            _ => module.text_part(tok.after).map_or(start, |part| part.bytes.end),
         };
         Span { source: module.source, start, end }
     }
@@ -120,7 +119,7 @@ impl<'a> Writer<'a> {
         }
         let span = self.gap_before(first);
         let module = &self.modules[first.module as usize];
-        let after_item = module.text_part(first.before).is_some_and(|part| part.tokens.start != first.before);
+        let after_item = !module.tokens[first.before as usize].first_of_part;
         let text = self.source(first, span);
         let kept = gap::attached(text, after_item);
         self.pieces(&[(Span { start: span.start + kept.start as u32, ..span }, &text[kept])], false);
@@ -155,7 +154,7 @@ impl<'a> Writer<'a> {
         let text = self.source(left, after);
         // Between the two stands a directive, so each is at the edge of its part; or else a macro
         // that expanded to nothing.
-        let ends_part = self.modules[left.module as usize].text_part(left.after).is_some_and(|part| part.tokens.end == left.after + 1);
+        let ends_part = self.modules[left.module as usize].tokens.get(left.after as usize + 1).is_none_or(|next| next.first_of_part);
         let left = (after, if ends_part { text } else { "" });
         self.pieces(&[left, (before, self.source(right, before))], ends_part);
     }
