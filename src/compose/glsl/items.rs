@@ -94,7 +94,7 @@ fn names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
             known::STRUCT => is_struct = true,
             known::OPEN_BRACE => {
                 let close = close_of(item, at);
-                block_members = (!is_struct).then_some(at + 1..close);
+                block_members = (!is_struct).then_some(at + 1..close.max(at + 1));
                 at = close;
             }
             known::ASSIGN => {

@@ -1,0 +1,6 @@
+#version 450
+
+void main() {}
+
+layout(std140) uniform U {
+// ---- Fragment; reads: 

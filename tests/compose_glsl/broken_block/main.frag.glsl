@@ -1,0 +1,3 @@
+#version 450
+void main() {}
+layout(std140) uniform U {
