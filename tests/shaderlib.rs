@@ -1,5 +1,7 @@
 //! Every module of the shader library, by itself: valid in both languages, the same in both, and documented.
 
+mod emits;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write as _;
 use std::path::{Component, Path, PathBuf};
@@ -20,6 +22,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("glslang_330", |module| glslang(module, &DIALECTS[1])),
     ("glslang_300_es", |module| glslang(module, &DIALECTS[2])),
     ("glslang_310_es", |module| glslang(module, &DIALECTS[3])),
+    ("targets", every_target_writes),
     ("twins", twins_agree),
     ("doc", functions_are_documented),
 ];
@@ -94,6 +97,15 @@ fn glsl_is_valid(module: &str) -> Result<(), Failed> {
     parse_glsl(module).map(|_| ())
 }
 
+fn every_target_writes(module: &str) -> Result<(), Failed> {
+    let functions: Vec<_> = functions(&read(&format!("{module}.wesl"))).into_iter().map(|f| (f.name, f.types)).collect();
+    let text = joined_wesl(module, &mut BTreeSet::new()) + &emits::entry(&functions);
+    for (version, text) in emits::emits(&text)? {
+        run_glslang(&text, &[]).map_err(|error| format!("{version:?}: {}\n{text}", error.message().unwrap_or_default()))?;
+    }
+    Ok(())
+}
+
 fn twins_agree(module: &str) -> Result<(), Failed> {
     same("signatures", &signatures(&parse_wesl(module)?), &signatures(&parse_glsl(module)?))?;
     let summaries = |path: String| functions(&read(&path)).into_iter().map(|f| (f.name, f.doc.first().cloned())).collect::<Vec<_>>();
@@ -121,10 +133,11 @@ fn faults(function: &Function) -> Vec<String> {
 struct Function {
     name: String,
     parameters: Vec<String>,
+    types: Vec<String>,
     doc: Vec<String>,
 }
 
-/// The functions of a module in either language; parameters of WESL only.
+/// The functions of a module in either language; the names of parameters in WESL only.
 fn functions(text: &str) -> Vec<Function> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
@@ -135,7 +148,8 @@ fn functions(text: &str) -> Vec<Function> {
         }
         if let Some((head, _)) = line.split_once('(').filter(|_| is_declaration(line)) {
             let name = head.rsplit(' ').next().unwrap_or(head).to_owned();
-            found.push(Function { name, parameters: parameters(&text[offset..]), doc: std::mem::take(&mut doc) });
+            let (parameters, types) = parameters(&text[offset..]);
+            found.push(Function { name, parameters, types, doc: std::mem::take(&mut doc) });
         }
         doc.clear();
     }
@@ -154,9 +168,18 @@ fn is_declaration(line: &str) -> bool {
     line.starts_with(|first: char| first.is_ascii_alphabetic()) && line.ends_with(['{', '('])
 }
 
-fn parameters(declaration: &str) -> Vec<String> {
+/// Names and types. A comma is followed by a parameter's name and colon, or belongs to a type.
+fn parameters(declaration: &str) -> (Vec<String>, Vec<String>) {
     let list = declaration.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map_or("", |(list, _)| list);
-    list.split(',').filter_map(|parameter| Some(parameter.split_once(':')?.0.trim().to_owned())).collect()
+    let mut found: Vec<(String, String)> = Vec::new();
+    for part in list.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        match (part.split_once(": "), found.last_mut()) {
+            (Some((name, ty)), _) => found.push((name.to_owned(), ty.to_owned())),
+            (None, Some((_, ty))) => *ty = format!("{ty}, {part}"),
+            (None, None) => {}
+        }
+    }
+    found.into_iter().unzip()
 }
 
 fn read(path: &str) -> String {
@@ -226,14 +249,15 @@ fn validated(module: Module) -> Result<Module, Failed> {
 }
 
 fn glslang(module: &str, dialect: &Dialect) -> Result<(), Failed> {
+    run_glslang(&fragment(module, dialect), dialect.options)
+}
+
+fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {
     let mut command = Command::new("glslangValidator");
-    command.args(["--stdin", "-S", "frag"]).args(dialect.options);
-    let mut child = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .map_err(|error| format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`"))?;
-    child.stdin.take().expect("piped").write_all(fragment(module, dialect).as_bytes())?;
+    command.args(["--stdin", "-S", "frag"]).args(options).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let started = command.spawn();
+    let mut child = started.map_err(|error| format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`"))?;
+    child.stdin.take().expect("piped").write_all(text.as_bytes())?;
     let output = child.wait_with_output()?;
     if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&output.stdout).into_owned().into()) }
 }
