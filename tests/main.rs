@@ -1,9 +1,13 @@
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-//! One test binary; each kind of test lists its trials.
+//! The one test binary: kinds of tests, cases found by their files.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
+
+mod compose_glsl;
+mod compose_wesl;
 mod shaderlib;
 
 fn main() {
     let arguments = libtest_mimic::Arguments::from_args();
-    libtest_mimic::run(&arguments, shaderlib::trials()).exit()
+    let trials = compose_glsl::trials().into_iter().chain(compose_wesl::trials()).chain(shaderlib::trials()).collect();
+    libtest_mimic::run(&arguments, trials).exit();
 }
