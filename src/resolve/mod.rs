@@ -1,5 +1,6 @@
 //! From parsed modules to a graph of items and what each refers to.
 
+pub mod glsl;
 pub mod wesl;
 
 use crate::source::Package;
