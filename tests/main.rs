@@ -2,12 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
-mod compose_glsl;
 mod compose_wesl;
 mod shaderlib;
 
 fn main() {
     let arguments = libtest_mimic::Arguments::from_args();
-    let trials = compose_glsl::trials().into_iter().chain(compose_wesl::trials()).chain(shaderlib::trials()).collect();
+    let trials = compose_wesl::trials().into_iter().chain(shaderlib::trials()).collect();
     libtest_mimic::run(&arguments, trials).exit();
 }

@@ -2,12 +2,16 @@
 
 mod emits;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::Write as _;
-use std::path::{Component, Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use lamplight::source::{Embedded, Files as _};
+use lamplight::compose::{self, Composed, Keep, Options};
+use lamplight::diagnostic::Diagnostic;
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::permute::Settings;
+use lamplight::resolve::{self, Packages};
+use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
 use naga::front::{glsl, wgsl};
 use naga::{Handle, Module, ShaderStage, Type, TypeInner};
@@ -98,18 +102,21 @@ fn glsl_is_valid(module: &str) -> Result<(), Failed> {
 }
 
 fn every_target_writes(module: &str) -> Result<(), Failed> {
-    let functions: Vec<_> = functions(&read(&format!("{module}.wesl"))).into_iter().map(|f| (f.name, f.types)).collect();
-    let text = joined_wesl(module, &mut BTreeSet::new()) + &emits::entry(&functions);
-    for (version, text) in emits::emits(&text)? {
+    for (version, text) in emits::emits(&called_wesl(module)?)? {
         run_glslang(&text, &[]).map_err(|error| format!("{version:?}: {}\n{text}", error.message().unwrap_or_default()))?;
     }
     Ok(())
 }
 
+/// Structures are compared where a function takes or gives them.
 fn twins_agree(module: &str) -> Result<(), Failed> {
-    same("signatures", &signatures(&parse_wesl(module)?), &signatures(&parse_glsl(module)?))?;
     let summaries = |path: String| functions(&read(&path)).into_iter().map(|f| (f.name, f.doc.first().cloned())).collect::<Vec<_>>();
-    same("summaries", &summaries(format!("{module}.wesl")), &summaries(format!("{module}.glsl")))
+    let wesl = summaries(format!("{module}.wesl"));
+    same("summaries", &wesl, &summaries(format!("{module}.glsl")))?;
+    let own = |parsed: Module| -> BTreeMap<String, String> {
+        signatures(&parsed).into_iter().filter(|(name, _)| wesl.iter().any(|(own, _)| own == name)).collect()
+    };
+    same("signatures", &own(parse_wesl(module)?), &own(parse_glsl(module)?))
 }
 
 fn functions_are_documented(module: &str) -> Result<(), Failed> {
@@ -186,58 +193,64 @@ fn read(path: &str) -> String {
     Embedded.read(path).expect("the embedded library is readable").unwrap_or_else(|| panic!("no `{path}` in the library"))
 }
 
-/// The module after those it imports, without the imports: names are unique in the library.
-fn joined_wesl(module: &str, seen: &mut BTreeSet<String>) -> String {
-    if !seen.insert(module.to_owned()) {
-        return String::new();
-    }
-    let mut text = String::new();
-    for line in read(&format!("{module}.wesl")).lines() {
-        match line.strip_prefix("import package::") {
-            Some(import) => text += &joined_wesl(&import.rsplit_once("::").expect("an item").0.replace("::", "/"), seen),
-            None => text = text + line + "\n",
-        }
-    }
-    text
+/// A text of WESL composed with the library: `lamplight` is a dependency, as it is for a user.
+fn composed_wesl(text: String) -> Result<String, Failed> {
+    let (mut sources, packages) = beside("main.wesl", text);
+    let composed = resolve::wesl::load(&mut sources, &packages, "main.wesl")
+        .and_then(|graph| compose::wesl::compose(&graph, &Settings::default(), &Options::default()));
+    written(&sources, composed)
 }
 
-/// The module with its includes in their places.
-fn joined_glsl(path: &Path, seen: &mut BTreeSet<PathBuf>) -> String {
-    if !seen.insert(path.to_owned()) {
-        return String::new();
-    }
-    let mut text = String::new();
-    for line in read(path.to_str().expect("UTF-8")).lines() {
-        match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
-            Some(include) => text += &joined_glsl(&normal(&path.with_file_name(include)), seen),
-            None => text = text + line + "\n",
-        }
-    }
-    text
+/// The same for GLSL, with everything that is included.
+fn composed_glsl(text: String) -> Result<String, Failed> {
+    let (mut sources, packages) = beside("main.frag.glsl", text);
+    let options = Options { keep: Keep::All, ..Options::default() };
+    let composed = resolve::glsl::load(&mut sources, &packages, "main.frag.glsl")
+        .and_then(|graph| compose::glsl::compose(&graph, &Settings::default(), &options));
+    written(&sources, composed)
 }
 
-fn normal(path: &Path) -> PathBuf {
-    path.components().fold(PathBuf::new(), |mut done, component| {
-        match component {
-            Component::ParentDir => drop(done.pop()),
-            other => done.push(other),
-        }
-        done
-    })
+fn beside(root: &str, text: String) -> (SourceSet, Packages) {
+    let root = Package { name: "user".into(), files: Box::new(Memory([(root.to_owned(), text)].into())) };
+    let library = Package { name: "lamplight".into(), files: Box::new(Embedded) };
+    (SourceSet::default(), Packages { root, dependencies: vec![library] })
 }
 
-fn fragment(module: &str, dialect: &Dialect) -> String {
-    let text = joined_glsl(Path::new(&format!("{module}.glsl")), &mut BTreeSet::new());
-    format!("{}{text}{}void main() {{ colour = vec4(1.0); }}\n", dialect.head, dialect.output)
+fn written(sources: &SourceSet, composed: Result<Composed, Vec<Diagnostic>>) -> Result<String, Failed> {
+    let shown = |diagnostics: &[Diagnostic]| Failed::from(render(sources, diagnostics, Form::Human));
+    let composed = composed.map_err(|diagnostics| shown(&diagnostics))?;
+    if composed.warnings.is_empty() { Ok(composed.text) } else { Err(shown(&composed.warnings)) }
+}
+
+/// The module, reached from an entry point that calls each of its functions.
+fn called_wesl(module: &str) -> Result<String, Failed> {
+    let path = format!("lamplight::{}", module.replace('/', "::"));
+    let called = |f: Function| (format!("{path}::{}", f.name), f.types.iter().map(|ty| qualified(ty)).collect());
+    let functions: Vec<_> = functions(&read(&format!("{module}.wesl"))).into_iter().map(called).collect();
+    composed_wesl(emits::entry(&functions))
+}
+
+/// A structure's name with its module before it; any other type as it is.
+fn qualified(ty: &str) -> String {
+    let declares = |module: &String| read(&format!("{module}.wesl")).contains(&format!("\nstruct {ty} {{"));
+    match modules().into_iter().find(declares) {
+        Some(module) => format!("lamplight::{}::{ty}", module.replace('/', "::")),
+        None => ty.to_owned(),
+    }
+}
+
+fn fragment(module: &str, dialect: &Dialect) -> Result<String, Failed> {
+    let include = format!("#include <lamplight/{module}.glsl>\n");
+    composed_glsl(format!("{}{include}{}void main() {{\n    colour = vec4(1.0);\n}}\n", dialect.head, dialect.output))
 }
 
 fn parse_wesl(module: &str) -> Result<Module, Failed> {
-    let text = joined_wesl(module, &mut BTreeSet::new());
+    let text = called_wesl(module)?;
     validated(wgsl::parse_str(&text).map_err(|error| error.emit_to_string(&text))?)
 }
 
 fn parse_glsl(module: &str) -> Result<Module, Failed> {
-    let text = fragment(module, &DIALECTS[0]);
+    let text = fragment(module, &DIALECTS[0])?;
     let parsed = glsl::Frontend::default().parse(&glsl::Options::from(ShaderStage::Fragment), &text);
     validated(parsed.map_err(|errors| errors.emit_to_string(&text))?)
 }
@@ -249,7 +262,7 @@ fn validated(module: Module) -> Result<Module, Failed> {
 }
 
 fn glslang(module: &str, dialect: &Dialect) -> Result<(), Failed> {
-    run_glslang(&fragment(module, dialect), dialect.options)
+    run_glslang(&fragment(module, dialect)?, dialect.options)
 }
 
 fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {

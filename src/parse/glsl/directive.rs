@@ -74,9 +74,8 @@ fn connect(parts: &mut [Part], branches: &[usize]) {
     }
 }
 
-const NAMES: &[&str] = &[
-    "define", "elif", "else", "endif", "error", "extension", "if", "ifdef", "ifndef", "include", "line", "pragma", "undef", "version",
-];
+const NAMES: &[&str] =
+    &["define", "elif", "else", "endif", "error", "extension", "if", "ifdef", "ifndef", "include", "line", "pragma", "undef", "version"];
 
 /// Reads the tokens `start..end` after the `#`.
 fn read(module: &mut Module, start: usize, end: usize, symbols: &Symbols) -> Result<Directive, Diagnostic> {
@@ -171,7 +170,8 @@ impl Line<'_> {
 
     fn reserved(&self, name: Symbol, span: Span) -> Diagnostic {
         let code: &'static Code = codes::RESERVED_MACRO;
-        Diagnostic::error(code, format!("the macro name `{}` is reserved", self.symbols.text(name))).at(span, "cannot be defined or undefined")
+        Diagnostic::error(code, format!("the macro name `{}` is reserved", self.symbols.text(name)))
+            .at(span, "cannot be defined or undefined")
     }
 
     /// Reads the raw text: a path is not made of tokens.
@@ -281,10 +281,8 @@ impl Line<'_> {
             (Some(name), [_, ":", "require" | "enable" | "warn" | "disable"]) if name.kind == Kind::Identifier => {
                 Ok(Directive::Extension { name: name.symbol, line: self.whole() })
             }
-            _ => Err(self.malformed(
-                "`#extension` needs a name and a behaviour".into(),
-                "expected `NAME : require`, `enable`, `warn` or `disable`",
-            )),
+            _ => Err(self
+                .malformed("`#extension` needs a name and a behaviour".into(), "expected `NAME : require`, `enable`, `warn` or `disable`")),
         }
     }
 }

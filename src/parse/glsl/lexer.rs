@@ -180,9 +180,8 @@ fn number_end(bytes: &[u8], start: usize) -> usize {
     }
 }
 
-const PUNCTUATION: &[&str] = &[
-    "<<=", ">>=", "##", "<=", ">=", "==", "!=", "&&", "||", "^^", "++", "--", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<", ">>",
-];
+const PUNCTUATION: &[&str] =
+    &["<<=", ">>=", "##", "<=", ">=", "==", "!=", "&&", "||", "^^", "++", "--", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<", ">>"];
 
 fn punctuation(rest: &[u8]) -> usize {
     if let Some(long) = PUNCTUATION.iter().find(|text| rest.starts_with(text.as_bytes())) {

@@ -57,17 +57,37 @@ pub enum Directive {
     Include(usize),
     Define(Macro),
     Undef(Symbol),
-    If { condition: Range<u32>, next: usize },
-    Ifdef { name: Result<Symbol, Box<Diagnostic>>, negated: bool, next: usize },
-    Elif { condition: Range<u32>, next: usize, end: usize },
-    Else { end: usize },
+    If {
+        condition: Range<u32>,
+        next: usize,
+    },
+    Ifdef {
+        name: Result<Symbol, Box<Diagnostic>>,
+        negated: bool,
+        next: usize,
+    },
+    Elif {
+        condition: Range<u32>,
+        next: usize,
+        end: usize,
+    },
+    Else {
+        end: usize,
+    },
     Endif,
     /// The author's words.
     Error(Span),
     /// Tokens after `#line`.
     Line(Range<u32>),
-    Version { number: u32, es: bool, line: Span },
-    Extension { name: Symbol, line: Span },
+    Version {
+        number: u32,
+        es: bool,
+        line: Span,
+    },
+    Extension {
+        name: Symbol,
+        line: Span,
+    },
     PragmaOnce,
     Pragma(Span),
     /// A `#` alone.
@@ -159,13 +179,18 @@ fn lex_error(source: SourceId, text: &str, error: lexer::LexError) -> Diagnostic
 fn split(module: &mut Module, symbols: &Symbols) {
     let (mut token, mut byte) = (0, 0);
     while token < module.tokens.len() {
-        let hash = token + module.tokens[token..].iter().position(|token| token.first_of_line && token.symbol == known::HASH).unwrap_or(module.tokens.len() - token);
+        let hash = token
+            + module.tokens[token..]
+                .iter()
+                .position(|token| token.first_of_line && token.symbol == known::HASH)
+                .unwrap_or(module.tokens.len() - token);
         let start = module.tokens.get(hash).map_or(module.text.len(), |token| token.start as usize);
         push_text(module, token..hash, byte..start);
         if hash == module.tokens.len() {
             return;
         }
-        let end = hash + 1 + module.tokens[hash + 1..].iter().position(|token| token.first_of_line).unwrap_or(module.tokens.len() - hash - 1);
+        let end =
+            hash + 1 + module.tokens[hash + 1..].iter().position(|token| token.first_of_line).unwrap_or(module.tokens.len() - hash - 1);
         directive::push(module, hash, end, symbols);
         byte = lexer::line_end(&module.text, module.tokens[end - 1].end as usize);
         token = end;
