@@ -26,6 +26,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("glslang_330", |module| glslang(module, &DIALECTS[1])),
     ("glslang_300_es", |module| glslang(module, &DIALECTS[2])),
     ("glslang_310_es", |module| glslang(module, &DIALECTS[3])),
+    ("include_path", glslang_includes),
     ("targets", every_target_writes),
     ("twins", twins_agree),
     ("doc", functions_are_documented),
@@ -53,7 +54,11 @@ const DOC_PARTS: [&str; 5] = ["Parameters: ", "Returns: ", "Source: ", "Edges: "
 
 /// One trial for each module and check, and those about the library as a whole.
 pub fn trials() -> Vec<Trial> {
-    let mut trials = vec![Trial::test("shaderlib::pairs", every_module_has_its_twin), Trial::test("shaderlib::names", names_are_unique)];
+    let mut trials = vec![
+        Trial::test("shaderlib::pairs", every_module_has_its_twin),
+        Trial::test("shaderlib::names", names_are_unique),
+        Trial::test("shaderlib::together", modules_go_together),
+    ];
     for module in modules() {
         for (name, check) in CHECKS {
             let module = module.clone();
@@ -89,6 +94,15 @@ fn names_are_unique() -> Result<(), Failed> {
                 return Err(format!("`{}` is in `{other}` and in `{module}`", function.name).into());
             }
         }
+    }
+    Ok(())
+}
+
+/// GLSL that includes every module compiles: structures and constants have names of their own too.
+fn modules_go_together() -> Result<(), Failed> {
+    let all = modules().iter().map(|module| include(module)).collect::<String>();
+    for dialect in &DIALECTS {
+        run_glslang(&fragment(&all, dialect)?, dialect.options)?;
     }
     Ok(())
 }
@@ -239,9 +253,12 @@ fn qualified(ty: &str) -> String {
     }
 }
 
-fn fragment(module: &str, dialect: &Dialect) -> Result<String, Failed> {
-    let include = format!("#include <lamplight/{module}.glsl>\n");
-    composed_glsl(format!("{}{include}{}void main() {{\n    colour = vec4(1.0);\n}}\n", dialect.head, dialect.output))
+fn include(module: &str) -> String {
+    format!("#include <lamplight/{module}.glsl>\n")
+}
+
+fn fragment(includes: &str, dialect: &Dialect) -> Result<String, Failed> {
+    composed_glsl(format!("{}{includes}{}void main() {{\n    colour = vec4(1.0);\n}}\n", dialect.head, dialect.output))
 }
 
 fn parse_wesl(module: &str) -> Result<Module, Failed> {
@@ -250,7 +267,7 @@ fn parse_wesl(module: &str) -> Result<Module, Failed> {
 }
 
 fn parse_glsl(module: &str) -> Result<Module, Failed> {
-    let text = fragment(module, &DIALECTS[0])?;
+    let text = fragment(&include(module), &DIALECTS[0])?;
     let parsed = glsl::Frontend::default().parse(&glsl::Options::from(ShaderStage::Fragment), &text);
     validated(parsed.map_err(|errors| errors.emit_to_string(&text))?)
 }
@@ -262,7 +279,16 @@ fn validated(module: Module) -> Result<Module, Failed> {
 }
 
 fn glslang(module: &str, dialect: &Dialect) -> Result<(), Failed> {
-    run_glslang(&fragment(module, dialect)?, dialect.options)
+    run_glslang(&fragment(&include(module), dialect)?, dialect.options)
+}
+
+/// Without our composer: any GLSL compiler with an include path will do.
+fn glslang_includes(module: &str) -> Result<(), Failed> {
+    let path = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
+    let Dialect { head, output, options } = &DIALECTS[0];
+    let include = format!("#extension GL_GOOGLE_include_directive : require\n#include \"{module}.glsl\"\n");
+    let text = format!("{head}{include}{output}void main() {{\n    colour = vec4(1.0);\n}}\n");
+    run_glslang(&text, &[options, &[path][..]].concat())
 }
 
 fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {
