@@ -1,0 +1,96 @@
+#version 450
+//! The vertex stage of `forward`. Bindings and locations are tabulated in forward.wesl.
+
+#include "forward/viewer.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 color;
+#if BASE_MAP || NORMAL_MAP
+layout(location = 3) in vec2 uv;
+#endif
+#if LIGHTMAP
+layout(location = 4) in vec2 light_uv;
+#endif
+#if NORMAL_MAP
+layout(location = 5) in vec4 tangent;
+#endif
+#if MATERIAL == MATERIAL_ARRAY
+layout(location = 6) in uint material;
+#endif
+
+layout(location = 0) out vec3 out_position;
+#if FREQUENCY == FREQUENCY_FRAGMENT
+layout(location = 1) out vec3 out_normal;
+#elif FREQUENCY == FREQUENCY_FLAT
+layout(location = 1) flat out vec3 out_normal;
+#endif
+layout(location = 2) out vec4 out_color;
+#if BASE_MAP || NORMAL_MAP
+layout(location = 3) out vec2 out_uv;
+#endif
+#if LIGHTMAP
+layout(location = 4) out vec2 out_light_uv;
+#endif
+#if NORMAL_MAP
+layout(location = 5) out vec4 out_tangent;
+#endif
+#if MATERIAL == MATERIAL_ARRAY
+layout(location = 6) flat out uint out_material;
+#endif
+#if FREQUENCY == FREQUENCY_VERTEX
+layout(location = 7) out vec3 scattered;
+layout(location = 8) out vec3 reflected;
+#endif
+
+/// What is drawn.
+layout(std140, set = 2, binding = 0) uniform Object {
+    mat4 world_from_object;
+    /// The inverse transpose of the former, for normals.
+    mat4 normal_from_object;
+    /// Multiplied with the vertex colours.
+    vec4 color;
+} object;
+
+#if FREQUENCY == FREQUENCY_VERTEX
+#include "forward/lamps.glsl"
+#endif
+
+void main() {
+    vec4 world_position = object.world_from_object * vec4(position, 1.0);
+    vec3 world_normal = (object.normal_from_object * vec4(normal, 0.0)).xyz;
+    gl_Position = camera.clip_from_world * world_position;
+    out_position = world_position.xyz;
+#if FREQUENCY != FREQUENCY_VERTEX
+    out_normal = world_normal;
+#endif
+    out_color = color * object.color;
+#if BASE_MAP || NORMAL_MAP
+    out_uv = uv;
+#endif
+#if LIGHTMAP
+    out_light_uv = light_uv;
+#endif
+#if NORMAL_MAP
+    out_tangent = vec4((object.world_from_object * vec4(tangent.xyz, 0.0)).xyz, tangent.w);
+#endif
+#if MATERIAL == MATERIAL_ARRAY
+    out_material = material;
+#endif
+#if FREQUENCY == FREQUENCY_VERTEX
+    Surface surface;
+    surface.position = world_position.xyz;
+    surface.normal = safe_normalize(world_normal, vec3(0.0));
+#if NEEDS_VIEW
+    surface.view = towards_viewer(world_position.xyz);
+#endif
+#if MATERIAL == MATERIAL_ARRAY
+    surface.material = materials.items[material];
+#else
+    surface.material = materials.items[0];
+#endif
+    Accum sum = lit(surface);
+    scattered = sum.scattered;
+    reflected = sum.reflected;
+#endif
+}
