@@ -1,0 +1,57 @@
+//! Words and signs of a constraint.
+
+use std::ops::Range;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// An identifier, `in`, `true` and `false` among them.
+    Word,
+    /// A decimal integer, perhaps negative.
+    Number,
+    /// One of [`SIGNS`].
+    Sign,
+    /// A character that belongs to nothing.
+    Stray,
+    /// After the last token.
+    End,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Token<'a> {
+    pub kind: Kind,
+    pub text: &'a str,
+    pub range: Range<usize>,
+}
+
+/// Longer ones first.
+const SIGNS: &[&str] = &["=>", "==", "!=", "<=", ">=", "&&", "||", "!", "(", ")", "[", "]", ",", "<", ">"];
+
+/// The tokens of the text, closed by one of kind [`Kind::End`].
+pub fn tokens(text: &str) -> Vec<Token<'_>> {
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    while let Some(first) = text[at..].chars().next() {
+        if first.is_whitespace() {
+            at += first.len_utf8();
+            continue;
+        }
+        let (kind, length) = next(&text[at..], first);
+        tokens.push(Token { kind, text: &text[at..at + length], range: at..at + length });
+        at += length;
+    }
+    tokens.push(Token { kind: Kind::End, text: "", range: text.len()..text.len() });
+    tokens
+}
+
+fn next(rest: &str, first: char) -> (Kind, usize) {
+    let run = |from: usize| from + rest[from..].find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len() - from);
+    if let Some(sign) = SIGNS.iter().find(|sign| rest.starts_with(**sign)) {
+        return (Kind::Sign, sign.len());
+    }
+    match first {
+        '-' if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => (Kind::Number, run(1)),
+        _ if first.is_ascii_digit() => (Kind::Number, run(0)),
+        _ if first.is_alphabetic() || first == '_' => (Kind::Word, run(0)),
+        _ => (Kind::Stray, first.len_utf8()),
+    }
+}

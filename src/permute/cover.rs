@@ -1,0 +1,86 @@
+//! A small set of valid points that has every pair of values of two axes which any valid point
+//! has: most mistakes of permutations show in the meeting of two axes (Kuhn, Wallace and Gallo,
+//! "Software Fault Interactions and Implications for Software Testing", 2004).
+
+use std::collections::BTreeSet;
+
+use super::axis::ValueSet;
+use super::key::Assignment;
+use super::space::Space;
+
+/// Two axes, the first before the second, with the ordinal of a value of each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pair {
+    pub first: (usize, usize),
+    pub second: (usize, usize),
+}
+
+/// A covering set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cover {
+    /// In the order found: each covers a pair that those before it do not.
+    pub points: Vec<Assignment>,
+    /// Pairs that no valid point has.
+    pub infeasible: Vec<Pair>,
+}
+
+/// Covers every feasible pair of values over the constraints of the space, whatever its lists
+/// want. Greedy: the first pair that is left is pinned, and each other axis takes the value that
+/// covers most of what is left, of those that still lead to a valid point. Deterministic.
+pub fn pairwise(space: &Space) -> Cover {
+    let mut left = pairs(space);
+    let mut cover = Cover { points: Vec::new(), infeasible: Vec::new() };
+    if let ([axis], true) = (space.axes(), left.is_empty()) {
+        cover.points = axis.domain().iter().filter_map(|ordinal| space.pick_valid(&[(0, ordinal)], |_, open| first(open))).collect();
+    }
+    while let Some(pair) = left.first().copied() {
+        match covering(space, pair, &left) {
+            Some(point) => {
+                left.retain(|pair| !has(&point, *pair));
+                cover.points.push(point);
+            }
+            None => {
+                left.remove(&pair);
+                cover.infeasible.push(pair);
+            }
+        }
+    }
+    cover
+}
+
+fn pairs(space: &Space) -> BTreeSet<Pair> {
+    let values = space
+        .axes()
+        .iter()
+        .enumerate()
+        .flat_map(|(index, axis)| axis.domain().iter().map(move |ordinal| (index, ordinal)).collect::<Vec<_>>());
+    let values: Vec<(usize, usize)> = values.collect();
+    let second =
+        |first: (usize, usize)| values.iter().filter(move |second| second.0 > first.0).map(move |second| Pair { first, second: *second });
+    values.iter().flat_map(|first| second(*first)).collect()
+}
+
+fn covering(space: &Space, pair: Pair, left: &BTreeSet<Pair>) -> Option<Assignment> {
+    let pins = [pair.first, pair.second];
+    let mut chosen = pins.to_vec();
+    space.pick_valid(&pins, |axis, open| {
+        let gain = |ordinal: usize| chosen.iter().filter(|other| left.contains(&ordered(**other, (axis, ordinal)))).count();
+        let best = open.iter().max_by_key(|ordinal| (gain(*ordinal), std::cmp::Reverse(*ordinal))).unwrap_or(0);
+        if !pins.iter().any(|(pinned, _)| *pinned == axis) {
+            chosen.push((axis, best));
+        }
+        best
+    })
+}
+
+fn has(point: &Assignment, pair: Pair) -> bool {
+    [pair.first, pair.second].iter().all(|(axis, ordinal)| point.ordinal(*axis) == *ordinal)
+}
+
+fn ordered(one: (usize, usize), other: (usize, usize)) -> Pair {
+    Pair { first: one.min(other), second: one.max(other) }
+}
+
+fn first(open: ValueSet) -> usize {
+    open.iter().next().unwrap_or(0)
+}

@@ -1,0 +1,54 @@
+//! What is allowed but hardly meant: constraints that decide nothing or everything, values and
+//! slices that select nothing.
+
+use super::axis::{Axis, ValueSet};
+use super::space::{Constraint, Slice, Space};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::source::Span;
+
+/// Warnings about a space; `what` and `place` name its program.
+pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
+    let mut warnings: Vec<Diagnostic> = space.constraints().iter().filter_map(|constraint| trivial(space, constraint)).collect();
+    if space.valid_count() == 0 && warnings.iter().any(|warning| warning.code == codes::CONSTRAINT_ALWAYS_FALSE) {
+        return warnings;
+    }
+    if space.valid_count() == 0 {
+        let message = format!("no permutation of {what} satisfies all constraints");
+        warnings.push(Diagnostic::warning(codes::NO_PERMUTATION, message).at(place, "has no permutation"));
+        return warnings;
+    }
+    warnings.extend(space.axes().iter().zip(space.valid_values()).flat_map(|(axis, valid)| never_valid(axis, valid)));
+    warnings.extend(space.lists().only.iter().filter_map(|slice| empty(space, slice)));
+    warnings
+}
+
+/// A space that cannot be counted has been refused by now, so a single condition of it can.
+fn trivial(space: &Space, constraint: &Constraint) -> Option<Diagnostic> {
+    let satisfying = space.satisfying(&constraint.formula).ok()?;
+    let (code, word) = match satisfying {
+        0 => (codes::CONSTRAINT_ALWAYS_FALSE, "false"),
+        all if all == space.full_count() => (codes::CONSTRAINT_ALWAYS_TRUE, "true"),
+        _ => return None,
+    };
+    let warning = Diagnostic::warning(code, format!("the constraint `{}` is always {word}", constraint.text));
+    Some(warning.at(constraint.span, format!("{word} whatever the axes are")))
+}
+
+fn never_valid(axis: &Axis, valid: ValueSet) -> Option<Diagnostic> {
+    let never: Vec<String> = axis.domain().without(valid).iter().map(|ordinal| format!("`{}`", axis.values[ordinal])).collect();
+    let (subject, label) = match never.as_slice() {
+        [] => return None,
+        [value] => (format!("value {value} of axis `{}` is", axis.name), "the constraints rule this value out"),
+        values => (format!("values {} of axis `{}` are", values.join(", "), axis.name), "the constraints rule these values out"),
+    };
+    Some(Diagnostic::warning(codes::VALUE_NEVER_VALID, format!("{subject} in no valid permutation")).at(axis.span, label))
+}
+
+fn empty(space: &Space, slice: &Slice) -> Option<Diagnostic> {
+    let warning = || {
+        let message = "this entry of `only` selects no valid permutation";
+        let warning = Diagnostic::warning(codes::EMPTY_SLICE, message).at(slice.span, "selects nothing");
+        warning.note("an axis that an entry does not name is at its default")
+    };
+    (!space.meets(slice)).then(warning)
+}

@@ -1,0 +1,120 @@
+//! The tables `axis` and `constraint` of a program.
+
+use super::names;
+use super::reader::{Name, Reader, Value};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::permute::Setting;
+use crate::permute::axis::{Axis, Kind, MAX, Mode};
+use crate::permute::constraint;
+use crate::permute::key::find_value;
+use crate::permute::space::Constraint;
+use crate::source::Span;
+
+const AXIS_KEYS: &[&str] = &["values", "default", "mode", "doc"];
+const CONSTRAINT_KEYS: &[&str] = &["require", "doc"];
+
+/// The axes, by name; `None` if one of them could not be read.
+pub fn axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
+    let table = reader.table(value, "`axis`")?;
+    if table.len() > MAX {
+        let message = format!("a program may have {MAX} axes, and this one has {}", table.len());
+        reader.problems.push(Diagnostic::error(codes::AXIS_LIMIT, message).at(reader.span(value.span()), "too many axes"));
+        return None;
+    }
+    let axes: Vec<Axis> = table.iter().filter_map(|(name, value)| axis(reader, name, value)).collect();
+    reader.problems.extend(names::collisions(&axes));
+    (axes.len() == table.len()).then_some(axes)
+}
+
+/// The constraints over the axes, in the order declared.
+pub fn constraints(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Constraint> {
+    let Some(array) = reader.array(value, "`constraint`") else { return Vec::new() };
+    array.iter().filter_map(|value| constraint(reader, axes, value)).collect()
+}
+
+fn axis(reader: &mut Reader, name: &Name, value: &Value) -> Option<Axis> {
+    let span = reader.span(name.span());
+    let name = name.get_ref().to_string();
+    let what = format!("axis `{name}`");
+    reader.problems.extend(names::check_axis(&name, span));
+    let table = reader.table(value, &what)?;
+    reader.check_keys(table, AXIS_KEYS, &what);
+    let mode = table.get("mode").map_or(Some(Mode::Static), |value| mode(reader, value));
+    let doc = reader.doc(table);
+    let list = reader.required(table, "values", &what, span)?;
+    let values = values(reader, &what, list)?;
+    let kind = Kind::of(values.first()?);
+    let mut axis = Axis { name, kind, values, default: 0, mode: mode?, doc, span };
+    if let Some(value) = table.get("default") {
+        axis.default = default(reader, &axis, value)?;
+    }
+    Some(axis)
+}
+
+fn default(reader: &mut Reader, axis: &Axis, value: &Value) -> Option<usize> {
+    let setting = reader.setting(value, "`default`")?;
+    let span = reader.span(value.span());
+    find_value(axis, &setting, span).map_err(|problem| reader.problems.push(problem)).ok()
+}
+
+fn mode(reader: &mut Reader, value: &Value) -> Option<Mode> {
+    let text = reader.string(value, "`mode`")?;
+    let found = Mode::ALL.iter().find(|(name, _)| *name == text.text).map(|(_, mode)| *mode);
+    if found.is_none() {
+        let unknown = Diagnostic::error(codes::UNKNOWN_VALUE, format!("there is no mode `{}`", text.text)).at(text.span, "not a mode");
+        let names = || Mode::ALL.iter().map(|(name, _)| *name);
+        let listed = format!("modes: {}", names().collect::<Vec<_>>().join(", "));
+        reader.problems.push(unknown.suggest(&text.text, names()).note(listed));
+    }
+    found
+}
+
+/// The values, if there is at least one and nothing is wrong with any.
+fn values(reader: &mut Reader, what: &str, list: &Value) -> Option<Vec<Setting>> {
+    let array = reader.array(list, "`values`")?;
+    let span = reader.span(list.span());
+    if array.is_empty() || array.len() > MAX {
+        let message = format!("{what} has {} values, and an axis has from 1 to {MAX}", array.len());
+        reader.problems.push(Diagnostic::error(codes::AXIS_LIMIT, message).at(span, "no axis without a choice"));
+        return None;
+    }
+    let read: Vec<(Setting, Span)> =
+        array.iter().filter_map(|value| Some((reader.setting(value, "a value")?, reader.span(value.span())))).collect();
+    let problems: Vec<Diagnostic> = (0..read.len()).filter_map(|index| value_problem(what, &read, index)).collect();
+    let sound = problems.is_empty() && read.len() == array.len();
+    reader.problems.extend(problems);
+    sound.then(|| read.into_iter().map(|(value, _)| value).collect())
+}
+
+fn value_problem(what: &str, values: &[(Setting, Span)], index: usize) -> Option<Diagnostic> {
+    let ((value, span), (first, first_span)) = (&values[index], &values[0]);
+    let (kind, expected) = (Kind::of(value), Kind::of(first));
+    if kind != expected {
+        let message = format!("{what} mixes {} and {} values", expected.name(), kind.name());
+        return Some(Diagnostic::error(codes::MIXED_VALUES, message).at(*span, kind.name()).at(*first_span, expected.name()));
+    }
+    if let Some((_, earlier)) = values[..index].iter().find(|(earlier, _)| earlier == value) {
+        let message = format!("{what} has the value `{value}` twice");
+        return Some(Diagnostic::error(codes::DUPLICATE_VALUE, message).at(*span, "again here").at(*earlier, "first here"));
+    }
+    match value {
+        Setting::Name(name) => names::check(name, "a value", *span),
+        Setting::Bool(_) | Setting::Int(_) => None,
+    }
+}
+
+fn constraint(reader: &mut Reader, axes: &[Axis], value: &Value) -> Option<Constraint> {
+    let table = reader.table(value, "a constraint")?;
+    reader.check_keys(table, CONSTRAINT_KEYS, "a constraint");
+    let doc = reader.doc(table);
+    let place = reader.span(value.span());
+    let require = reader.required(table, "require", "a constraint", place)?;
+    let text = reader.string(require, "`require`")?;
+    match constraint::parse(axes, &text) {
+        Ok(formula) => Some(Constraint { text: text.text, doc, formula, span: text.span }),
+        Err(problem) => {
+            reader.problems.push(problem);
+            None
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! `lamplight.toml`: the programs of a package and the space of each.
+//!
+//! ```toml
+//! [program.forward]
+//! wesl = "programs/forward.wesl"
+//! glsl = { vertex = "programs/forward.vert.glsl", fragment = "programs/forward.frag.glsl" }
+//! targets = ["spirv", "glsl330"]          # all, where it is left out
+//! limit = 5000                            # permutations; a million, where it is left out
+//! include = ["shadow=hard,two_sided"]     # keys: wanted whatever the next two say
+//! only = [{ lights = ["spot", "point"], shadow = "*" }]
+//! exclude = [{ shadow = "vsm", two_sided = true }]
+//!
+//! [program.forward.axis]
+//! lights    = { values = ["none", "spot", "point"], doc = "Kinds of light." }
+//! shadow    = { values = ["none", "hard", "vsm"], default = "none" }
+//! two_sided = { values = [false, true], mode = "spec" }
+//!
+//! [[program.forward.constraint]]
+//! require = "shadow != none => lights != none"
+//! doc = "A shadow needs a light."
+//! ```
+//!
+//! Each entry of `only` is a slice of the space, and their union is wanted: an axis has the
+//! value it names, one of the values it lists, or any for `"*"`; **an axis it does not name is
+//! at its default**, so that a new axis multiplies nothing until someone asks. Each entry of
+//! `exclude` takes away the points that match it, **whatever the axes it does not name**. Keys
+//! of `include` come back in any case, and must satisfy the constraints.
+
+mod axes;
+mod lists;
+mod names;
+mod program;
+mod reader;
+
+pub use program::{File, Glsl, Program};
+
+use toml::de::DeTable;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
+use crate::source::{SourceId, SourceSet, Span};
+use reader::Reader;
+
+/// What a manifest declares.
+#[derive(Debug, Clone)]
+pub struct Manifest {
+    /// By name.
+    pub programs: Vec<Program>,
+    /// Lints.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Manifest {
+    /// The program of that name.
+    pub fn program(&self, name: &str) -> Option<&Program> {
+        self.programs.iter().find(|program| program.name == name)
+    }
+}
+
+/// Reads a manifest that is in the set. Every mistake in it is reported, at its place, except
+/// those that only follow from another; warnings come with errors too.
+pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics> {
+    let (document, errors) = DeTable::parse_recoverable(&sources.get(id).text);
+    if !errors.is_empty() {
+        return Err(errors.iter().map(|error| syntax(sources, id, error)).collect());
+    }
+    let mut reader = Reader::new(sources, id);
+    let programs = programs(&mut reader, document.get_ref());
+    let mut problems = reader.problems;
+    problems.sort_by_key(|problem| problem.labels.first().map(|label| label.span));
+    if problems.iter().any(|problem| problem.severity == Severity::Error) {
+        return Err(problems);
+    }
+    Ok(Manifest { programs, warnings: problems })
+}
+
+fn programs(reader: &mut Reader, document: &DeTable) -> Vec<Program> {
+    reader.check_keys(document, &["program"], "a manifest");
+    let Some(found) = document.get("program") else {
+        let message = "the manifest declares no program";
+        let start = Span::new(reader.id, 0..0);
+        reader.problems.push(Diagnostic::error(codes::MISSING_KEY, message).at(start, "expected `[program.NAME]`"));
+        return Vec::new();
+    };
+    let Some(table) = reader.table(found, "`program`") else { return Vec::new() };
+    table.iter().filter_map(|(name, value)| program::read(reader, name, value)).collect()
+}
+
+fn syntax(sources: &SourceSet, id: SourceId, error: &toml::de::Error) -> Diagnostic {
+    let length = sources.get(id).text.len();
+    let range = error.span().unwrap_or(0..0);
+    let span = Span::new(id, range.start.min(length)..range.end.min(length));
+    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+    Diagnostic::error(codes::MANIFEST_SYNTAX, message).at(span, "")
+}

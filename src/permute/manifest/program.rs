@@ -1,0 +1,170 @@
+//! One program of a manifest.
+
+use toml::de::DeTable;
+
+use super::reader::{Name, Reader, Value};
+use super::{axes, lists, names};
+use crate::bundle::Target;
+use crate::diagnostic::{Diagnostic, Severity, codes};
+use crate::permute::axis::Axis;
+use crate::permute::space::{Constraint, Lists, Space, TooComplex};
+use crate::permute::{lint, report};
+use crate::source::{LIMITS, Span};
+
+/// Entry points in one or both languages, and what they vary in.
+#[derive(Debug, Clone)]
+pub struct Program {
+    pub name: String,
+    pub doc: Option<String>,
+    /// The root module. There is this, or `glsl`, or both.
+    pub wesl: Option<File>,
+    pub glsl: Option<Glsl>,
+    /// In the order declared; all, where the manifest names none.
+    pub targets: Vec<Target>,
+    pub space: Space,
+    /// The most permutations it may have; it has no more.
+    pub limit: usize,
+    /// The name in the manifest.
+    pub span: Span,
+}
+
+/// A file that a manifest names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct File {
+    /// Relative to the package's root, `/`-separated.
+    pub path: String,
+    /// Where it is named.
+    pub span: Span,
+}
+
+/// The stages of a GLSL program, at least one of them.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Glsl {
+    pub vertex: Option<File>,
+    pub fragment: Option<File>,
+}
+
+const KEYS: &[&str] = &["wesl", "glsl", "targets", "axis", "constraint", "include", "only", "exclude", "limit", "doc"];
+
+/// Reads a program; `None` once anything is wrong with it.
+pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> {
+    let errors = errors(reader);
+    let span = reader.span(name.span());
+    let name = name.get_ref().to_string();
+    let what = format!("program `{name}`");
+    reader.problems.extend(names::check(&name, "a program", span));
+    let table = reader.table(value, &what)?;
+    reader.check_keys(table, KEYS, &what);
+    let doc = reader.doc(table);
+    let wesl = table.get("wesl").and_then(|value| file(reader, value, "`wesl`"));
+    let glsl = table.get("glsl").and_then(|value| glsl(reader, value));
+    if !table.contains_key("wesl") && !table.contains_key("glsl") {
+        let message = format!("{what} has no source");
+        reader.problems.push(Diagnostic::error(codes::MISSING_KEY, message).at(span, "needs `wesl`, `glsl` or both"));
+    }
+    let targets = table.get("targets").map_or(Target::ALL.to_vec(), |value| targets(reader, value));
+    let limit = table.get("limit").map_or(Some(LIMITS.permutations), |value| limit(reader, value));
+    let space = space(reader, table, &what, span)?;
+    let program = Program { name, doc, wesl, glsl, targets, space, limit: limit?, span };
+    check_limit(reader, &program);
+    (self::errors(reader) == errors).then_some(program)
+}
+
+fn errors(reader: &Reader) -> usize {
+    reader.problems.iter().filter(|problem| problem.severity == Severity::Error).count()
+}
+
+fn file(reader: &mut Reader, value: &Value, what: &str) -> Option<File> {
+    let text = reader.string(value, what)?;
+    Some(File { path: text.text, span: text.span })
+}
+
+fn glsl(reader: &mut Reader, value: &Value) -> Option<Glsl> {
+    let table = reader.table(value, "`glsl`")?;
+    reader.check_keys(table, &["vertex", "fragment"], "`glsl`");
+    let mut stage = |name: &str| table.get(name).and_then(|value| file(reader, value, &format!("`{name}`")));
+    let found = Glsl { vertex: stage("vertex"), fragment: stage("fragment") };
+    if table.is_empty() {
+        let place = reader.span(value.span());
+        reader.problems.push(Diagnostic::error(codes::MISSING_KEY, "`glsl` has no stage").at(place, "needs `vertex`, `fragment` or both"));
+    }
+    Some(found)
+}
+
+fn targets(reader: &mut Reader, value: &Value) -> Vec<Target> {
+    let Some(array) = reader.array(value, "`targets`") else { return Vec::new() };
+    let mut found: Vec<Target> = Vec::new();
+    for value in array.iter() {
+        let target = target(reader, value);
+        found.extend(target.filter(|target| !found.contains(target)));
+    }
+    found
+}
+
+fn target(reader: &mut Reader, value: &Value) -> Option<Target> {
+    let text = reader.string(value, "a target")?;
+    let found = Target::find(&text.text);
+    if found.is_none() {
+        let names = || Target::ALL.iter().map(|target| target.name());
+        let unknown = Diagnostic::error(codes::UNKNOWN_TARGET, format!("there is no target `{}`", text.text)).at(text.span, "not a target");
+        reader.problems.push(unknown.suggest(&text.text, names()).note(format!("targets: {}", names().collect::<Vec<_>>().join(", "))));
+    }
+    found
+}
+
+fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {
+    let number = reader.integer(value, "`limit`")?;
+    let found = usize::try_from(number).ok().filter(|limit| (1..=LIMITS.permutations).contains(limit));
+    if found.is_none() {
+        let message = format!("`limit` is a number of permutations from 1 to {}", LIMITS.permutations);
+        reader.problems.push(Diagnostic::error(codes::WRONG_TYPE, message).at(reader.span(value.span()), "out of range"));
+    }
+    found
+}
+
+/// Axes first: nothing else is looked at while one of them is missing, since most of what could
+/// be said would only follow from that.
+fn space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Option<Space> {
+    let before = errors(reader);
+    let axes = table.get("axis").map_or(Some(Vec::new()), |value| axes::axes(reader, value))?;
+    let constraints = table.get("constraint").map_or(Vec::new(), |value| axes::constraints(reader, &axes, value));
+    let only = table.get("only").map_or(Vec::new(), |value| lists::only(reader, &axes, value));
+    let exclude = table.get("exclude").map_or(Vec::new(), |value| lists::exclude(reader, &axes, value));
+    let space = listed(reader, table, axes, constraints, Lists { only, exclude, include: Vec::new() });
+    let Ok(space) = space else {
+        let message = format!("the constraints and lists of {what} are too complex to count its permutations");
+        reader.problems.push(Diagnostic::error(codes::SPACE_TOO_COMPLEX, message).at(place, "declared here"));
+        return None;
+    };
+    if errors(reader) > before {
+        return None;
+    }
+    reader.problems.extend(lint::lint(&space, what, place));
+    Some(space)
+}
+
+/// Keys can only be read once there is a space, which is then narrowed to the lists.
+fn listed(
+    reader: &mut Reader,
+    table: &DeTable,
+    axes: Vec<Axis>,
+    constraints: Vec<Constraint>,
+    mut lists: Lists,
+) -> Result<Space, TooComplex> {
+    let valid = Space::new(axes.clone(), constraints.clone(), Lists::default())?;
+    lists.include = table.get("include").map_or(Vec::new(), |value| lists::include(reader, &valid, value));
+    if lists == Lists::default() { Ok(valid) } else { Space::new(axes, constraints, lists) }
+}
+
+fn check_limit(reader: &mut Reader, program: &Program) {
+    if program.space.count() <= program.limit as u128 {
+        return;
+    }
+    let report = report::report(&program.name, &program.space);
+    let limit = report::Count(program.limit as u128);
+    let message = format!("program `{}` has {} permutations, and its limit is {limit}", program.name, report.wanted);
+    let diagnostic = Diagnostic::error(codes::TOO_MANY_PERMUTATIONS, message).at(program.span, "declared here");
+    let raise = if program.limit < LIMITS.permutations { ", or raise `limit`" } else { "" };
+    let advice = format!("add constraints or name the slices you need in `only`{raise}");
+    reader.problems.push(diagnostic.note(advice).note(report.to_string()));
+}

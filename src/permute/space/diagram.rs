@@ -1,0 +1,182 @@
+//! The valid points of a space as a decision diagram: one level for each axis, one node for each
+//! question that is still open there. Counting and listing never visit a dead branch.
+
+use std::collections::HashMap;
+
+use super::formula::{FALSE, Id, Store};
+use super::{Assignment, TooComplex};
+use crate::permute::axis::ValueSet;
+
+/// A set of points. Nodes come after their children, so one forward pass computes anything that
+/// a node owes to what is below it.
+#[derive(Debug, Clone)]
+pub struct Diagram {
+    /// The axis asked at each level.
+    order: Vec<usize>,
+    nodes: Vec<Node>,
+    root: u32,
+}
+
+#[derive(Debug, Clone)]
+struct Node {
+    level: u8,
+    /// The node below for each ordinal of the level's axis.
+    children: Box<[u32]>,
+}
+
+/// No point, and the end of every point.
+const DEAD: u32 = 0;
+const END: u32 = 1;
+
+/// Nodes before a set of conditions is called too complex.
+const NODES: usize = 1 << 18;
+
+impl Diagram {
+    /// The points of the domains where the condition holds, asking the axes in that order.
+    pub fn new(store: &mut Store, condition: Id, domains: &[ValueSet], order: Vec<usize>) -> Result<Self, TooComplex> {
+        let end = Node { level: u8::MAX, children: Box::default() };
+        let mut builder = Builder { store, domains, order: &order, nodes: vec![end.clone(), end], known: HashMap::new() };
+        let root = builder.node(0, condition)?;
+        let nodes = builder.nodes;
+        Ok(Self { order, nodes, root })
+    }
+
+    /// How many points it has; `u128::MAX` for that many or more.
+    pub fn count(&self) -> u128 {
+        self.weigh(|_, below| below.iter().fold(0, |sum: u128, count| sum.saturating_add(*count)))
+    }
+
+    /// How many points are left when those that differ only in the last axis asked are one.
+    pub fn count_without_last(&self) -> u128 {
+        let last = self.order.len().saturating_sub(1);
+        self.weigh(|level, below| match level == last {
+            true => u128::from(below.iter().any(|count| *count > 0)),
+            false => below.iter().fold(0, |sum: u128, count| sum.saturating_add(*count)),
+        })
+    }
+
+    /// Every point, in no order worth relying on.
+    pub fn points(&self) -> Vec<Assignment> {
+        let mut found = Vec::new();
+        let mut point = vec![0; self.order.len()];
+        self.walk(self.root, &mut point, &mut found);
+        found
+    }
+
+    pub fn contains(&self, point: &Assignment) -> bool {
+        let below = |node: u32, axis: &usize| self.nodes[node as usize].children.get(point.ordinal(*axis)).copied().unwrap_or(DEAD);
+        self.order.iter().fold(self.root, |node, axis| if node == DEAD { DEAD } else { below(node, axis) }) == END
+    }
+
+    /// The values of each axis that occur in a point, by axis.
+    pub fn used(&self) -> Vec<ValueSet> {
+        let mut used = vec![ValueSet::EMPTY; self.order.len()];
+        for node in &self.nodes[2..] {
+            let alive = node.children.iter().enumerate().filter(|(_, child)| **child != DEAD);
+            let axis = self.order[usize::from(node.level)];
+            used[axis] = used[axis].or(alive.map(|(ordinal, _)| ordinal).collect());
+        }
+        used
+    }
+
+    /// Whether it has a point whose values are all among those allowed, by axis.
+    pub fn meets(&self, allowed: &[ValueSet]) -> bool {
+        self.alive(allowed)[self.root as usize]
+    }
+
+    /// A point of the values allowed, by axis, or `None` if there is none: `choose` picks for
+    /// each axis, in the diagram's order, among the ordinals that lead to one.
+    pub fn pick(&self, allowed: &[ValueSet], mut choose: impl FnMut(usize, ValueSet) -> usize) -> Option<Assignment> {
+        let alive = self.alive(allowed);
+        let mut node = self.root;
+        let mut point = vec![0; self.order.len()];
+        if !alive[node as usize] {
+            return None;
+        }
+        for axis in self.order.iter().copied() {
+            let ordinal = choose(axis, self.open(node, allowed[axis], &alive));
+            point[axis] = ordinal as u8;
+            node = self.nodes[node as usize].children[ordinal];
+        }
+        Some(Assignment(point.into()))
+    }
+
+    /// For each node whether a point of the values allowed is below it.
+    fn alive(&self, allowed: &[ValueSet]) -> Vec<bool> {
+        let mut alive = vec![false; self.nodes.len()];
+        alive[END as usize] = true;
+        for node in 2..self.nodes.len() {
+            let axis = self.order[usize::from(self.nodes[node].level)];
+            alive[node] = !self.open(node as u32, allowed[axis], &alive).is_empty();
+        }
+        alive
+    }
+
+    fn open(&self, node: u32, allowed: ValueSet, alive: &[bool]) -> ValueSet {
+        let children = &self.nodes[node as usize].children;
+        let alive = |ordinal: &usize| children.get(*ordinal).is_some_and(|child| alive[*child as usize]);
+        allowed.iter().filter(alive).collect()
+    }
+
+    fn weigh(&self, weight: impl Fn(usize, &[u128]) -> u128) -> u128 {
+        let mut weights = vec![0, 1];
+        for node in &self.nodes[2..] {
+            let below: Vec<u128> = node.children.iter().map(|child| weights[*child as usize]).collect();
+            weights.push(weight(node.level.into(), &below));
+        }
+        weights[self.root as usize]
+    }
+
+    /// Recursion is as deep as there are axes, which [`crate::permute::axis::MAX`] bounds.
+    fn walk(&self, node: u32, point: &mut Vec<u8>, found: &mut Vec<Assignment>) {
+        if node == END {
+            found.push(Assignment(point.as_slice().into()));
+            return;
+        }
+        let Node { level, children } = &self.nodes[node as usize];
+        for (ordinal, child) in children.iter().enumerate().filter(|(_, child)| **child != DEAD) {
+            point[self.order[usize::from(*level)]] = ordinal as u8;
+            self.walk(*child, point, found);
+        }
+    }
+}
+
+struct Builder<'a> {
+    store: &'a mut Store,
+    domains: &'a [ValueSet],
+    order: &'a [usize],
+    nodes: Vec<Node>,
+    known: HashMap<(usize, Id), u32>,
+}
+
+impl Builder<'_> {
+    fn node(&mut self, level: usize, condition: Id) -> Result<u32, TooComplex> {
+        if condition == FALSE {
+            return Ok(DEAD);
+        }
+        let Some(axis) = self.order.get(level).copied() else { return Ok(END) };
+        if let Some(node) = self.known.get(&(level, condition)) {
+            return Ok(*node);
+        }
+        let children = self.children(level, axis, condition)?;
+        let node = if children.iter().all(|child| *child == DEAD) { DEAD } else { self.push(level, children)? };
+        self.known.insert((level, condition), node);
+        Ok(node)
+    }
+
+    fn children(&mut self, level: usize, axis: usize, condition: Id) -> Result<Box<[u32]>, TooComplex> {
+        let domain = self.domains[axis];
+        let count = domain.iter().last().map_or(0, |last| last + 1);
+        let mut children = vec![DEAD; count];
+        for ordinal in domain.iter() {
+            let rest = self.store.restrict(condition, axis, ValueSet::single(ordinal))?;
+            children[ordinal] = self.node(level + 1, rest)?;
+        }
+        Ok(children.into())
+    }
+
+    fn push(&mut self, level: usize, children: Box<[u32]>) -> Result<u32, TooComplex> {
+        self.nodes.push(Node { level: level as u8, children });
+        if self.nodes.len() > NODES { Err(TooComplex) } else { Ok(self.nodes.len() as u32 - 1) }
+    }
+}

@@ -1,0 +1,236 @@
+//! The space of a program: its axes, what of their product is valid, and what of that is wanted.
+
+mod diagram;
+mod formula;
+
+pub use formula::Formula;
+
+use super::axis::{Axis, Kind, ValueSet};
+use super::key::{Assignment, Key};
+use super::{Setting, Settings};
+use crate::source::Span;
+use diagram::Diagram;
+use formula::Store;
+
+/// A condition that every permutation satisfies.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Constraint {
+    /// As the manifest has it.
+    pub text: String,
+    pub doc: Option<String>,
+    pub formula: Formula,
+    /// The text in the manifest, quotes included.
+    pub span: Span,
+}
+
+/// A box of the space: the values that each axis may have, by axis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Slice {
+    pub values: Vec<ValueSet>,
+    /// The entry in the manifest.
+    pub span: Span,
+}
+
+impl Slice {
+    fn formula(&self) -> Formula {
+        Formula::All(self.values.iter().enumerate().map(|(axis, set)| Formula::Is(axis, *set)).collect())
+    }
+}
+
+/// Which valid points are wanted: those in a slice of `only` (all, if there is none) and in none
+/// of `exclude`, and in any case those of `include`.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Lists {
+    pub only: Vec<Slice>,
+    pub exclude: Vec<Slice>,
+    pub include: Vec<Assignment>,
+}
+
+impl Lists {
+    fn formula(&self) -> Formula {
+        let any = |slices: &[Slice]| Formula::Any(slices.iter().map(Slice::formula).collect());
+        let chosen = if self.only.is_empty() { Formula::All(Vec::new()) } else { any(&self.only) };
+        let kept = Formula::All(vec![chosen, Formula::Not(Box::new(any(&self.exclude)))]);
+        Formula::Any(self.include.iter().map(Assignment::formula).chain([kept]).collect())
+    }
+}
+
+/// The conditions of a space are too entangled to count its points within bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TooComplex;
+
+/// Axes, by name, and the points of their product that are valid and wanted.
+#[derive(Debug, Clone)]
+pub struct Space {
+    axes: Vec<Axis>,
+    constraints: Vec<Constraint>,
+    lists: Lists,
+    valid: Diagram,
+    wanted: Diagram,
+}
+
+impl Space {
+    /// The space of these axes, at most [`super::axis::MAX`], sorted by name; axes are named by
+    /// their index in constraints and lists.
+    pub fn new(axes: Vec<Axis>, constraints: Vec<Constraint>, lists: Lists) -> Result<Self, TooComplex> {
+        let order = order(axes.len(), &constraints);
+        let valid = diagram(&axes, &constraints, &Lists::default(), order.clone())?;
+        let wanted = if lists == Lists::default() { valid.clone() } else { diagram(&axes, &constraints, &lists, order)? };
+        Ok(Self { axes, constraints, lists, valid, wanted })
+    }
+
+    /// The axes, by name.
+    pub fn axes(&self) -> &[Axis] {
+        &self.axes
+    }
+
+    /// The axis of that name.
+    pub fn axis(&self, name: &str) -> Option<&Axis> {
+        self.axes.iter().find(|axis| axis.name == name)
+    }
+
+    pub fn constraints(&self) -> &[Constraint] {
+        &self.constraints
+    }
+
+    pub fn lists(&self) -> &Lists {
+        &self.lists
+    }
+
+    /// Points of the full product; like every count, `u128::MAX` stands for that many or more.
+    pub fn full_count(&self) -> u128 {
+        self.axes.iter().fold(1, |product: u128, axis| product.saturating_mul(axis.domain().len() as u128))
+    }
+
+    /// Points that satisfy the constraints.
+    pub fn valid_count(&self) -> u128 {
+        self.valid.count()
+    }
+
+    /// Points that satisfy the constraints and are wanted: the permutations.
+    pub fn count(&self) -> u128 {
+        self.wanted.count()
+    }
+
+    /// The permutations that would be left if the axis did not exist: those that differ in it
+    /// alone counted once.
+    pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
+        let mut order = order(self.axes.len(), &self.constraints);
+        order.retain(|other| *other != axis);
+        order.push(axis);
+        Ok(diagram(&self.axes, &self.constraints, &self.lists, order)?.count_without_last())
+    }
+
+    /// Every permutation in canonical order: a mixed-radix count with the first axis as its most
+    /// significant digit. There are [`Self::count`] of them, so ask that first.
+    pub fn enumerate(&self) -> Vec<Assignment> {
+        let mut points = self.wanted.points();
+        points.sort();
+        points
+    }
+
+    /// Whether the point is a permutation.
+    pub fn contains(&self, point: &Assignment) -> bool {
+        self.wanted.contains(point)
+    }
+
+    /// Whether the point satisfies the constraints.
+    pub fn is_valid(&self, point: &Assignment) -> bool {
+        self.valid.contains(point)
+    }
+
+    /// The constraints that the point breaks.
+    pub fn broken(&self, point: &Assignment) -> impl Iterator<Item = &Constraint> {
+        self.constraints.iter().filter(|constraint| !constraint.formula.holds(&point.0))
+    }
+
+    /// For each axis the values that occur in a valid point.
+    pub fn valid_values(&self) -> Vec<ValueSet> {
+        self.valid.used()
+    }
+
+    /// A valid point with the pinned `(axis, ordinal)` pairs; `choose` picks each ordinal among
+    /// those that lead to one. `None` if there is none.
+    pub fn pick_valid(&self, pins: &[(usize, usize)], choose: impl FnMut(usize, ValueSet) -> usize) -> Option<Assignment> {
+        let mut allowed = domains(&self.axes);
+        pins.iter().for_each(|(axis, ordinal)| allowed[*axis] = ValueSet::single(*ordinal));
+        self.valid.pick(&allowed, choose)
+    }
+
+    /// Whether some valid point is in the slice.
+    pub fn meets(&self, slice: &Slice) -> bool {
+        self.valid.meets(&slice.values)
+    }
+
+    /// How many points of the full product satisfy one condition.
+    pub fn satisfying(&self, formula: &Formula) -> Result<u128, TooComplex> {
+        let domains = domains(&self.axes);
+        let mut store = Store::new(domains.clone());
+        let condition = store.add(formula)?;
+        Ok(Diagram::new(&mut store, condition, &domains, order(self.axes.len(), &self.constraints))?.count())
+    }
+
+    /// Every axis at its default.
+    pub fn default_assignment(&self) -> Assignment {
+        Assignment(self.axes.iter().map(|axis| axis.default as u8).collect())
+    }
+
+    /// The text that names a point.
+    pub fn key(&self, point: &Assignment) -> Key {
+        Key::of(&self.axes, point)
+    }
+
+    /// What a composition is asked for at a point: every axis with its value, dynamic ones too.
+    pub fn settings(&self, point: &Assignment) -> Settings {
+        let of_kind = |kind| self.axes.iter().filter(move |axis| axis.kind == kind);
+        Settings {
+            values: self.axes.iter().enumerate().map(|(index, axis)| (axis.name.clone(), self.value(index, point).clone())).collect(),
+            enums: of_kind(Kind::Enum).map(|axis| (axis.name.clone(), axis.value_names())).collect(),
+            integers: of_kind(Kind::Int).map(|axis| axis.name.clone()).collect(),
+        }
+    }
+
+    /// The value of an axis at a point.
+    pub fn value(&self, axis: usize, point: &Assignment) -> &Setting {
+        &self.axes[axis].values[point.ordinal(axis)]
+    }
+}
+
+fn diagram(axes: &[Axis], constraints: &[Constraint], lists: &Lists, order: Vec<usize>) -> Result<Diagram, TooComplex> {
+    let domains = domains(axes);
+    let mut store = Store::new(domains.clone());
+    let lists = lists.formula();
+    let formulas = constraints.iter().map(|constraint| &constraint.formula).chain([&lists]);
+    let parts = formulas.map(|formula| store.add(formula)).collect::<Result<_, _>>()?;
+    let condition = store.all(parts)?;
+    Diagram::new(&mut store, condition, &domains, order)
+}
+
+fn domains(axes: &[Axis]) -> Vec<ValueSet> {
+    axes.iter().map(Axis::domain).collect()
+}
+
+/// The order in which a diagram asks the axes: always next the one that shares the most
+/// constraints with those already asked, then the one in most constraints, then by name. Axes
+/// that constrain each other are neighbours, which keeps the diagram narrow.
+fn order(count: usize, constraints: &[Constraint]) -> Vec<usize> {
+    let mentions: Vec<Vec<bool>> = constraints.iter().map(|constraint| mentioned(count, &constraint.formula)).collect();
+    let mut order: Vec<usize> = Vec::new();
+    let mut near = vec![0usize; count];
+    while order.len() < count {
+        let involved = |axis: usize| mentions.iter().filter(|axes| axes[axis]).count();
+        let rest = (0..count).filter(|axis| !order.contains(axis));
+        let Some(next) = rest.max_by_key(|axis| (near[*axis], involved(*axis), std::cmp::Reverse(*axis))) else { break };
+        order.push(next);
+        for axes in mentions.iter().filter(|axes| axes[next]) {
+            axes.iter().zip(&mut near).for_each(|(mentioned, near)| *near += usize::from(*mentioned));
+        }
+    }
+    order
+}
+
+fn mentioned(count: usize, formula: &Formula) -> Vec<bool> {
+    let mut axes = vec![false; count];
+    formula.mark(&mut axes);
+    axes
+}

@@ -1,0 +1,93 @@
+//! A decision tree over what compositions asked: finds out, without composing, that another
+//! permutation would compose to the same text.
+
+use std::collections::BTreeMap;
+
+use super::{Setting, Settings};
+
+/// A tree of questions with a `T` for every course of answers seen so far.
+///
+/// What a composition asks next depends on earlier answers only. So all compositions of one
+/// thing ask the same first question, those with the same answer the same second one, and so on.
+#[derive(Debug, Clone)]
+pub struct ReadTree<T> {
+    /// The first node is the root, once there is one.
+    nodes: Vec<Node<T>>,
+}
+
+#[derive(Debug, Clone)]
+enum Node<T> {
+    Leaf(T),
+    Question { name: String, answers: BTreeMap<Setting, usize> },
+}
+
+/// Two traces asked different questions after the same answers: a bug of what recorded them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Contradiction;
+
+impl<T> Default for ReadTree<T> {
+    fn default() -> Self {
+        Self { nodes: Vec::new() }
+    }
+}
+
+impl<T> ReadTree<T> {
+    /// Adds a course of questions and answers, each question once, and what it led to. A course
+    /// that is known already keeps what it had. Nothing changes on a contradiction.
+    pub fn insert(&mut self, reads: &[(String, Setting)], value: T) -> Result<(), Contradiction> {
+        let mut node = 0;
+        for (depth, (name, answer)) in reads.iter().enumerate() {
+            match self.nodes.get(node) {
+                None => return self.grow(&reads[depth..], value),
+                Some(Node::Question { name: asked, answers }) if asked == name => match answers.get(answer) {
+                    Some(next) => node = *next,
+                    None => return self.branch(node, answer.clone(), &reads[depth + 1..], value),
+                },
+                Some(_) => return Err(Contradiction),
+            }
+        }
+        match self.nodes.get(node) {
+            None => self.grow(&[], value),
+            Some(Node::Leaf(_)) => Ok(()),
+            Some(Node::Question { .. }) => Err(Contradiction),
+        }
+    }
+
+    /// What a composition with these settings led to, if one that asks and answers alike is
+    /// known. A setting that is asked for and has no value is unknown too.
+    pub fn get(&self, settings: &Settings) -> Option<&T> {
+        let mut node = 0;
+        loop {
+            match self.nodes.get(node)? {
+                Node::Leaf(value) => return Some(value),
+                Node::Question { name, answers } => node = *answers.get(settings.values.get(name)?)?,
+            }
+        }
+    }
+
+    /// Every leaf, in the order added.
+    pub fn leaves(&self) -> impl Iterator<Item = &T> {
+        self.nodes.iter().filter_map(|node| match node {
+            Node::Leaf(value) => Some(value),
+            Node::Question { .. } => None,
+        })
+    }
+
+    fn branch(&mut self, node: usize, answer: Setting, rest: &[(String, Setting)], value: T) -> Result<(), Contradiction> {
+        let next = self.nodes.len();
+        if let Some(Node::Question { answers, .. }) = self.nodes.get_mut(node) {
+            answers.insert(answer, next);
+        }
+        self.grow(rest, value)
+    }
+
+    /// Appends a chain of questions that ends in a leaf.
+    fn grow(&mut self, reads: &[(String, Setting)], value: T) -> Result<(), Contradiction> {
+        for (name, answer) in reads {
+            let next = self.nodes.len() + 1;
+            self.nodes.push(Node::Question { name: name.clone(), answers: BTreeMap::from([(answer.clone(), next)]) });
+        }
+        self.nodes.push(Node::Leaf(value));
+        Ok(())
+    }
+}

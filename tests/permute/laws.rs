@@ -1,0 +1,262 @@
+//! What must hold for every space.
+
+use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
+
+use lamplight::permute::axis::ValueSet;
+use lamplight::permute::cover::{Pair, pairwise};
+use lamplight::permute::space::{Formula, Lists};
+use lamplight::permute::{Key, Lock, Quoted, ReadTree, Setting, Settings, Space, key, lock, manifest, report};
+use lamplight::source::SourceSet;
+use libtest_mimic::{Failed, Trial};
+
+use super::random::{Random, axis, constraint, is_valid, is_wanted, ordinals, product, space};
+
+const LAWS: &[(&str, fn() -> Result<(), Failed>)] = &[
+    ("enumeration_is_brute_force", enumeration_is_brute_force),
+    ("counts_without_an_axis", counts_without_an_axis),
+    ("keys_round_trip", keys_round_trip),
+    ("keys_survive_growth", keys_survive_growth),
+    ("pairwise_covers_what_is_feasible", pairwise_covers_what_is_feasible),
+    ("huge_space_answers_at_once", huge_space_answers_at_once),
+    ("entangled_space_is_refused", entangled_space_is_refused),
+    ("lock_is_stable", lock_is_stable),
+    ("read_tree_finds_what_composes_alike", read_tree_finds_what_composes_alike),
+    ("read_tree_refuses_contradictions", read_tree_refuses_contradictions),
+    ("hostile_constraints_end", hostile_constraints_end),
+    ("report_is_data", report_is_data),
+];
+
+pub fn trials() -> Vec<Trial> {
+    LAWS.iter().map(|(name, law)| Trial::test(format!("permute::laws::{name}"), law)).collect()
+}
+
+fn ensure(holds: bool, what: impl Into<String>) -> Result<(), Failed> {
+    if holds { Ok(()) } else { Err(what.into().into()) }
+}
+
+fn random_spaces(count: u64) -> impl Iterator<Item = Space> {
+    (0..count).map(|seed| space(&mut Random(seed)))
+}
+
+fn enumeration_is_brute_force() -> Result<(), Failed> {
+    for (seed, space) in random_spaces(400).enumerate() {
+        let all = product(&space);
+        let wanted: Vec<Vec<u8>> = all.iter().filter(|point| is_wanted(&space, point)).cloned().collect();
+        let valid = all.iter().filter(|point| is_valid(&space, point)).count();
+        ensure(space.full_count() == all.len() as u128, format!("full count, seed {seed}"))?;
+        ensure(space.valid_count() == valid as u128, format!("valid count, seed {seed}"))?;
+        ensure(space.count() == wanted.len() as u128, format!("count, seed {seed}"))?;
+        ensure(ordinals(&space.enumerate()) == wanted, format!("points, seed {seed}"))?;
+    }
+    Ok(())
+}
+
+fn counts_without_an_axis() -> Result<(), Failed> {
+    for (seed, space) in random_spaces(100).enumerate() {
+        for axis in 0..space.axes().len() {
+            let without = |mut point: Vec<u8>| {
+                point.remove(axis);
+                point
+            };
+            let expected: BTreeSet<Vec<u8>> = ordinals(&space.enumerate()).into_iter().map(without).collect();
+            ensure(space.count_without(axis) == Ok(expected.len() as u128), format!("axis {axis}, seed {seed}"))?;
+        }
+    }
+    Ok(())
+}
+
+fn read(space: &Space, text: &str) -> Option<lamplight::permute::Assignment> {
+    let mut sources = SourceSet::default();
+    let id = sources.add("key", text);
+    key::parse(space, &Quoted::whole(&sources, id)).ok()
+}
+
+fn keys_round_trip() -> Result<(), Failed> {
+    for space in random_spaces(50) {
+        let points = space.enumerate();
+        let keys: BTreeSet<Key> = points.iter().map(|point| space.key(point)).collect();
+        ensure(keys.len() == points.len(), "two points have one key")?;
+        for point in &points {
+            ensure(read(&space, space.key(point).as_str()).as_ref() == Some(point), format!("{}", space.key(point)))?;
+        }
+    }
+    Ok(())
+}
+
+/// A space, and one with an axis and a value more.
+fn grown() -> Result<[Space; 2], Failed> {
+    let parsed = |axes: &str| -> Result<Space, Failed> {
+        let mut sources = SourceSet::default();
+        let id = sources.add("lamplight.toml", format!("[program.p]\nwesl = \"p.wesl\"\n[program.p.axis]\n{axes}"));
+        let manifest = manifest::parse(&sources, id).map_err(|problems| format!("{problems:?}"))?;
+        Ok(manifest.programs[0].space.clone())
+    };
+    let small = parsed("max_lights = { values = [1, 4, 10], default = 4 }\nshadow = { values = [\"none\", \"hard\"] }")?;
+    let large = parsed(
+        "fog = { values = [\"none\", \"linear\"] }\nmax_lights = { values = [1, 2, 4, 10], default = 4 }\n\
+         shadow = { values = [\"vsm\", \"none\", \"hard\", \"evsm\"], default = \"none\" }\ntwo_sided = { values = [false, true] }",
+    )?;
+    Ok([small, large])
+}
+
+fn keys_survive_growth() -> Result<(), Failed> {
+    let [small, large] = grown()?;
+    for point in small.enumerate() {
+        let key = small.key(&point);
+        let later = read(&large, key.as_str()).ok_or("a key is lost")?;
+        ensure(large.key(&later) == key, format!("{key} became {}", large.key(&later)))?;
+        let (before, after) = (small.settings(&point).values, large.settings(&later).values);
+        ensure(before.iter().all(|(name, value)| after.get(name) == Some(value)), format!("{key} means something else"))?;
+    }
+    Ok(())
+}
+
+fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
+    for (seed, space) in random_spaces(150).enumerate() {
+        let valid: Vec<Vec<u8>> = product(&space).into_iter().filter(|point| is_valid(&space, point)).collect();
+        let cover = pairwise(&space);
+        let points = ordinals(&cover.points);
+        ensure(points.iter().all(|point| is_valid(&space, point)), format!("an invalid point, seed {seed}"))?;
+        ensure(pairs(&points) == pairs(&valid), format!("the pairs differ, seed {seed}"))?;
+        let infeasible: BTreeSet<Pair> = pairs(&product(&space)).difference(&pairs(&valid)).copied().collect();
+        ensure(infeasible == cover.infeasible.iter().copied().collect(), format!("infeasible pairs, seed {seed}"))?;
+    }
+    Ok(())
+}
+
+fn pairs(points: &[Vec<u8>]) -> BTreeSet<Pair> {
+    let mut pairs = BTreeSet::new();
+    for point in points {
+        for second in 0..point.len() {
+            pairs.extend((0..second).map(|first| Pair { first: (first, point[first].into()), second: (second, point[second].into()) }));
+        }
+    }
+    pairs
+}
+
+/// 10^12 points: twelve axes of ten values, chained so that each follows the one before it.
+fn huge_space_answers_at_once() -> Result<(), Failed> {
+    let started = Instant::now();
+    let axes: Vec<_> = (0..12).map(|index| axis(format!("a{index:02}"), 10)).collect();
+    let is = |axis: usize, value: usize| Formula::Is(axis, ValueSet::single(value));
+    let mut constraints = Vec::new();
+    for axis in 1..12 {
+        for value in 0..10 {
+            let next = Formula::Is(axis, [value, (value + 1) % 10].into_iter().filter(|next| axis % 4 != 3 || *next == value).collect());
+            constraints.push(constraint(Formula::Any(vec![Formula::Not(Box::new(is(axis - 1, value))), next])));
+        }
+    }
+    let space = Space::new(axes, constraints, Lists::default()).map_err(|_| "too complex")?;
+    ensure(space.full_count() == 1_000_000_000_000, "the product is 10^12")?;
+    ensure(space.count() == 10 << 8, format!("{} points", space.count()))?;
+    ensure(space.enumerate().len() as u128 == space.count(), "all are listed")?;
+    let took = started.elapsed();
+    ensure(took < Duration::from_secs(1), format!("took {took:?}"))
+}
+
+/// Random parities over many axes have no small diagram in any order.
+fn entangled_space_is_refused() -> Result<(), Failed> {
+    let mut random = Random(7);
+    let axes: Vec<_> = (0..100).map(|index| axis(format!("a{index:03}"), 2)).collect();
+    let literal = |random: &mut Random| Formula::Is(random.below(100), ValueSet::single(random.below(2)));
+    let clause = |random: &mut Random| constraint(Formula::Any((0..3).map(|_| literal(random)).collect()));
+    let constraints = (0..350).map(|_| clause(&mut random)).collect();
+    let started = Instant::now();
+    let outcome = Space::new(axes, constraints, Lists::default());
+    ensure(outcome.is_err(), "100 variables in 350 random clauses were counted")?;
+    ensure(started.elapsed() < Duration::from_secs(20), format!("took {:?}", started.elapsed()))
+}
+
+fn lock_is_stable() -> Result<(), Failed> {
+    let [small, large] = grown()?;
+    let before = Lock::default().extended("p", &small);
+    let after = before.extended("p", &large);
+    ensure(after.to_string().starts_with(&before.to_string()), "lines are only appended")?;
+    for point in small.enumerate() {
+        let later = read(&large, small.key(&point).as_str()).ok_or("a key is lost")?;
+        let dense = before.dense("p", &small, &point);
+        ensure(dense.is_some() && dense == after.dense("p", &large, &later), format!("{} has another number", small.key(&point)))?;
+    }
+    let numbers: BTreeSet<_> = large.enumerate().iter().map(|point| after.dense("p", &large, point)).collect();
+    ensure(numbers.len() as u128 == large.count() && !numbers.contains(&None), "numbers are distinct")?;
+    for point in large.enumerate() {
+        let dense = after.dense("p", &large, &point).ok_or("no number")?;
+        ensure(after.point("p", &large, dense) == Some(point), format!("{dense} does not come back"))?;
+    }
+    ensure(
+        (0..2000).filter(|dense| after.point("p", &large, *dense).is_some()).count() as u128 == large.count(),
+        "no other number is a point",
+    )?;
+    let mut sources = SourceSet::default();
+    let id = sources.add("lamplight.lock", after.to_string());
+    ensure(lock::parse(&sources, id) == Ok(after.clone()), "the file reads back")?;
+    ensure(after.extended("p", &small) == after, "nothing is taken away")
+}
+
+/// A composition that asks for a further axis only after some answers.
+fn compose(settings: &Settings) -> Vec<(String, Setting)> {
+    let ask = |name: &str| (name.to_owned(), settings.values[name].clone());
+    let shadow = ask("shadow");
+    let mut reads = vec![shadow.clone()];
+    if shadow.1 != Setting::Name("none".to_owned()) {
+        reads.push(ask("max_lights"));
+    }
+    reads
+}
+
+fn read_tree_finds_what_composes_alike() -> Result<(), Failed> {
+    let [_, large] = grown()?;
+    let mut tree: ReadTree<Vec<(String, Setting)>> = ReadTree::default();
+    let mut composed = 0;
+    for settings in large.enumerate().iter().map(|point| large.settings(point)) {
+        match tree.get(&settings) {
+            Some(known) => ensure(*known == compose(&settings), "another composition was found")?,
+            None => {
+                composed += 1;
+                tree.insert(&compose(&settings), compose(&settings)).map_err(|_| "a contradiction")?;
+            }
+        }
+    }
+    ensure(composed == 1 + 3 * 4 && tree.leaves().count() == composed, format!("{composed} compositions"))
+}
+
+fn read_tree_refuses_contradictions() -> Result<(), Failed> {
+    let read = |name: &str, value: bool| (name.to_owned(), Setting::Bool(value));
+    let mut tree = ReadTree::default();
+    ensure(tree.get(&Settings::default()).is_none(), "an empty tree knows nothing")?;
+    ensure(tree.insert(&[read("a", true), read("b", true)], 1).is_ok(), "the first is free")?;
+    ensure(tree.insert(&[read("b", true)], 2).is_err(), "another first question")?;
+    ensure(tree.insert(&[read("a", true)], 3).is_err(), "an answer that was not enough before")?;
+    ensure(tree.insert(&[read("a", true), read("b", true), read("c", true)], 4).is_err(), "a question after the end")?;
+    ensure(tree.insert(&[read("a", false)], 5).is_ok(), "another answer")?;
+    ensure(tree.leaves().copied().eq([1, 5]), "leaves are in order")
+}
+
+/// Deep, long and garbled constraints give a diagnostic or a space, never a crash.
+fn hostile_constraints_end() -> Result<(), Failed> {
+    let mut texts =
+        vec!["(".repeat(100_000), "!".repeat(100_000), "b=>".repeat(100_000), vec!["b"; 100_000].join("&&"), "b == ".to_owned()];
+    let mut random = Random(1);
+    const PIECES: &[&str] = &[
+        "b", "e", "n", "x", "1", "-3", "==", "!=", "<=", "=>", "&&", "||", "!", "(", ")", "in", "[", "]", ",", " ", "é", "\\u00e9", "\\n",
+    ];
+    texts.extend((0..500).map(|_| (0..random.below(12)).map(|_| PIECES[random.below(PIECES.len())]).collect::<Vec<_>>().join(" ")));
+    for text in texts {
+        let mut sources = SourceSet::default();
+        let axes = "b = { values = [false, true] }\ne = { values = [\"x\", \"y\"] }\nn = { values = [1, 2] }";
+        let text = format!("[program.p]\nwesl = \"p\"\n[program.p.axis]\n{axes}\n[[program.p.constraint]]\nrequire = \"{text}\"\n");
+        let id = sources.add("lamplight.toml", text);
+        if let Err(problems) = manifest::parse(&sources, id) {
+            let spans = problems.iter().flat_map(|problem| &problem.labels).map(|label| label.span.range());
+            ensure(spans.into_iter().all(|range| sources.get(id).text.get(range).is_some()), "a span is no text")?;
+        }
+    }
+    Ok(())
+}
+
+fn report_is_data() -> Result<(), Failed> {
+    let [_, large] = grown()?;
+    let report = serde_json::to_value(report::report("p", &large))?;
+    ensure(report["wanted"] == 64 && report["axes"][0]["factor"] == 2.0 && report["stages"].is_null(), report.to_string())
+}
