@@ -30,8 +30,8 @@ pub struct Cover {
 pub fn pairwise(space: &Space) -> Cover {
     let mut left = pairs(space);
     let mut cover = Cover { points: Vec::new(), infeasible: Vec::new() };
-    if let ([axis], true) = (space.axes(), left.is_empty()) {
-        cover.points = axis.domain().iter().filter_map(|ordinal| space.pick_valid(&[(0, ordinal)], |_, open| first(open))).collect();
+    if left.is_empty() {
+        cover.points = pairless(space);
     }
     while let Some(pair) = left.first().copied() {
         match covering(space, pair, &left) {
@@ -46,6 +46,14 @@ pub fn pairwise(space: &Space) -> Cover {
         }
     }
     cover
+}
+
+/// The cover where there are no pairs: each valid value of the only axis, or the only point.
+fn pairless(space: &Space) -> Vec<Assignment> {
+    match space.axes() {
+        [axis] => axis.domain().iter().filter_map(|ordinal| space.pick_valid(&[(0, ordinal)], |_, open| first(open))).collect(),
+        _ => space.pick_valid(&[], |_, open| first(open)).into_iter().collect(),
+    }
 }
 
 fn pairs(space: &Space) -> BTreeSet<Pair> {

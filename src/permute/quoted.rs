@@ -44,7 +44,7 @@ fn places(literal: &str, text: &str) -> Vec<usize> {
         at += if escapes { continued(&literal[at..]) } else { 0 };
         let next = at + written(&literal[at..], character, escapes);
         places.extend(std::iter::repeat_n(at, character.len_utf8()));
-        at = literal.floor_char_boundary(next);
+        at = (at..=next).rev().find(|byte| literal.is_char_boundary(*byte)).unwrap_or(at);
     }
     places.push(at);
     places

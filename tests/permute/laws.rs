@@ -5,14 +5,16 @@ use std::time::{Duration, Instant};
 
 use lamplight::permute::axis::ValueSet;
 use lamplight::permute::cover::{Pair, pairwise};
-use lamplight::permute::space::{Formula, Lists};
+use lamplight::permute::space::{Formula, Lists, Slice};
 use lamplight::permute::{Key, Lock, Quoted, ReadTree, Setting, Settings, Space, key, lock, manifest, report};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
-use super::random::{Random, axis, constraint, is_valid, is_wanted, ordinals, product, space};
+use super::random::{NOWHERE, Random, axis, constraint, is_valid, is_wanted, ordinals, product, space};
 
-const LAWS: &[(&str, fn() -> Result<(), Failed>)] = &[
+type Law = fn() -> Result<(), Failed>;
+
+const LAWS: &[(&str, Law)] = &[
     ("enumeration_is_brute_force", enumeration_is_brute_force),
     ("counts_without_an_axis", counts_without_an_axis),
     ("keys_round_trip", keys_round_trip),
@@ -24,6 +26,8 @@ const LAWS: &[(&str, fn() -> Result<(), Failed>)] = &[
     ("read_tree_finds_what_composes_alike", read_tree_finds_what_composes_alike),
     ("read_tree_refuses_contradictions", read_tree_refuses_contradictions),
     ("hostile_constraints_end", hostile_constraints_end),
+    ("hostile_manifests_end", hostile_manifests_end),
+    ("thousands_of_keys_are_quick", thousands_of_keys_are_quick),
     ("report_is_data", report_is_data),
 ];
 
@@ -122,7 +126,8 @@ fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
         let infeasible: BTreeSet<Pair> = pairs(&product(&space)).difference(&pairs(&valid)).copied().collect();
         ensure(infeasible == cover.infeasible.iter().copied().collect(), format!("infeasible pairs, seed {seed}"))?;
     }
-    Ok(())
+    let small = |axes| Space::new(axes, Vec::new(), Lists::default()).map(|space| pairwise(&space).points.len());
+    ensure(small(Vec::new()) == Ok(1) && small(vec![axis("a".to_owned(), 3)]) == Ok(3), "spaces without pairs are covered too")
 }
 
 fn pairs(points: &[Vec<u8>]) -> BTreeSet<Pair> {
@@ -155,7 +160,7 @@ fn huge_space_answers_at_once() -> Result<(), Failed> {
     ensure(took < Duration::from_secs(1), format!("took {took:?}"))
 }
 
-/// Random parities over many axes have no small diagram in any order.
+/// Random clauses over many axes have no small diagram in any order.
 fn entangled_space_is_refused() -> Result<(), Failed> {
     let mut random = Random(7);
     let axes: Vec<_> = (0..100).map(|index| axis(format!("a{index:03}"), 2)).collect();
@@ -253,6 +258,49 @@ fn hostile_constraints_end() -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// Garbled manifests give diagnostics within the text or a manifest, never a crash.
+fn hostile_manifests_end() -> Result<(), Failed> {
+    const TEXT: &str = "[program.p]\nwesl = \"p\"\nonly = [{ e = [\"x\", \"y\"], b = \"*\" }]\nexclude = [{ n = 2 }]\ninclude = [\"b,e=y\"]\n\
+        axis.b = { values = [false, true] }\naxis.e = { values = [\"x\", \"y\"], default = \"y\", mode = \"spec\" }\naxis.n = { values = [1, 2] }\n\
+        [[program.p.constraint]]\nrequire = \"\"\"\\\n  b => n >= 1 && \\u0065 in [x, y]\"\"\"\ndoc = 'd\u{e9}'\n";
+    let mut random = Random(3);
+    for _ in 0..3000 {
+        let mut bytes = TEXT.as_bytes().to_vec();
+        for _ in 0..1 + random.below(3) {
+            let (at, other) = (random.below(bytes.len()), random.below(TEXT.len()));
+            match random.below(3) {
+                0 => bytes[at] = TEXT.as_bytes()[other],
+                1 => drop(bytes.remove(at)),
+                _ => bytes.insert(at, TEXT.as_bytes()[other]),
+            }
+        }
+        let mut sources = SourceSet::default();
+        let id = sources.add("lamplight.toml", String::from_utf8_lossy(&bytes).into_owned());
+        if let Err(problems) = manifest::parse(&sources, id) {
+            let mut spans = problems.iter().flat_map(|problem| &problem.labels).map(|label| label.span.range());
+            ensure(spans.all(|range| sources.get(id).text.get(range).is_some()), "a span is no text")?;
+        }
+    }
+    Ok(())
+}
+
+/// Five thousand keys over twenty axes of four values: listed, counted and reported.
+fn thousands_of_keys_are_quick() -> Result<(), Failed> {
+    let started = Instant::now();
+    let axes: Vec<_> = (0..20).map(|index| axis(format!("a{index:02}"), 4)).collect();
+    let plain = Space::new(axes.clone(), Vec::new(), Lists::default()).map_err(|_| "too complex")?;
+    let mut random = Random(5);
+    let mut key = || (0..20).map(|axis| format!("a{axis:02}=v{}", random.below(4))).collect::<Vec<_>>().join(",");
+    let include = (0..5000).map(|_| read(&plain, &key())).collect::<Option<Vec<_>>>().ok_or("a key is lost")?;
+    let nothing = Slice { values: vec![ValueSet::EMPTY; 20], span: NOWHERE };
+    let lists = Lists { only: vec![nothing], include: include.clone(), ..Lists::default() };
+    let space = Space::new(axes, Vec::new(), lists).map_err(|_| "too complex")?;
+    let distinct: BTreeSet<_> = include.into_iter().collect();
+    ensure(space.enumerate().into_iter().eq(distinct), "other points")?;
+    ensure(report::report("p", &space).axes.iter().all(|axis| axis.without.is_some()), "no cost")?;
+    ensure(started.elapsed() < Duration::from_secs(5), format!("took {:?}", started.elapsed()))
 }
 
 fn report_is_data() -> Result<(), Failed> {

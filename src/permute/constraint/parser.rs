@@ -30,8 +30,11 @@ struct Parser<'a> {
     depth: usize,
 }
 
-/// Whether `value OP bound` holds, by sign.
-const ORDERS: &[(&str, fn(&i64, &i64) -> bool)] = &[("<", i64::lt), ("<=", i64::le), (">", i64::gt), (">=", i64::ge)];
+/// Whether `value OP bound` holds.
+type Order = fn(&i64, &i64) -> bool;
+
+/// The orders by sign.
+const ORDERS: &[(&str, Order)] = &[("<", i64::lt), ("<=", i64::le), (">", i64::gt), (">=", i64::ge)];
 
 /// What other languages write, and what it is here.
 const HINTS: &[(&str, &str)] = &[("=", "=="), ("&", "&&"), ("|", "||"), ("and", "&&"), ("or", "||"), ("not", "!")];
@@ -107,7 +110,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn order(&mut self, axis: &Axis, holds: fn(&i64, &i64) -> bool) -> Result<ValueSet, Diagnostic> {
+    fn order(&mut self, axis: &Axis, holds: Order) -> Result<ValueSet, Diagnostic> {
         let sign = self.span();
         self.at += 1;
         if axis.kind != Kind::Int {

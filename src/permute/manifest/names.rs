@@ -59,7 +59,7 @@ pub fn check_axis(name: &str, span: Span) -> Option<Diagnostic> {
 pub fn collisions(axes: &[Axis]) -> Vec<Diagnostic> {
     let mut owners: BTreeMap<String, (String, Span)> = BTreeMap::new();
     let mut problems = Vec::new();
-    for (name, meaning, span) in axes.iter().flat_map(macros) {
+    for (name, meaning, span) in axes.iter().filter(|axis| problem(&axis.name).is_none()).flat_map(macros) {
         if name.starts_with("GL_") || name.contains("__") || MACROS.contains(&name.as_str()) {
             let message = format!("{meaning} would be the GLSL macro `{name}`, which is reserved");
             problems.push(Diagnostic::error(codes::BAD_NAME, message).at(span, "choose another name"));

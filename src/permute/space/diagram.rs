@@ -43,15 +43,15 @@ impl Diagram {
 
     /// How many points it has; `u128::MAX` for that many or more.
     pub fn count(&self) -> u128 {
-        self.weigh(|_, below| below.iter().fold(0, |sum: u128, count| sum.saturating_add(*count)))
+        self.counts(|_, children, counts| Ok(sum(children, counts))).unwrap_or(0)
     }
 
-    /// How many points are left when those that differ only in the last axis asked are one.
-    pub fn count_without_last(&self) -> u128 {
-        let last = self.order.len().saturating_sub(1);
-        self.weigh(|level, below| match level == last {
-            true => u128::from(below.iter().any(|count| *count > 0)),
-            false => below.iter().fold(0, |sum: u128, count| sum.saturating_add(*count)),
+    /// How many points are left when those that differ only in one axis are one.
+    pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
+        let mut known = HashMap::new();
+        self.counts(|asked, children, counts| match asked == axis {
+            true => self.merged(children.to_vec(), counts, &mut known),
+            false => Ok(sum(children, counts)),
         })
     }
 
@@ -118,13 +118,37 @@ impl Diagram {
         allowed.iter().filter(alive).collect()
     }
 
-    fn weigh(&self, weight: impl Fn(usize, &[u128]) -> u128) -> u128 {
-        let mut weights = vec![0, 1];
-        for node in &self.nodes[2..] {
-            let below: Vec<u128> = node.children.iter().map(|child| weights[*child as usize]).collect();
-            weights.push(weight(node.level.into(), &below));
+    /// Computes the count of each node from the axis it asks, its children and their counts.
+    fn counts(&self, mut count: impl FnMut(usize, &[u32], &[u128]) -> Result<u128, TooComplex>) -> Result<u128, TooComplex> {
+        let mut counts = vec![0, 1];
+        for Node { level, children } in &self.nodes[2..] {
+            let found = count(self.order[usize::from(*level)], children, &counts)?;
+            counts.push(found);
         }
-        weights[self.root as usize]
+        Ok(counts[self.root as usize])
+    }
+
+    /// How many points there are below any of the nodes, which are of one level; those below
+    /// several count once.
+    fn merged(&self, mut nodes: Vec<u32>, counts: &[u128], known: &mut HashMap<Vec<u32>, u128>) -> Result<u128, TooComplex> {
+        nodes.retain(|node| *node != DEAD);
+        nodes.sort_unstable();
+        nodes.dedup();
+        let values = match nodes.as_slice() {
+            [] => return Ok(0),
+            [only] => return Ok(counts[*only as usize]),
+            [first, ..] => self.nodes[*first as usize].children.len(),
+        };
+        if let Some(count) = known.get(&nodes) {
+            return Ok(*count);
+        }
+        let mut total: u128 = 0;
+        for ordinal in 0..values {
+            let below = nodes.iter().map(|node| self.nodes[*node as usize].children[ordinal]).collect();
+            total = total.saturating_add(self.merged(below, counts, known)?);
+        }
+        known.insert(nodes, total);
+        if known.len() > NODES { Err(TooComplex) } else { Ok(total) }
     }
 
     /// Recursion is as deep as there are axes, which [`crate::permute::axis::MAX`] bounds.
@@ -139,6 +163,10 @@ impl Diagram {
             self.walk(*child, point, found);
         }
     }
+}
+
+fn sum(children: &[u32], counts: &[u128]) -> u128 {
+    children.iter().fold(0, |sum: u128, child| sum.saturating_add(counts[*child as usize]))
 }
 
 struct Builder<'a> {

@@ -115,10 +115,7 @@ impl Space {
     /// The permutations that would be left if the axis did not exist: those that differ in it
     /// alone counted once.
     pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
-        let mut order = order(self.axes.len(), &self.constraints);
-        order.retain(|other| *other != axis);
-        order.push(axis);
-        Ok(diagram(&self.axes, &self.constraints, &self.lists, order)?.count_without_last())
+        self.wanted.count_without(axis)
     }
 
     /// Every permutation in canonical order: a mixed-radix count with the first axis as its most
