@@ -3,8 +3,8 @@
 
 #include "../filter/gaussian.glsl"
 
-layout(location = 0) in vec2 uv;
-layout(location = 0) out vec4 color;
+layout(location = 0) in vec2 in_uv;
+layout(location = 0) out vec4 out_color;
 
 layout(set = 0, binding = 0) uniform texture2D blurred;
 layout(set = 0, binding = 1) uniform sampler linear_sampler;
@@ -15,5 +15,5 @@ void main() {
 #else
     vec2 direction = vec2(1.0, 0.0);
 #endif
-    color = blur21(blurred, linear_sampler, uv, direction);
+    out_color = blur21(blurred, linear_sampler, in_uv, direction);
 }

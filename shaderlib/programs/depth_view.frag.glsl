@@ -3,8 +3,8 @@
 
 #include "../shadow/coord.glsl"
 
-layout(location = 0) in vec2 uv;
-layout(location = 0) out vec4 color;
+layout(location = 0) in vec2 in_uv;
+layout(location = 0) out vec4 out_color;
 
 layout(set = 0, binding = 0) uniform texture2D depths;
 layout(set = 0, binding = 1) uniform sampler depth_sampler;
@@ -18,7 +18,7 @@ layout(std140, set = 0, binding = 2) uniform Planes {
 #endif
 
 void main() {
-    float depth = textureLod(sampler2D(depths, depth_sampler), uv, 0.0).x;
+    float depth = textureLod(sampler2D(depths, depth_sampler), in_uv, 0.0).x;
 #if CURVE == CURVE_LINEAR
     float shade = linearize_depth(depth, planes.near, planes.far) / max(planes.near, planes.far);
 #elif CURVE == CURVE_IGL
@@ -26,5 +26,5 @@ void main() {
 #else
     float shade = depth;
 #endif
-    color = vec4(vec3(shade), 1.0);
+    out_color = vec4(vec3(shade), 1.0);
 }

@@ -1,31 +1,32 @@
 #version 450
 //! The fragment stage of `forward`. Bindings and locations are tabulated in forward.wesl.
+// Stage variables have prefixes: naga lets the members of a block hide globals of their names.
 
 #include "../math/safe.glsl"
 #include "forward/viewer.glsl"
 
-layout(location = 0) in vec3 position;
+layout(location = 0) in vec3 in_position;
 #if FREQUENCY == FREQUENCY_FRAGMENT
-layout(location = 1) in vec3 normal;
+layout(location = 1) in vec3 in_normal;
 #elif FREQUENCY == FREQUENCY_FLAT
-layout(location = 1) flat in vec3 normal;
+layout(location = 1) flat in vec3 in_normal;
 #endif
-layout(location = 2) in vec4 color;
+layout(location = 2) in vec4 in_color;
 #if BASE_MAP || NORMAL_MAP
-layout(location = 3) in vec2 uv;
+layout(location = 3) in vec2 in_uv;
 #endif
 #if LIGHTMAP
-layout(location = 4) in vec2 light_uv;
+layout(location = 4) in vec2 in_light_uv;
 #endif
 #if NORMAL_MAP
-layout(location = 5) in vec4 tangent;
+layout(location = 5) in vec4 in_tangent;
 #endif
 #if MATERIAL == MATERIAL_ARRAY
-layout(location = 6) flat in uint material;
+layout(location = 6) flat in uint in_material;
 #endif
 #if FREQUENCY == FREQUENCY_VERTEX
-layout(location = 7) in vec3 scattered;
-layout(location = 8) in vec3 reflected;
+layout(location = 7) in vec3 in_scattered;
+layout(location = 8) in vec3 in_reflected;
 #endif
 
 layout(location = 0) out vec4 out_color;
@@ -60,7 +61,7 @@ layout(std140, set = 0, binding = 3) uniform Haze {
 #if LIGHTMAP
 /// Light that was computed beforehand.
 vec3 baked() {
-    return texture(sampler2D(light_map, map_sampler), light_uv).rgb;
+    return texture(sampler2D(light_map, map_sampler), in_light_uv).rgb;
 }
 #endif
 
@@ -73,15 +74,15 @@ vec3 baked() {
 /// The colour of the surface where no lamp shines.
 vec3 shade(vec3 base) {
 #if AMBIENT == AMBIENT_IBL
-    vec3 n = safe_normalize(normal, vec3(0.0));
-    vec3 mirrored = reflect(-towards_viewer(position), n);
+    vec3 n = safe_normalize(in_normal, vec3(0.0));
+    vec3 mirrored = reflect(-towards_viewer(in_position), n);
     vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), n).rgb;
     vec3 specular = texture(samplerCube(sky_specular, sky_sampler), mirrored).rgb;
     return ibl_mix(base, diffuse, specular, surroundings.diffuse_share, surroundings.specular_share);
 #elif AMBIENT != AMBIENT_NONE && LIGHTMAP
-    return base * (ambient_light(safe_normalize(normal, vec3(0.0))) + baked());
+    return base * (ambient_light(safe_normalize(in_normal, vec3(0.0))) + baked());
 #elif AMBIENT != AMBIENT_NONE
-    return base * ambient_light(safe_normalize(normal, vec3(0.0)));
+    return base * ambient_light(safe_normalize(in_normal, vec3(0.0)));
 #elif LIGHTMAP
     return base * baked();
 #else
@@ -95,15 +96,15 @@ vec3 shade(vec3 base) {
 /// The colour of the surface, from the light summed up at the corners.
 vec3 shade(vec3 base) {
 #if MATERIAL == MATERIAL_ARRAY
-    Material found = materials.items[material];
+    Material material = materials.items[in_material];
 #else
-    Material found = materials.items[0];
+    Material material = materials.items[0];
 #endif
-    Accum sum = Accum(scattered, reflected);
+    Accum sum = Accum(in_scattered, in_reflected);
 #if LIGHTMAP
-    sum.scattered += found.diffuse * baked();
+    sum.scattered += material.diffuse * baked();
 #endif
-    return resolve(base, found, sum);
+    return resolve(base, material, sum);
 }
 #else
 #include "../surface/normal.glsl"
@@ -124,22 +125,22 @@ Accum add_environment(Accum sum, Surface surface) {
 /// The colour of the surface.
 vec3 shade(vec3 base) {
     Surface surface;
-    surface.position = position;
-    surface.normal = safe_normalize(normal, vec3(0.0));
+    surface.position = in_position;
+    surface.normal = safe_normalize(in_normal, vec3(0.0));
 #if TWO_SIDED
     surface.normal = flip_if_back(surface.normal, gl_FrontFacing);
 #endif
 #if NORMAL_MAP
-    vec3 texel = texture(sampler2D(normal_map, map_sampler), uv).xyz;
-    surface.normal = perturb_normal(surface.normal, tangent, texel);
+    vec3 texel = texture(sampler2D(normal_map, map_sampler), in_uv).xyz;
+    surface.normal = perturb_normal(surface.normal, in_tangent, texel);
 #endif
 #if NEEDS_VIEW
-    surface.view = towards_viewer(position);
+    surface.view = towards_viewer(in_position);
 #endif
 #if MATERIAL == MATERIAL_ARRAY && TWO_SIDED
-    surface.material = materials.items[material_index(int(material), gl_FrontFacing)];
+    surface.material = materials.items[material_index(int(in_material), gl_FrontFacing)];
 #elif MATERIAL == MATERIAL_ARRAY
-    surface.material = materials.items[material];
+    surface.material = materials.items[in_material];
 #else
     surface.material = materials.items[0];
 #endif
@@ -158,13 +159,13 @@ vec3 shade(vec3 base) {
 #endif
 
 void main() {
-    vec4 base = color;
+    vec4 base = in_color;
 #if BASE_MAP
-    base *= texture(sampler2D(base_map, map_sampler), uv);
+    base *= texture(sampler2D(base_map, map_sampler), in_uv);
 #endif
     vec3 shaded = shade(base.rgb);
 #if FOG != FOG_NONE
-    float reach = distance(position, camera.world_from_view[3].xyz);
+    float reach = distance(in_position, camera.world_from_view[3].xyz);
 #if FOG == FOG_LINEAR
     shaded = mix(haze.color, shaded, fog_linear(reach, haze.start, haze.end));
 #else

@@ -12,15 +12,15 @@ layout(std140, set = 0, binding = 1) uniform Moments {
     float bias;
 } terms;
 
-layout(location = 0) out vec4 color;
+layout(location = 0) out vec4 out_color;
 
 void main() {
     float depth = constant_bias(gl_FragCoord.z, -terms.bias);
 #if MOMENTS == MOMENTS_EVSM
-    color = evsm_moments(depth, terms.exponents);
+    out_color = evsm_moments(depth, terms.exponents);
 #elif SLOPE
-    color = vec4(vsm_moments_slope(depth, dFdx(depth), dFdy(depth)), 0.0, 0.0);
+    out_color = vec4(vsm_moments_slope(depth, dFdx(depth), dFdy(depth)), 0.0, 0.0);
 #else
-    color = vec4(vsm_moments(depth), 0.0, 0.0);
+    out_color = vec4(vsm_moments(depth), 0.0, 0.0);
 #endif
 }
