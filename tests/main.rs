@@ -2,11 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
 mod compose_glsl;
+mod compose_wesl;
 mod permute;
 mod shaderlib;
 
 fn main() {
     let arguments = libtest_mimic::Arguments::from_args();
-    let trials = [compose_glsl::trials(), permute::trials(), shaderlib::trials()].into_iter().flatten().collect();
-    libtest_mimic::run(&arguments, trials).exit();
+    let kinds = [compose_glsl::trials(), compose_wesl::trials(), permute::trials(), shaderlib::trials()];
+    libtest_mimic::run(&arguments, kinds.into_iter().flatten().collect()).exit();
 }

@@ -2,6 +2,7 @@
 
 pub mod glsl;
 mod source_map;
+pub mod wesl;
 
 pub use source_map::{Segment, SourceMap};
 

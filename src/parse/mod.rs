@@ -1,3 +1,4 @@
 //! From text to items, imports and conditions.
 
 pub mod glsl;
+pub mod wesl;

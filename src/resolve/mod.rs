@@ -1,6 +1,7 @@
 //! From parsed modules to a graph of items and what each refers to.
 
 pub mod glsl;
+pub mod wesl;
 
 use crate::source::Package;
 
