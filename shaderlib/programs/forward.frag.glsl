@@ -3,7 +3,7 @@
 // Stage variables have prefixes: naga lets the members of a block hide globals of their names.
 
 #include "../math/safe.glsl"
-#include "forward/viewer.glsl"
+#include "forward/camera.glsl"
 
 layout(location = 0) in vec3 in_position;
 #if FREQUENCY == FREQUENCY_FRAGMENT
@@ -65,10 +65,15 @@ vec3 baked() {
 }
 #endif
 
-#if LIGHTS == LIGHTS_NONE
+// Without lamps, ambient and baked light there is nothing to shade.
+#define SHADES (LIGHTS != LIGHTS_NONE || AMBIENT != AMBIENT_NONE || LIGHTMAP)
+
+#if !SHADES
+#elif LIGHTS == LIGHTS_NONE
 #include "forward/ambient.glsl"
 #if AMBIENT == AMBIENT_IBL
 #include "../ambient/ibl.glsl"
+#include "forward/viewer.glsl"
 #endif
 
 /// The colour of the surface where no lamp shines.
@@ -83,10 +88,8 @@ vec3 shade(vec3 base) {
     return base * (ambient_light(safe_normalize(in_normal, vec3(0.0))) + baked());
 #elif AMBIENT != AMBIENT_NONE
     return base * ambient_light(safe_normalize(in_normal, vec3(0.0)));
-#elif LIGHTMAP
-    return base * baked();
 #else
-    return base;
+    return base * baked();
 #endif
 }
 #elif FREQUENCY == FREQUENCY_VERTEX
@@ -163,7 +166,11 @@ void main() {
 #if BASE_MAP
     base *= texture(sampler2D(base_map, map_sampler), in_uv);
 #endif
+#if SHADES
     vec3 shaded = shade(base.rgb);
+#else
+    vec3 shaded = base.rgb;
+#endif
 #if FOG != FOG_NONE
     float reach = distance(in_position, camera.world_from_view[3].xyz);
 #if FOG == FOG_LINEAR

@@ -2,7 +2,7 @@
 //! The vertex stage of `forward`. Bindings and locations are tabulated in forward.wesl.
 // Stage variables have prefixes: naga lets the members of a block hide globals of their names.
 
-#include "forward/viewer.glsl"
+#include "forward/camera.glsl"
 
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;

@@ -143,12 +143,14 @@ Accum add_lamp(Accum sum, Surface surface, uint i) {
     float visibility = i == caster.light ? shadow_mix(surface.visibility, light.shadow_strength) : 1.0;
 #endif
 
+#if SPECULAR != SPECULAR_GGX
+    return accumulate(sum, surface.material, light, arriving, ambient, diffuse, specular, visibility);
+#else
     Accum next = accumulate(sum, surface.material, light, arriving, ambient, diffuse, specular, visibility);
-#if SPECULAR == SPECULAR_GGX
     vec3 radiance = light.color * (arriving.attenuation * arriving.spot * visibility * light.strength);
     next.reflected += radiance * ggx(surface, arriving.l);
-#endif
     return next;
+#endif
 }
 
 /// All light that leaves the point towards the viewer, but for the environment maps'.

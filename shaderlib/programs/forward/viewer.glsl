@@ -1,14 +1,9 @@
-//! The viewer, as both stages of `forward` need it.
+//! Where the viewer of `forward` is.
 
 #ifndef LAMPLIGHT_PROGRAMS_FORWARD_VIEWER_GLSL
 #define LAMPLIGHT_PROGRAMS_FORWARD_VIEWER_GLSL
 
-/// The viewer.
-layout(std140, set = 0, binding = 0) uniform Camera {
-    mat4 clip_from_world;
-    /// Its third column points behind the viewer, its fourth is the viewer's position.
-    mat4 world_from_view;
-} camera;
+#include "camera.glsl"
 
 /// Whether anything depends on the direction of the viewer.
 #define NEEDS_VIEW (SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR || AMBIENT == AMBIENT_IBL)
