@@ -27,9 +27,9 @@ pub fn trials() -> Vec<Trial> {
         let name = case.file_name().unwrap().to_string_lossy().into_owned();
         Trial::test(format!("compose_glsl::{name}"), move || check(&case))
     });
-    let generated = GENERATED.iter().map(|(name, code, make)| {
-        Trial::test(format!("compose_glsl::generated::{name}"), move || check_limit(code, make()))
-    });
+    let generated = GENERATED
+        .iter()
+        .map(|(name, code, make)| Trial::test(format!("compose_glsl::generated::{name}"), move || check_limit(code, make())));
     files.chain(generated).collect()
 }
 
@@ -188,7 +188,11 @@ fn glslang(text: &str, stage: &str) -> Result<(), Failed> {
     let file = tempfile::Builder::new().suffix(&format!(".{stage}")).tempfile()?;
     fs::write(file.path(), text)?;
     let Ok(output) = Command::new("glslangValidator").args(["-V", "-o", "/dev/null"]).arg(file.path()).output() else { return Ok(()) };
-    if output.status.success() { Ok(()) } else { Err(format!("glslangValidator: {}\n{text}", String::from_utf8_lossy(&output.stdout)).into()) }
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(format!("glslangValidator: {}\n{text}", String::from_utf8_lossy(&output.stdout)).into())
+    }
 }
 
 /// A name, the code of the error it must end in, and the files.
@@ -196,7 +200,9 @@ type Generated = (&'static str, &'static str, fn() -> Vec<(String, String)>);
 
 /// Hostile inputs that are too large to keep; the first file is the root.
 const GENERATED: &[Generated] = &[
-    ("object_bomb", "expansion-too-large", || one((0..64).map(|n| format!("#define M{n} M{0} M{0}\n", n + 1)).collect::<String>() + "int x = M0;\n")),
+    ("object_bomb", "expansion-too-large", || {
+        one((0..64).map(|n| format!("#define M{n} M{0} M{0}\n", n + 1)).collect::<String>() + "int x = M0;\n")
+    }),
     ("silent_bomb", "expansion-too-large", || {
         one((0..63).map(|n| format!("#define M{n} M{0} M{0}\n", n + 1)).collect::<String>() + "#define M63\nint x = M0 1;\n")
     }),
@@ -211,7 +217,8 @@ const GENERATED: &[Generated] = &[
     ("long_elif", "", || one("#if 0\n".to_owned() + &"#elif 0\n".repeat(100_000) + "#endif\nvoid main() {}\n")),
     ("long_sum", "", || one(format!("#if {}1\n#endif\nvoid main() {{}}\n", "1 + ".repeat(100_000)))),
     ("long_chain", "", || {
-        one((0..50_000).map(|n| format!("#define M{n} M{}\n", n + 1)).collect::<String>() + "const int x = M0;\nvoid main() { int y = x; }\n")
+        one((0..50_000).map(|n| format!("#define M{n} M{}\n", n + 1)).collect::<String>()
+            + "const int x = M0;\nvoid main() { int y = x; }\n")
     }),
     ("many_tokens", "too-many-tokens", || one("; ".repeat((1 << 20) + 1))),
     ("many_lines", "", || one("const int a = __LINE__;\n".repeat(50_000) + "void main() { int b = a; }\n")),
@@ -237,13 +244,12 @@ fn name(number: usize) -> String {
 /// Ends soon, in that error or in none, on a small stack.
 fn check_limit(code: &str, files: Vec<(String, String)>) -> Result<(), Failed> {
     let root = files[0].0.clone();
-    let packages = Packages {
-        root: Package { name: "root".into(), files: Box::new(Memory(files.into_iter().collect())) },
-        dependencies: Vec::new(),
-    };
+    let packages =
+        Packages { root: Package { name: "root".into(), files: Box::new(Memory(files.into_iter().collect())) }, dependencies: Vec::new() };
     let run = move || {
         let start = std::time::Instant::now();
-        let result = load(&mut SourceSet::default(), &packages, &root).and_then(|graph| compose(&graph, &Settings::default(), &Options::default()));
+        let result =
+            load(&mut SourceSet::default(), &packages, &root).and_then(|graph| compose(&graph, &Settings::default(), &Options::default()));
         (result.err(), start.elapsed())
     };
     let (errors, time) = std::thread::Builder::new().stack_size(1 << 20).spawn(run)?.join().map_err(|_| "panicked")?;

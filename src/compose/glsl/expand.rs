@@ -41,6 +41,9 @@ pub struct Expander<'g, 's> {
     depth: usize,
 }
 
+/// The arguments of a call, and its closing parenthesis.
+type Call = (Vec<Vec<Tok>>, Tok);
+
 /// The expansion of a macro while it is scanned.
 struct Frame {
     tokens: Vec<Tok>,
@@ -110,9 +113,9 @@ impl<'g, 's> Expander<'g, 's> {
         match input {
             Input::Source { module, at, end } => {
                 let tokens = &self.graph.modules[*module as usize].tokens[*at as usize..*end as usize];
-                let plain = tokens.iter().take_while(|token| is_plain(token.kind, token.symbol));
-                let first = *at;
-                out.extend(plain.zip(first..).map(|(token, index)| Tok::copy(*module, index, token)).inspect(|_| *at += 1));
+                let plain = tokens.iter().take_while(|token| is_plain(token.kind, token.symbol)).count();
+                out.extend(tokens[..plain].iter().zip(*at..).map(|(token, index)| Tok::copy(*module, index, token)));
+                *at += plain as u32;
             }
             Input::Tokens { tokens, at } => {
                 let plain = tokens[*at..].iter().take_while(|token| is_plain(token.kind, token.symbol)).count();
@@ -222,7 +225,7 @@ impl<'g, 's> Expander<'g, 's> {
             out.push(name);
             return Ok(());
         }
-        let Some((arguments, close)) = self.arguments(floor, input) else {
+        let Some((arguments, close)) = self.arguments(name, floor, input)? else {
             self.call_error(name, definition, "is not closed before the next directive or the end of the file".into());
             return Ok(());
         };
@@ -240,15 +243,14 @@ impl<'g, 's> Expander<'g, 's> {
         self.errors.push(error.at(name.span(self.modules()), "called here").at(definition.name_span, "defined here"));
     }
 
-    /// The arguments between the parentheses, and the closing one.
-    fn arguments(&mut self, floor: usize, input: &mut Input<'_>) -> Option<(Vec<Vec<Tok>>, Tok)> {
-        self.take(floor, input)?;
+    /// The arguments between the parentheses, and the closing one; `None` where that is missing.
+    fn arguments(&mut self, name: Tok, floor: usize, input: &mut Input<'_>) -> Result<Option<Call>, Fatal> {
+        self.take(floor, input);
         let mut arguments = vec![Vec::new()];
         let mut depth = 0usize;
-        loop {
-            let token = self.next(floor, input)?;
+        while let Some(token) = self.next(floor, input) {
             match token.symbol {
-                known::CLOSE if depth == 0 => return Some((arguments, token)),
+                known::CLOSE if depth == 0 => return Ok(Some((arguments, token))),
                 known::COMMA if depth == 0 => {
                     arguments.push(Vec::new());
                     continue;
@@ -257,10 +259,21 @@ impl<'g, 's> Expander<'g, 's> {
                 known::CLOSE => depth -= 1,
                 _ => {}
             }
+            if depth > LIMITS.nesting {
+                return Err(Box::new(self.too_deep(&token)));
+            }
+            // The tokens of nested calls are read once for each level.
+            self.spend(1, 0, name.span(self.modules()))?;
             if let Some(argument) = arguments.last_mut() {
                 argument.push(Tok { before: NONE, after: NONE, ..token });
             }
         }
+        Ok(None)
+    }
+
+    fn too_deep(&self, token: &Tok) -> Diagnostic {
+        let message = format!("macro calls nest deeper than {}", LIMITS.nesting);
+        Diagnostic::error(codes::NESTING_TOO_DEEP, message).at(token.span(self.modules()), "one too many")
     }
 
     /// Puts the macro's body, with its arguments, in front of what is still to be scanned.
@@ -292,7 +305,7 @@ impl<'g, 's> Expander<'g, 's> {
             let piece = match body.parameter.map(usize::from) {
                 None => &own[..],
                 Some(index) if pasting || body.pasted => &arguments[index],
-                Some(index) => self.expanded(&mut expanded[index], &arguments[index])?,
+                Some(index) => self.expanded(&mut expanded[index], &arguments[index], &site)?,
             };
             let right = self.paste(&mut result, piece, pasting && has_left, &site);
             let spaced = right.len() == piece.len();
@@ -307,17 +320,12 @@ impl<'g, 's> Expander<'g, 's> {
         Ok(result)
     }
 
-    fn expanded<'a>(&mut self, cache: &'a mut Option<Vec<Tok>>, argument: &[Tok]) -> Result<&'a [Tok], Fatal> {
+    fn expanded<'a>(&mut self, cache: &'a mut Option<Vec<Tok>>, argument: &[Tok], site: &Tok) -> Result<&'a [Tok], Fatal> {
         if cache.is_none() {
             let mut tokens = Vec::with_capacity(argument.len());
             self.depth += 1;
             if self.depth > LIMITS.nesting {
-                let message = format!("macro calls nest deeper than {}", LIMITS.nesting);
-                let error = Diagnostic::error(codes::NESTING_TOO_DEEP, message);
-                return Err(Box::new(match argument.first() {
-                    Some(first) => error.at(first.span(self.modules()), "in this argument"),
-                    None => error,
-                }));
+                return Err(Box::new(self.too_deep(site)));
             }
             self.run(Input::Tokens { tokens: argument, at: 0 }, &mut tokens)?;
             self.depth -= 1;

@@ -13,7 +13,7 @@ impl Piece<'_> {
     /// How many lines a piece of white space ends.
     pub fn newlines(self) -> usize {
         match self {
-            Self::Space(text) => text.matches('\n').count() - text.matches("\\\n").count() - text.matches("\\\r\n").count(),
+            Self::Space(text) => newlines(text.as_bytes()),
             Self::Comment(_) => 0,
         }
     }
@@ -40,9 +40,13 @@ fn piece(rest: &str) -> Piece<'_> {
     if let Some(inner) = rest.strip_prefix("/*") {
         return Piece::Comment(&rest[..inner.find("*/").map_or(rest.len(), |end| end + 4)]);
     }
-    // A `/` that begins no comment cannot stand in a gap; it is taken along all the same.
-    let end = rest[1..].find("//").into_iter().chain(rest[1..].find("/*")).min();
-    Piece::Space(&rest[..end.map_or(rest.len(), |end| end + 1)])
+    Piece::Space(&rest[..rest[1..].find('/').map_or(rest.len(), |end| end + 1)])
+}
+
+/// Newlines that no `\` continues.
+fn newlines(space: &[u8]) -> usize {
+    let continued = |at: usize| matches!(space[..at], [.., b'\\'] | [.., b'\\', b'\r']);
+    (0..space.len()).filter(|at| space[*at] == b'\n' && !continued(*at)).count()
 }
 
 /// Bytes of a `//` comment, over line continuations.

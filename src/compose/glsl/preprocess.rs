@@ -105,7 +105,11 @@ impl<'g> State<'g, '_> {
             for pair in self.open[..chain.min(self.open.len())].windows(2).rev() {
                 if let Some(directive) = pair[1].directive {
                     let line = self.graph.modules[pair[0].module].line(directive.start);
-                    error.notes.push(format!("included from {}:{line}", self.graph.paths[pair[0].module]));
+                    let note = format!("included from {}:{line}", self.graph.paths[pair[0].module]);
+                    // In a cycle the same places come again and again.
+                    if !error.notes.contains(&note) {
+                        error.notes.push(note);
+                    }
                 }
             }
         }
@@ -222,6 +226,7 @@ impl<'g> State<'g, '_> {
 
     fn author_error(&mut self, words: Span, directive: Span) {
         let text = &self.graph.modules[self.open.last().map_or(0, |open| open.module)].text[words.range()];
+        let text = if words.end == directive.end && words.start > directive.start + 6 { text } else { "an `#error` without a message" };
         self.expander.errors.push(Diagnostic::error(codes::ERROR_DIRECTIVE, text).at(directive, "refused here"));
     }
 

@@ -20,7 +20,9 @@ pub fn reach(tokens: &[Tok], items: &Items, spellings: &Spellings<'_>, keep: &Ke
         Keep::Items(names) => start_at(&mut search, items, spellings, names)?,
         _ if search.declares(known::MAIN) => search.name(known::MAIN),
         // A module without an entry point is wanted for all that it declares itself.
-        _ => (0..items.list.len()).filter(|index| tokens[items.list[*index].tokens.start].module == 0).for_each(|index| search.keep(index as u32)),
+        _ => (0..items.list.len())
+            .filter(|index| tokens[items.list[*index].tokens.start].module == 0)
+            .for_each(|index| search.keep(index as u32)),
     }
     search.run(tokens, items);
     Ok(search.kept)

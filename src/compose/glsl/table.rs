@@ -8,7 +8,10 @@ use crate::parse::glsl::{Macro, Symbol, Symbols, known};
 #[derive(Debug, Clone, Copy)]
 pub enum Meaning<'g> {
     /// The author's macro, and whether it is being expanded right now.
-    User { definition: &'g Macro, active: bool },
+    User {
+        definition: &'g Macro,
+        active: bool,
+    },
     /// The value of a setting, by number in [`Reads`].
     Setting(u16),
     /// A fixed number.

@@ -60,10 +60,12 @@ impl<'a> Writer<'a> {
 
     /// How many tokens from the first on can be copied as one piece of their file.
     fn run(&self, tokens: &[Tok]) -> usize {
-        if !tokens[0].is_plain() {
+        let first = &tokens[0];
+        let is_spliced = (first.end - first.start) as usize != self.spellings.text(first.symbol).len();
+        if !first.is_plain() || is_spliced {
             return 1;
         }
-        let source = &self.modules[tokens[0].module as usize].tokens;
+        let source = &self.modules[first.module as usize].tokens;
         let follows = |pair: &[Tok]| {
             let next = &pair[1];
             next.is_plain() && next.module == pair[0].module && next.before == pair[0].after + 1 && source[next.before as usize].clean
@@ -89,10 +91,9 @@ impl<'a> Writer<'a> {
     fn gap_before(&self, tok: &Tok) -> Span {
         let module = &self.modules[tok.module as usize];
         let token = &module.tokens[tok.before as usize];
-        let start = match module.text_part(tok.before) {
-            Some(part) if part.tokens.start == tok.before => part.bytes.start,
-            _ => tok.before.checked_sub(1).map_or(0, |previous| module.tokens[previous as usize].end),
-        };
+        let part = if token.first_of_part { module.text_part(tok.before) } else { None };
+        let previous = || tok.before.checked_sub(1).map_or(0, |previous| module.tokens[previous as usize].end);
+        let start = part.map_or_else(previous, |part| part.bytes.start);
         Span { source: module.source, start, end: token.start }
     }
 
@@ -100,9 +101,9 @@ impl<'a> Writer<'a> {
     fn gap_after(&self, tok: &Tok) -> Span {
         let module = &self.modules[tok.module as usize];
         let start = module.tokens[tok.after as usize].end;
-        let end = match module.text_part(tok.after) {
-            Some(part) if part.tokens.end == tok.after + 1 => part.bytes.end,
-            _ => module.tokens.get(tok.after as usize + 1).map_or(start, |next| next.start),
+        let end = match module.tokens.get(tok.after as usize + 1) {
+            Some(next) if !next.first_of_part => next.start,
+            _ => module.text_part(tok.after).map_or(start, |part| part.bytes.end),
         };
         Span { source: module.source, start, end }
     }
@@ -118,7 +119,7 @@ impl<'a> Writer<'a> {
         }
         let span = self.gap_before(first);
         let module = &self.modules[first.module as usize];
-        let after_item = module.text_part(first.before).is_some_and(|part| part.tokens.start != first.before);
+        let after_item = !module.tokens[first.before as usize].first_of_part;
         let text = self.source(first, span);
         let kept = gap::attached(text, after_item);
         self.pieces(&[(Span { start: span.start + kept.start as u32, ..span }, &text[kept])], false);
@@ -133,6 +134,7 @@ impl<'a> Writer<'a> {
         let kept = gap::trailing(text);
         if !kept.is_empty() {
             self.pieces(&[(Span { end: span.start + kept.end as u32, ..span }, &text[kept])], false);
+            self.text.truncate(self.text.trim_end().len());
         }
     }
 
@@ -143,13 +145,16 @@ impl<'a> Writer<'a> {
         }
         let before = self.gap_before(right);
         if left.module == right.module && left.after + 1 == right.before {
-            return self.pieces(&[(before, self.source(right, before))], false);
+            return match self.source(right, before) {
+                "" => self.minimal_gap(left, right),
+                text => self.pieces(&[(before, text)], false),
+            };
         }
         let after = self.gap_after(left);
         let text = self.source(left, after);
         // Between the two stands a directive, so each is at the edge of its part; or else a macro
         // that expanded to nothing.
-        let ends_part = self.modules[left.module as usize].text_part(left.after).is_some_and(|part| part.tokens.end == left.after + 1);
+        let ends_part = self.modules[left.module as usize].tokens.get(left.after as usize + 1).is_none_or(|next| next.first_of_part);
         let left = (after, if ends_part { text } else { "" });
         self.pieces(&[left, (before, self.source(right, before))], ends_part);
     }
@@ -204,6 +209,6 @@ fn indentation(space: &str) -> &str {
 fn glues(left: Option<char>, right: Option<char>) -> bool {
     let (Some(left), Some(right)) = (left, right) else { return false };
     let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let number = |c: char| word(c) || c == '.';
+    let number = |c: char| c.is_ascii_digit() || c == '.';
     (word(left) && word(right)) || (number(left) && number(right)) || ("+-*/%<>=!&|^#".contains(left) && "+-*/<>=&|^#".contains(right))
 }

@@ -11,30 +11,33 @@ pub fn push(module: &mut Module, hash: usize, end: usize, symbols: &Symbols) {
     module.parts.push(Part::Directive(directive, span));
 }
 
+/// A conditional without its `#endif` yet.
+struct Open {
+    /// Its branches so far, as indices of parts.
+    branches: Vec<usize>,
+    otherwise: Option<Span>,
+}
+
 /// Connects the branches of every conditional; unbalanced ones are errors of the module.
 pub fn link(module: &mut Module) {
-    // For each open conditional, its branches so far.
-    let mut open: Vec<Vec<usize>> = Vec::new();
+    let mut open: Vec<Open> = Vec::new();
     for index in 0..module.parts.len() {
         let Part::Directive(directive, span) = &module.parts[index] else { continue };
         let span = *span;
         match directive {
-            Directive::If { .. } | Directive::Ifdef { .. } => open.push(vec![index]),
-            Directive::Elif { .. } | Directive::Else { .. } | Directive::Endif => {
-                let ends = matches!(directive, Directive::Endif);
-                let Some(branches) = open.last_mut() else {
-                    module.errors.push(unbalanced("no conditional is open here", span, "without an `#if` before it"));
-                    continue;
-                };
-                if let (Some(previous), false) = (else_of(&module.parts, branches), ends) {
-                    let message = "a branch follows the `#else` of its conditional";
-                    module.errors.push(unbalanced(message, span, "this branch").at(previous, "the `#else`"));
-                }
-                branches.push(index);
-                if ends && let Some(branches) = open.pop() {
-                    connect(&mut module.parts, &branches);
-                }
+            Directive::If { .. } | Directive::Ifdef { .. } => open.push(Open { branches: vec![index], otherwise: None }),
+            Directive::Elif { .. } | Directive::Else { .. } => {
+                let otherwise = matches!(directive, Directive::Else { .. }).then_some(span);
+                let error = branch(open.last_mut(), index, span, otherwise).err();
+                module.errors.extend(error);
             }
+            Directive::Endif => match open.pop() {
+                Some(mut last) => {
+                    last.branches.push(index);
+                    connect(&mut module.parts, &last.branches);
+                }
+                None => module.errors.push(nothing_open(span)),
+            },
             _ => {}
         }
         if open.len() > LIMITS.nesting {
@@ -43,22 +46,30 @@ pub fn link(module: &mut Module) {
             return;
         }
     }
-    for branches in open {
-        if let Part::Directive(_, span) = &module.parts[branches[0]] {
+    for open in open {
+        if let Part::Directive(_, span) = &module.parts[open.branches[0]] {
             module.errors.push(unbalanced("a conditional is never closed", *span, "without an `#endif`"));
         }
     }
 }
 
-fn unbalanced(message: &str, span: Span, label: &str) -> Diagnostic {
-    Diagnostic::error(codes::UNBALANCED_CONDITIONAL, message).at(span, label)
+fn branch(open: Option<&mut Open>, index: usize, span: Span, otherwise: Option<Span>) -> Result<(), Diagnostic> {
+    let open = open.ok_or_else(|| nothing_open(span))?;
+    if let Some(earlier) = open.otherwise {
+        let message = "a branch follows the `#else` of its conditional";
+        return Err(unbalanced(message, span, "this branch").at(earlier, "the `#else`"));
+    }
+    open.branches.push(index);
+    open.otherwise = otherwise;
+    Ok(())
 }
 
-fn else_of(parts: &[Part], branches: &[usize]) -> Option<Span> {
-    branches.iter().find_map(|branch| match &parts[*branch] {
-        Part::Directive(Directive::Else { .. }, span) => Some(*span),
-        _ => None,
-    })
+fn nothing_open(span: Span) -> Diagnostic {
+    unbalanced("no conditional is open here", span, "without an `#if` before it")
+}
+
+fn unbalanced(message: &str, span: Span, label: &str) -> Diagnostic {
+    Diagnostic::error(codes::UNBALANCED_CONDITIONAL, message).at(span, label)
 }
 
 fn connect(parts: &mut [Part], branches: &[usize]) {
@@ -74,9 +85,8 @@ fn connect(parts: &mut [Part], branches: &[usize]) {
     }
 }
 
-const NAMES: &[&str] = &[
-    "define", "elif", "else", "endif", "error", "extension", "if", "ifdef", "ifndef", "include", "line", "pragma", "undef", "version",
-];
+const NAMES: &[&str] =
+    &["define", "elif", "else", "endif", "error", "extension", "if", "ifdef", "ifndef", "include", "line", "pragma", "undef", "version"];
 
 /// Reads the tokens `start..end` after the `#`.
 fn read(module: &mut Module, start: usize, end: usize, symbols: &Symbols) -> Result<Directive, Diagnostic> {
@@ -171,7 +181,8 @@ impl Line<'_> {
 
     fn reserved(&self, name: Symbol, span: Span) -> Diagnostic {
         let code: &'static Code = codes::RESERVED_MACRO;
-        Diagnostic::error(code, format!("the macro name `{}` is reserved", self.symbols.text(name))).at(span, "cannot be defined or undefined")
+        Diagnostic::error(code, format!("the macro name `{}` is reserved", self.symbols.text(name)))
+            .at(span, "cannot be defined or undefined")
     }
 
     /// Reads the raw text: a path is not made of tokens.
@@ -281,10 +292,8 @@ impl Line<'_> {
             (Some(name), [_, ":", "require" | "enable" | "warn" | "disable"]) if name.kind == Kind::Identifier => {
                 Ok(Directive::Extension { name: name.symbol, line: self.whole() })
             }
-            _ => Err(self.malformed(
-                "`#extension` needs a name and a behaviour".into(),
-                "expected `NAME : require`, `enable`, `warn` or `disable`",
-            )),
+            _ => Err(self
+                .malformed("`#extension` needs a name and a behaviour".into(), "expected `NAME : require`, `enable`, `warn` or `disable`")),
         }
     }
 }

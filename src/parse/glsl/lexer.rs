@@ -27,6 +27,8 @@ pub struct Token {
     pub spaced: bool,
     /// It is the first of its logical line.
     pub first_of_line: bool,
+    /// It is the first of its part of the file: of a run of text, or of a directive.
+    pub first_of_part: bool,
     /// It can be copied together with what stands before it: neither has line continuations,
     /// carriage returns, trailing white space or runs of blank lines, and no directive is between.
     pub clean: bool,
@@ -72,6 +74,7 @@ pub fn tokenize(text: &str, symbols: &mut Symbols, limit: usize) -> Result<Vec<T
             kind,
             spaced: start > at,
             first_of_line: gap.newline || tokens.is_empty(),
+            first_of_part: false,
             clean: !spliced && is_clean(&text[at..start]),
         });
         at = end;
@@ -180,9 +183,8 @@ fn number_end(bytes: &[u8], start: usize) -> usize {
     }
 }
 
-const PUNCTUATION: &[&str] = &[
-    "<<=", ">>=", "##", "<=", ">=", "==", "!=", "&&", "||", "^^", "++", "--", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<", ">>",
-];
+const PUNCTUATION: &[&str] =
+    &["<<=", ">>=", "##", "<=", ">=", "==", "!=", "&&", "||", "^^", "++", "--", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<", ">>"];
 
 fn punctuation(rest: &[u8]) -> usize {
     if let Some(long) = PUNCTUATION.iter().find(|text| rest.starts_with(text.as_bytes())) {

@@ -57,17 +57,37 @@ pub enum Directive {
     Include(usize),
     Define(Macro),
     Undef(Symbol),
-    If { condition: Range<u32>, next: usize },
-    Ifdef { name: Result<Symbol, Box<Diagnostic>>, negated: bool, next: usize },
-    Elif { condition: Range<u32>, next: usize, end: usize },
-    Else { end: usize },
+    If {
+        condition: Range<u32>,
+        next: usize,
+    },
+    Ifdef {
+        name: Result<Symbol, Box<Diagnostic>>,
+        negated: bool,
+        next: usize,
+    },
+    Elif {
+        condition: Range<u32>,
+        next: usize,
+        end: usize,
+    },
+    Else {
+        end: usize,
+    },
     Endif,
     /// The author's words.
     Error(Span),
     /// Tokens after `#line`.
     Line(Range<u32>),
-    Version { number: u32, es: bool, line: Span },
-    Extension { name: Symbol, line: Span },
+    Version {
+        number: u32,
+        es: bool,
+        line: Span,
+    },
+    Extension {
+        name: Symbol,
+        line: Span,
+    },
     PragmaOnce,
     Pragma(Span),
     /// A `#` alone.
@@ -159,17 +179,23 @@ fn lex_error(source: SourceId, text: &str, error: lexer::LexError) -> Diagnostic
 fn split(module: &mut Module, symbols: &Symbols) {
     let (mut token, mut byte) = (0, 0);
     while token < module.tokens.len() {
-        let hash = token + module.tokens[token..].iter().position(|token| token.first_of_line && token.symbol == known::HASH).unwrap_or(module.tokens.len() - token);
+        let hash = find_from(&module.tokens, token, |token| token.first_of_line && token.symbol == known::HASH);
         let start = module.tokens.get(hash).map_or(module.text.len(), |token| token.start as usize);
         push_text(module, token..hash, byte..start);
         if hash == module.tokens.len() {
             return;
         }
-        let end = hash + 1 + module.tokens[hash + 1..].iter().position(|token| token.first_of_line).unwrap_or(module.tokens.len() - hash - 1);
+        module.tokens[hash].first_of_part = true;
+        let end = find_from(&module.tokens, hash + 1, |token| token.first_of_line);
         directive::push(module, hash, end, symbols);
         byte = lexer::line_end(&module.text, module.tokens[end - 1].end as usize);
         token = end;
     }
+}
+
+/// Index of the first token from `start` on that is one sought, or the number of tokens.
+fn find_from(tokens: &[Token], start: usize, is_sought: impl Fn(&Token) -> bool) -> usize {
+    tokens[start..].iter().position(is_sought).map_or(tokens.len(), |offset| start + offset)
 }
 
 fn push_text(module: &mut Module, tokens: Range<usize>, bytes: Range<usize>) {
@@ -177,6 +203,7 @@ fn push_text(module: &mut Module, tokens: Range<usize>, bytes: Range<usize>) {
         return;
     }
     module.tokens[tokens.start].clean = false;
+    module.tokens[tokens.start].first_of_part = true;
     let bytes = bytes.start as u32..bytes.end as u32;
     module.parts.push(Part::Text(Text { tokens: tokens.start as u32..tokens.end as u32, bytes }));
 }

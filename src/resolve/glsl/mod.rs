@@ -113,7 +113,8 @@ impl Loader<'_> {
         let includer = self.places[module].clone();
         let mut spellings = Vec::new();
         for package in include::searched(self.packages, includer.0, angled) {
-            let files = self.listings.entry(package).or_insert_with(|| include::package(self.packages, package).files.list(include::EXTENSIONS));
+            let files =
+                self.listings.entry(package).or_insert_with(|| include::package(self.packages, package).files.list(include::EXTENSIONS));
             spellings.extend(files.iter().map(|file| include::spelling(self.packages, &includer, (package, file), angled)));
         }
         error.suggest(path, spellings.iter().map(String::as_str))

@@ -1,0 +1,2 @@
+#include <lib/b.glsl>
+float a() { return b(); }

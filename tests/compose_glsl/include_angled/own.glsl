@@ -1,0 +1,1 @@
+float own() { return 2.0; }

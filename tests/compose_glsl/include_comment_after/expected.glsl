@@ -1,0 +1,6 @@
+#version 450
+
+void a() {}
+
+void main() { a(); }
+// ---- Fragment; reads: 

@@ -1,0 +1,3 @@
+#if NOPE
+#endif
+#error from below

@@ -1,0 +1,4 @@
+#version 450
+
+#include "a.glsl"
+void main() {}

@@ -1,0 +1,5 @@
+#ifndef A
+#define A
+#include "b.glsl"
+float a() { return b(); }
+#endif

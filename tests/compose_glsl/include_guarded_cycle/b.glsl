@@ -1,0 +1,5 @@
+#ifndef B
+#define B
+#include "a.glsl"
+float b() { return 1.0; }
+#endif

@@ -1,0 +1,1 @@
+float g() { return 1.0; }

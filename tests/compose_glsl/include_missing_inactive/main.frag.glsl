@@ -1,0 +1,5 @@
+#version 450
+#if FANCY
+#include "fancy.glsl"
+#endif
+void main() {}

@@ -1,0 +1,3 @@
+#include "two.glsl"
+#include "common/top.glsl"
+float one() { return 1.0; }

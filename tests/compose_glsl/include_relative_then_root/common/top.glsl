@@ -1,0 +1,1 @@
+float top() { return 3.0; }

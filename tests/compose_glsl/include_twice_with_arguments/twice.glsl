@@ -1,0 +1,4 @@
+// Twice.
+TYPE NAME(TYPE x) {
+    return x + x;
+}

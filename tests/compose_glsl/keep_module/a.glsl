@@ -1,0 +1,2 @@
+float a() { return 1.0; }
+float b() { return 1.0; }

@@ -1,0 +1,3 @@
+#include "a.glsl"
+float f() { return a(); }
+float g() { return 1.0; }

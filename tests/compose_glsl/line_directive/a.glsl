@@ -1,0 +1,2 @@
+
+const int D = __LINE__;

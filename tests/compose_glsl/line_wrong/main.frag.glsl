@@ -1,0 +1,4 @@
+#version 450
+#line
+#line x
+void main() {}

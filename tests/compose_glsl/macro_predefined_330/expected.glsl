@@ -1,0 +1,8 @@
+#version 330 core
+
+out vec4 color;
+
+void main() {
+    color = vec4(1.0);
+}
+// ---- Fragment; reads: 

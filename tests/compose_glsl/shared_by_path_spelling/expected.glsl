@@ -1,0 +1,6 @@
+#version 450
+
+void x() {}
+
+void main() { x(); }
+// ---- Fragment; reads: 

@@ -1,0 +1,2 @@
+layout(location = 0) out vec4 color;
+void main() { color = vec4(__VERSION__); }

@@ -1,0 +1,3 @@
+#define A
+#version 450
+void main() {}
