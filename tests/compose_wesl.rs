@@ -90,7 +90,9 @@ fn check(folder: &Path) -> Result<(), Failed> {
     }
     if let Ok(composed) = &outcome {
         differences += &map_errors(&sources, composed);
-        if !case.unparsed && let Err(error) = naga::front::wgsl::parse_str(&composed.text) {
+        if !case.unparsed
+            && let Err(error) = naga::front::wgsl::parse_str(&composed.text)
+        {
             differences += &error.emit_to_string(&composed.text);
         }
     }
@@ -274,7 +276,8 @@ fn mutilated() -> Result<(), Failed> {
     texts.push(format!("@if(a) const a = 1; {}", "@elif(a) const a = 1; ".repeat(50_000)));
     texts.push((0..2000).map(|index| format!("import a{}::b as a{index};\n", index + 1)).collect::<String>() + "const c = a0::x;");
     for text in texts {
-        let files = [("main.wesl".to_owned(), text), ("shade.wesl".to_owned(), SHADE.to_owned()), ("mist.wesl".to_owned(), MIST.to_owned())];
+        let files =
+            [("main.wesl".to_owned(), text), ("shade.wesl".to_owned(), SHADE.to_owned()), ("mist.wesl".to_owned(), MIST.to_owned())];
         let root = Package { name: "app".to_owned(), files: Box::new(Memory(files.into())) };
         let mut sources = SourceSet::default();
         let settings = settings(&[("fog", Setting::Bool(true)), ("gloss", Setting::Bool(true)), ("a", Setting::Bool(false))]);

@@ -1,11 +1,17 @@
 //! Every module of the shader library, by itself: valid in both languages, the same in both, and documented.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod emits;
+
+use std::collections::BTreeMap;
 use std::io::Write as _;
-use std::path::{Component, Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use lamplight::source::{Embedded, Files as _};
+use lamplight::compose::{self, Composed, Keep, Options};
+use lamplight::diagnostic::Diagnostic;
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::permute::Settings;
+use lamplight::resolve::{self, Packages};
+use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
 use naga::front::{glsl, wgsl};
 use naga::{Handle, Module, ShaderStage, Type, TypeInner};
@@ -20,6 +26,8 @@ const CHECKS: &[(&str, Check)] = &[
     ("glslang_330", |module| glslang(module, &DIALECTS[1])),
     ("glslang_300_es", |module| glslang(module, &DIALECTS[2])),
     ("glslang_310_es", |module| glslang(module, &DIALECTS[3])),
+    ("include_path", glslang_includes),
+    ("targets", every_target_writes),
     ("twins", twins_agree),
     ("doc", functions_are_documented),
 ];
@@ -46,7 +54,11 @@ const DOC_PARTS: [&str; 5] = ["Parameters: ", "Returns: ", "Source: ", "Edges: "
 
 /// One trial for each module and check, and those about the library as a whole.
 pub fn trials() -> Vec<Trial> {
-    let mut trials = vec![Trial::test("shaderlib::pairs", every_module_has_its_twin), Trial::test("shaderlib::names", names_are_unique)];
+    let mut trials = vec![
+        Trial::test("shaderlib::pairs", every_module_has_its_twin),
+        Trial::test("shaderlib::names", names_are_unique),
+        Trial::test("shaderlib::together", modules_go_together),
+    ];
     for module in modules() {
         for (name, check) in CHECKS {
             let module = module.clone();
@@ -86,6 +98,15 @@ fn names_are_unique() -> Result<(), Failed> {
     Ok(())
 }
 
+/// GLSL that includes every module compiles: structures and constants have names of their own too.
+fn modules_go_together() -> Result<(), Failed> {
+    let all = modules().iter().map(|module| include(module)).collect::<String>();
+    for dialect in &DIALECTS {
+        run_glslang(&fragment(&all, dialect)?, dialect.options)?;
+    }
+    Ok(())
+}
+
 fn wesl_is_valid(module: &str) -> Result<(), Failed> {
     parse_wesl(module).map(|_| ())
 }
@@ -94,10 +115,22 @@ fn glsl_is_valid(module: &str) -> Result<(), Failed> {
     parse_glsl(module).map(|_| ())
 }
 
+fn every_target_writes(module: &str) -> Result<(), Failed> {
+    for (version, text) in emits::emits(&called_wesl(module)?)? {
+        run_glslang(&text, &[]).map_err(|error| format!("{version:?}: {}\n{text}", error.message().unwrap_or_default()))?;
+    }
+    Ok(())
+}
+
+/// Structures are compared where a function takes or gives them.
 fn twins_agree(module: &str) -> Result<(), Failed> {
-    same("signatures", &signatures(&parse_wesl(module)?), &signatures(&parse_glsl(module)?))?;
     let summaries = |path: String| functions(&read(&path)).into_iter().map(|f| (f.name, f.doc.first().cloned())).collect::<Vec<_>>();
-    same("summaries", &summaries(format!("{module}.wesl")), &summaries(format!("{module}.glsl")))
+    let wesl = summaries(format!("{module}.wesl"));
+    same("summaries", &wesl, &summaries(format!("{module}.glsl")))?;
+    let own = |parsed: Module| -> BTreeMap<String, String> {
+        signatures(&parsed).into_iter().filter(|(name, _)| wesl.iter().any(|(own, _)| own == name)).collect()
+    };
+    same("signatures", &own(parse_wesl(module)?), &own(parse_glsl(module)?))
 }
 
 fn functions_are_documented(module: &str) -> Result<(), Failed> {
@@ -121,10 +154,11 @@ fn faults(function: &Function) -> Vec<String> {
 struct Function {
     name: String,
     parameters: Vec<String>,
+    types: Vec<String>,
     doc: Vec<String>,
 }
 
-/// The functions of a module in either language; parameters of WESL only.
+/// The functions of a module in either language; the names of parameters in WESL only.
 fn functions(text: &str) -> Vec<Function> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
@@ -135,7 +169,8 @@ fn functions(text: &str) -> Vec<Function> {
         }
         if let Some((head, _)) = line.split_once('(').filter(|_| is_declaration(line)) {
             let name = head.rsplit(' ').next().unwrap_or(head).to_owned();
-            found.push(Function { name, parameters: parameters(&text[offset..]), doc: std::mem::take(&mut doc) });
+            let (parameters, types) = parameters(&text[offset..]);
+            found.push(Function { name, parameters, types, doc: std::mem::take(&mut doc) });
         }
         doc.clear();
     }
@@ -154,67 +189,85 @@ fn is_declaration(line: &str) -> bool {
     line.starts_with(|first: char| first.is_ascii_alphabetic()) && line.ends_with(['{', '('])
 }
 
-fn parameters(declaration: &str) -> Vec<String> {
+/// Names and types. A comma is followed by a parameter's name and colon, or belongs to a type.
+fn parameters(declaration: &str) -> (Vec<String>, Vec<String>) {
     let list = declaration.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map_or("", |(list, _)| list);
-    list.split(',').filter_map(|parameter| Some(parameter.split_once(':')?.0.trim().to_owned())).collect()
+    let mut found: Vec<(String, String)> = Vec::new();
+    for part in list.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        match (part.split_once(": "), found.last_mut()) {
+            (Some((name, ty)), _) => found.push((name.to_owned(), ty.to_owned())),
+            (None, Some((_, ty))) => *ty = format!("{ty}, {part}"),
+            (None, None) => {}
+        }
+    }
+    found.into_iter().unzip()
 }
 
 fn read(path: &str) -> String {
     Embedded.read(path).expect("the embedded library is readable").unwrap_or_else(|| panic!("no `{path}` in the library"))
 }
 
-/// The module after those it imports, without the imports: names are unique in the library.
-fn joined_wesl(module: &str, seen: &mut BTreeSet<String>) -> String {
-    if !seen.insert(module.to_owned()) {
-        return String::new();
-    }
-    let mut text = String::new();
-    for line in read(&format!("{module}.wesl")).lines() {
-        match line.strip_prefix("import package::") {
-            Some(import) => text += &joined_wesl(&import.rsplit_once("::").expect("an item").0.replace("::", "/"), seen),
-            None => text = text + line + "\n",
-        }
-    }
-    text
+/// A text of WESL composed with the library: `lamplight` is a dependency, as it is for a user.
+fn composed_wesl(text: String) -> Result<String, Failed> {
+    let (mut sources, packages) = beside("main.wesl", text);
+    let composed = resolve::wesl::load(&mut sources, &packages, "main.wesl")
+        .and_then(|graph| compose::wesl::compose(&graph, &Settings::default(), &Options::default()));
+    written(&sources, composed)
 }
 
-/// The module with its includes in their places.
-fn joined_glsl(path: &Path, seen: &mut BTreeSet<PathBuf>) -> String {
-    if !seen.insert(path.to_owned()) {
-        return String::new();
-    }
-    let mut text = String::new();
-    for line in read(path.to_str().expect("UTF-8")).lines() {
-        match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
-            Some(include) => text += &joined_glsl(&normal(&path.with_file_name(include)), seen),
-            None => text = text + line + "\n",
-        }
-    }
-    text
+/// The same for GLSL, with everything that is included.
+fn composed_glsl(text: String) -> Result<String, Failed> {
+    let (mut sources, packages) = beside("main.frag.glsl", text);
+    let options = Options { keep: Keep::All, ..Options::default() };
+    let composed = resolve::glsl::load(&mut sources, &packages, "main.frag.glsl")
+        .and_then(|graph| compose::glsl::compose(&graph, &Settings::default(), &options));
+    written(&sources, composed)
 }
 
-fn normal(path: &Path) -> PathBuf {
-    path.components().fold(PathBuf::new(), |mut done, component| {
-        match component {
-            Component::ParentDir => drop(done.pop()),
-            other => done.push(other),
-        }
-        done
-    })
+fn beside(root: &str, text: String) -> (SourceSet, Packages) {
+    let root = Package { name: "user".into(), files: Box::new(Memory([(root.to_owned(), text)].into())) };
+    let library = Package { name: "lamplight".into(), files: Box::new(Embedded) };
+    (SourceSet::default(), Packages { root, dependencies: vec![library] })
 }
 
-fn fragment(module: &str, dialect: &Dialect) -> String {
-    let text = joined_glsl(Path::new(&format!("{module}.glsl")), &mut BTreeSet::new());
-    format!("{}{text}{}void main() {{ colour = vec4(1.0); }}\n", dialect.head, dialect.output)
+fn written(sources: &SourceSet, composed: Result<Composed, Vec<Diagnostic>>) -> Result<String, Failed> {
+    let shown = |diagnostics: &[Diagnostic]| Failed::from(render(sources, diagnostics, Form::Human));
+    let composed = composed.map_err(|diagnostics| shown(&diagnostics))?;
+    if composed.warnings.is_empty() { Ok(composed.text) } else { Err(shown(&composed.warnings)) }
+}
+
+/// The module, reached from an entry point that calls each of its functions.
+fn called_wesl(module: &str) -> Result<String, Failed> {
+    let path = format!("lamplight::{}", module.replace('/', "::"));
+    let called = |f: Function| (format!("{path}::{}", f.name), f.types.iter().map(|ty| qualified(ty)).collect());
+    let functions: Vec<_> = functions(&read(&format!("{module}.wesl"))).into_iter().map(called).collect();
+    composed_wesl(emits::entry(&functions))
+}
+
+/// A structure's name with its module before it; any other type as it is.
+fn qualified(ty: &str) -> String {
+    let declares = |module: &String| read(&format!("{module}.wesl")).contains(&format!("\nstruct {ty} {{"));
+    match modules().into_iter().find(declares) {
+        Some(module) => format!("lamplight::{}::{ty}", module.replace('/', "::")),
+        None => ty.to_owned(),
+    }
+}
+
+fn include(module: &str) -> String {
+    format!("#include <lamplight/{module}.glsl>\n")
+}
+
+fn fragment(includes: &str, dialect: &Dialect) -> Result<String, Failed> {
+    composed_glsl(format!("{}{includes}{}void main() {{\n    colour = vec4(1.0);\n}}\n", dialect.head, dialect.output))
 }
 
 fn parse_wesl(module: &str) -> Result<Module, Failed> {
-    let text = joined_wesl(module, &mut BTreeSet::new());
+    let text = called_wesl(module)?;
     validated(wgsl::parse_str(&text).map_err(|error| error.emit_to_string(&text))?)
 }
 
 fn parse_glsl(module: &str) -> Result<Module, Failed> {
-    let text = fragment(module, &DIALECTS[0]);
+    let text = fragment(&include(module), &DIALECTS[0])?;
     let parsed = glsl::Frontend::default().parse(&glsl::Options::from(ShaderStage::Fragment), &text);
     validated(parsed.map_err(|errors| errors.emit_to_string(&text))?)
 }
@@ -226,14 +279,24 @@ fn validated(module: Module) -> Result<Module, Failed> {
 }
 
 fn glslang(module: &str, dialect: &Dialect) -> Result<(), Failed> {
+    run_glslang(&fragment(&include(module), dialect)?, dialect.options)
+}
+
+/// Without our composer: any GLSL compiler with an include path will do.
+fn glslang_includes(module: &str) -> Result<(), Failed> {
+    let path = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
+    let Dialect { head, output, options } = &DIALECTS[0];
+    let include = format!("#extension GL_GOOGLE_include_directive : require\n#include \"{module}.glsl\"\n");
+    let text = format!("{head}{include}{output}void main() {{\n    colour = vec4(1.0);\n}}\n");
+    run_glslang(&text, &[options, &[path][..]].concat())
+}
+
+fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {
     let mut command = Command::new("glslangValidator");
-    command.args(["--stdin", "-S", "frag"]).args(dialect.options);
-    let mut child = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .map_err(|error| format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`"))?;
-    child.stdin.take().expect("piped").write_all(fragment(module, dialect).as_bytes())?;
+    command.args(["--stdin", "-S", "frag"]).args(options).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let started = command.spawn();
+    let mut child = started.map_err(|error| format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`"))?;
+    child.stdin.take().expect("piped").write_all(text.as_bytes())?;
     let output = child.wait_with_output()?;
     if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&output.stdout).into_owned().into()) }
 }

@@ -16,10 +16,10 @@ float polynomial(float d, vec3 k) {
 
 /// A straight line from 1 at the light to 0 at its radius.
 float linear_radius(float d, float radius) {
-    if (!(radius > 0.0)) {
+    if (!(d < radius)) {
         return 0.0;
     }
-    return 1.0 - clamp(d / radius, 0.0, 1.0);
+    return 1.0 - max(d, 0.0) / radius;
 }
 
 /// The inverse-square law, bounded near the light.
@@ -29,8 +29,8 @@ float inverse_square(float d2, float min_d2) {
 
 /// A smooth window that brings any falloff to 0 at the range.
 float window(float d2, float inv_range2) {
-    float x = d2 * inv_range2;
-    float w = clamp(1.0 - x * x, 0.0, 1.0);
+    float x = min(d2 * inv_range2, 1.0);
+    float w = 1.0 - x * x;
     return w * w;
 }
 
@@ -39,9 +39,9 @@ float range_gltf(float d, float range) {
     if (!(range > 0.0)) {
         return 1.0;
     }
-    float x = d / range;
+    float x = min(d / range, 1.0);
     float x2 = x * x;
-    return clamp(1.0 - x2 * x2, 0.0, 1.0);
+    return 1.0 - x2 * x2;
 }
 
 /// A power of the distance, windowed by a cutoff distance, as three.js attenuates its lights.
@@ -50,7 +50,7 @@ float decay_cutoff(float d, float cutoff, float decay) {
     if (!(cutoff > 0.0)) {
         return falloff;
     }
-    float x = d / cutoff;
+    float x = min(d / cutoff, 1.0);
     return falloff * window(x * x, 1.0);
 }
 

@@ -10,12 +10,12 @@ float constant_bias(float d, float b) {
 
 /// A bias that grows with the slope of the surface towards the light, up to a limit.
 float slope_bias(float n_dot_l, float b, float limit) {
-    if (!(n_dot_l > 0.0)) {
+    // The square as a product keeps its digits where the cosine is near 1.
+    float rise = b * sqrt(max((1.0 - n_dot_l) * (1.0 + n_dot_l), 0.0));
+    if (!(n_dot_l > 0.0 && rise < limit * n_dot_l)) {
         return limit;
     }
-    // The square as a product keeps its digits where the cosine is near 1.
-    float sine = sqrt(max((1.0 - n_dot_l) * (1.0 + n_dot_l), 0.0));
-    return min(b * sine / n_dot_l, limit);
+    return rise / n_dot_l;
 }
 
 /// The point moved out of the surface, more where light grazes it.

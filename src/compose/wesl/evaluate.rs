@@ -135,7 +135,8 @@ impl<'a> Evaluator<'a> {
             Some(Setting::Bool(value)) => value,
             Some(value) => {
                 let text = self.graph.names.text(name);
-                let error = Diagnostic::error(codes::WRONG_KIND, format!("`{text}` is not boolean")).at(span, format!("its value is `{value}`"));
+                let error =
+                    Diagnostic::error(codes::WRONG_KIND, format!("`{text}` is not boolean")).at(span, format!("its value is `{value}`"));
                 self.errors.push(error.note(format!("help: compare it: `{text} == {value}`")));
                 false
             }
@@ -159,8 +160,12 @@ impl<'a> Evaluator<'a> {
             (Operand::Name(value, value_at), Operand::Name(axis, at)) if is_enum(axis) => {
                 self.compare_enum(node, (*axis, at), operator, (*value, value_at))
             }
-            (Operand::Name(axis, at), Operand::Integer(value, _)) => self.compare_integer(node, *axis, at, |axis| ordered(axis, operator, *value)),
-            (Operand::Integer(value, _), Operand::Name(axis, at)) => self.compare_integer(node, *axis, at, |axis| ordered(*value, operator, axis)),
+            (Operand::Name(axis, at), Operand::Integer(value, _)) => {
+                self.compare_integer(node, *axis, at, |axis| ordered(axis, operator, *value))
+            }
+            (Operand::Integer(value, _), Operand::Name(axis, at)) => {
+                self.compare_integer(node, *axis, at, |axis| ordered(*value, operator, axis))
+            }
             (Operand::Name(axis, at), Operand::Name(..)) => Err(self.undeclared(*axis, self.span(node, at), "enum")),
             (Operand::Integer(..), Operand::Integer(..)) => {
                 Err(Diagnostic::error(codes::WRONG_KIND, "a comparison without an axis").at(self.span(node, range), "always the same"))

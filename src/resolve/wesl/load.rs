@@ -170,12 +170,8 @@ impl<'a> Loader<'a> {
 
     /// Resolves a module's imports, then its uses.
     fn resolve(&mut self, node: u32) {
-        let imports: Vec<(Option<ConditionId>, Path, Name)> = self.nodes[node as usize]
-            .module
-            .imports
-            .iter()
-            .map(|import| (import.condition, import.path.clone(), import.alias))
-            .collect();
+        let imports: Vec<(Option<ConditionId>, Path, Name)> =
+            self.nodes[node as usize].module.imports.iter().map(|import| (import.condition, import.path.clone(), import.alias)).collect();
         let mut imported: HashMap<Name, Vec<Candidate>> = HashMap::new();
         for (index, (condition, path, alias)) in imports.iter().enumerate() {
             for mut candidate in self.candidates(node, path, Some(index)) {
@@ -218,7 +214,8 @@ fn certain_errors(graph: &mut Graph) -> Diagnostics {
         }
         let node = &graph.nodes[index];
         let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
-        let broken: Vec<u32> = broken.map(|(_, failure)| *failure).filter(|failure| !std::mem::replace(&mut failed[*failure as usize], true)).collect();
+        let broken: Vec<u32> =
+            broken.map(|(_, failure)| *failure).filter(|failure| !std::mem::replace(&mut failed[*failure as usize], true)).collect();
         let found = node.module.errors.iter().cloned().chain(broken.into_iter().map(|failure| graph.failures[failure as usize].clone()));
         errors.extend(found.map(|error| traced(graph, error)));
         let certainly = node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
