@@ -29,6 +29,7 @@ pub fn trials() -> Vec<Trial> {
     };
     let mut trials: Vec<Trial> = cases.into_iter().map(named).collect();
     trials.push(Trial::test("compose_wesl permutations are deterministic", permutations));
+    trials.push(Trial::test("compose_wesl names unreadable files", unreadable));
     trials.push(Trial::test("compose_wesl survives mutilated text", mutilated));
     trials
 }
@@ -184,6 +185,28 @@ fn files(folder: &Path, prefix: &str) -> Vec<(String, String)> {
     found
 }
 
+/// Files that cannot be read, on disk: the diagnostics name the import.
+fn unreadable() -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    let outside = tempfile::NamedTempFile::new()?;
+    fs::write(
+        folder.path().join("main.wesl"),
+        "import package::latin1::a;\nimport package::link::b;\nimport package::folder::c;\nconst d = a + b + c;",
+    )?;
+    fs::write(folder.path().join("latin1.wesl"), b"const a = 1; // caf\xe9")?;
+    fs::create_dir(folder.path().join("folder.wesl"))?;
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(outside.path(), folder.path().join("link.wesl"))?;
+    let root = Package { name: "app".to_owned(), files: Box::new(lamplight::source::Disk::new(folder.path())?) };
+    let mut sources = SourceSet::default();
+    let errors = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl").expect_err("three files are wrong");
+    let mut found: Vec<&str> = errors.iter().map(|error| error.code.name).collect();
+    found.sort_unstable();
+    let expected =
+        if cfg!(unix) { vec!["missing-module", "not-utf8", "outside-root"] } else { vec!["missing-module", "missing-module", "not-utf8"] };
+    if found == expected { Ok(()) } else { Err(render(&sources, &errors, Form::Human).into()) }
+}
+
 const LIGHTS: &str = "
 import package::shade::{lambert, gloss as shine};
 @if(fog) import package::mist::fade;
@@ -217,6 +240,12 @@ fn lights() -> (SourceSet, Graph) {
     let graph = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl").expect("the modules are right");
     (sources, graph)
 }
+
+/// Graphs are shared between threads.
+const _: fn() = || {
+    fn shared<T: Send + Sync>() {}
+    shared::<Graph>();
+};
 
 /// Every choice, from two graphs, its settings put in from both ends: same bytes, same reads, and
 /// what was not read makes no difference.

@@ -33,11 +33,13 @@ pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<
 fn traced(graph: &Graph, errors: Diagnostics) -> Diagnostics {
     let mut traced: Diagnostics = Vec::with_capacity(errors.len());
     for error in errors {
-        let source = error.labels.first().map(|label| label.span.source);
-        let notes = source.map(|source| graph.trace(source)).into_iter().flatten();
-        let error = notes.fold(error, Diagnostic::note);
-        if !traced.contains(&error) {
-            traced.push(error);
+        let place = error.labels.first().map(|label| label.span);
+        // What several uses run into is told once.
+        let known =
+            |other: &Diagnostic| other.code == error.code && place.is_some() && other.labels.first().map(|label| label.span) == place;
+        if !traced.iter().any(known) {
+            let notes = place.map(|place| graph.trace(place.source)).into_iter().flatten();
+            traced.push(notes.fold(error, Diagnostic::note));
         }
     }
     traced

@@ -1,5 +1,7 @@
 //! Names in the output: as declared where nothing speaks against it, else the qualified path.
 
+use std::collections::HashSet;
+
 use super::reach::{Reached, Thing, name_of};
 use crate::compose::{Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -39,6 +41,7 @@ pub fn choose(graph: &Graph, reached: &Reached, options: &Options, errors: &mut 
     let things = kept(graph, reached);
     let mut table = Table::new(graph, reached, &things);
     let mut renames = Renames { indices: vec![0; reached.len()], texts: Vec::new() };
+    let mut made = HashSet::new();
     for thing in &things {
         let name = name_of(graph, *thing);
         let hold = hold(graph, *thing);
@@ -49,9 +52,12 @@ pub fn choose(graph: &Graph, reached: &Reached, options: &Options, errors: &mut 
             errors.extend(taken.then(|| captured(graph, *thing)));
             continue;
         }
+        let twin = table.loose[name.0 as usize].replace(*thing).filter(|twin| node_of(*twin) == node_of(*thing));
+        errors.extend(twin.map(|twin| conflict(graph, *thing, twin)));
         let mangled = options.mangle == Mangle::Underscore && hold == Hold::Loose;
         if mangled || taken || table.claims[name.0 as usize] > 1 {
-            let text = table.unique(mangle(graph, *thing), &renames.texts);
+            let text = table.unique(mangle(graph, *thing), &made);
+            made.insert(text.clone());
             renames.texts.push(text);
             renames.indices[reached.index(*thing)] = renames.texts.len() as u32;
         }
@@ -91,12 +97,15 @@ struct Table<'a> {
     free: Vec<bool>,
     /// Who keeps it whatever comes.
     firm: Vec<Option<Thing>>,
+    /// The last one that might give it up.
+    loose: Vec<Option<Thing>>,
 }
 
 impl<'a> Table<'a> {
     fn new(graph: &'a Graph, reached: &'a Reached, things: &[Thing]) -> Self {
         let count = graph.names.len();
-        let mut table = Self { graph, reached, claims: vec![0; count], free: vec![false; count], firm: vec![None; count] };
+        let mut table =
+            Self { graph, reached, claims: vec![0; count], free: vec![false; count], firm: vec![None; count], loose: vec![None; count] };
         for thing in things {
             table.claims[name_of(graph, *thing).0 as usize] += 1;
         }
@@ -109,7 +118,7 @@ impl<'a> Table<'a> {
     }
 
     /// The text, with a number behind it if something else has that name.
-    fn unique(&self, text: String, made: &[String]) -> String {
+    fn unique(&self, text: String, made: &HashSet<String>) -> String {
         let mut candidate = text.clone();
         let mut number = 2;
         while made.contains(&candidate) || self.is_taken(&candidate) {
@@ -155,10 +164,16 @@ fn escaped(letter: char) -> impl Iterator<Item = char> {
     [if allowed { letter } else { '_' }, '_'].into_iter().take(if allowed { 1 } else { 2 })
 }
 
+fn node_of(thing: Thing) -> Option<u32> {
+    match thing {
+        Thing::Item { node, .. } => Some(node),
+        Thing::Constant(_) => None,
+    }
+}
+
 fn conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
     let name = graph.names.text(name_of(graph, thing));
-    let same_module = matches!((thing, other), (Thing::Item { node: left, .. }, Thing::Item { node: right, .. }) if left == right);
-    let (code, message) = match same_module {
+    let (code, message) = match node_of(thing) == node_of(other) {
         true => (codes::DUPLICATE_ITEM, format!("`{name}` is declared twice")),
         false => (codes::NAME_CONFLICT, format!("two things must both be named `{name}`")),
     };

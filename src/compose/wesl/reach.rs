@@ -292,12 +292,17 @@ impl Walk<'_, '_, '_> {
     /// No candidate is left: the name is predeclared, or the use is an error.
     fn nothing(&mut self, node: u32, reference: u32, span: Span, disabled: &[(u32, Name)]) -> Meaning {
         let graph = self.graph;
-        let text = match &graph.nodes[node as usize].module.references[reference as usize] {
+        let here = &graph.nodes[node as usize];
+        let mut imports: &[usize] = &[];
+        let text = match &here.module.references[reference as usize] {
             Reference::Name(name) if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&graph.names.text(*name)) => {
                 self.reached.free.push(*name);
                 return Meaning::Free;
             }
-            Reference::Name(name) => graph.names.text(*name),
+            Reference::Name(name) => {
+                imports = here.aliases.get(name).map_or(&[], Vec::as_slice);
+                graph.names.text(*name)
+            }
             Reference::Path(path) => path.segments.last().map_or("", |name| graph.names.text(*name)),
         };
         let message = format!("`{text}` exists but is disabled by its condition");
@@ -307,6 +312,9 @@ impl Walk<'_, '_, '_> {
             for item in graph.nodes[*other as usize].sets.get(name).into_iter().flatten() {
                 error = error.at(module.span(module.items[*item as usize].name_range.clone()), "not in this permutation");
             }
+        }
+        for import in imports.iter().map(|index| &here.module.imports[*index]).filter(|import| import.condition.is_some()) {
+            error = error.at(here.module.span(import.alias_range.clone()), "imported under a condition");
         }
         self.evaluator.errors.push(error);
         Meaning::Free

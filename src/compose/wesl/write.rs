@@ -176,8 +176,10 @@ fn is_new(seen: &mut Vec<(Name, Vec<Name>)>, directive: &Directive) -> bool {
     !known
 }
 
-/// Whether two items follow each other without a blank line in the author's text.
+/// Whether no blank line parts two items in the author's text, what stands between them included.
 fn adjacent(module: &Module, last: u32, next: u32) -> bool {
-    let (end, start) = (module.items[last as usize].range.end, module.items[next as usize].range.start);
-    last + 1 == next && module.text[end as usize..start as usize].matches('\n').count() <= 1
+    module.items[last as usize..=next as usize].windows(2).all(|pair| {
+        let gap = &module.text[pair[0].range.end as usize..pair[1].range.start as usize];
+        gap.matches('\n').count() <= 1
+    })
 }

@@ -72,7 +72,7 @@ impl Scanner<'_, '_> {
         self.attributes(place.start, place.keyword)?;
         let mut at = place.keyword + 1;
         if kind == ItemKind::Var {
-            at = after_template(self.tokens, at);
+            at = self.var_template(at);
         }
         if kind != ItemKind::ConstAssert {
             let token = self.tokens.tokens[at];
@@ -84,6 +84,14 @@ impl Scanner<'_, '_> {
             ItemKind::Struct => self.members(at),
             _ => self.uses(at, place.end),
         }
+    }
+
+    /// Past the `<storage, read>` of a `var`. Compilers take these words as they are, so they are
+    /// predeclared ones here, whatever the module calls by their names.
+    pub(super) fn var_template(&mut self, at: usize) -> usize {
+        let end = after_template(self.tokens, at);
+        self.free.extend((at..end).filter_map(|at| self.tokens.word(at)));
+        end
     }
 
     fn function(&mut self, open: usize, end: usize) -> Result<(), Diagnostic> {

@@ -146,15 +146,17 @@ impl Splitter<'_, '_> {
     }
 
     fn end(&self, keyword: usize, kind: ItemKind) -> Result<usize, Diagnostic> {
-        let limit = self.tokens.len();
         let braced = matches!(kind, ItemKind::Function | ItemKind::Struct);
-        let semicolon = self.tokens.find(keyword, limit, b';');
-        let brace = self.tokens.find(keyword, limit, b'{');
-        match (semicolon, brace) {
-            (semicolon, Some(brace)) if braced && semicolon.is_none_or(|semicolon| brace < semicolon) => Ok(self.tokens.partner(brace) + 1),
-            (Some(semicolon), brace) if !braced && brace.is_none_or(|brace| semicolon < brace) => Ok(semicolon + 1),
-            _ => Err(self.unended(keyword, if braced { "the body" } else { "the declaration" })),
+        let mut at = keyword;
+        while at < self.tokens.len() {
+            match (self.tokens.is(at, b';'), self.tokens.is(at, b'{')) {
+                (true, _) if !braced => return Ok(at + 1),
+                (_, true) if braced => return Ok(self.tokens.partner(at) + 1),
+                (false, false) => at = self.tokens.partner(at).max(at) + 1,
+                _ => break,
+            }
         }
+        Err(self.unended(keyword, if braced { "the body" } else { "the declaration" }))
     }
 
     fn unended(&self, keyword: usize, what: &str) -> Diagnostic {

@@ -25,6 +25,9 @@ use std::sync::Arc;
 
 use crate::source::SourceId;
 
+/// How many errors of one file are worth telling.
+const ERRORS: usize = 50;
+
 /// Parses a file. What is wrong with it is in [`Module::errors`]; the rest is as good as it gets.
 pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
     let mut module = Module {
@@ -46,5 +49,6 @@ pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
         }
         Err(error) => module.errors.push(error),
     }
+    module.errors.truncate(ERRORS);
     module
 }

@@ -2,7 +2,6 @@
 
 use super::body::Scanner;
 use super::condition::{self, Chain};
-use super::item::after_template;
 use super::module::ConditionId;
 use super::name::Name;
 use crate::diagnostic::Diagnostic;
@@ -115,7 +114,7 @@ impl Scanner<'_, '_> {
 
     /// `let`, `const` or `var`: in scope after its semicolon.
     fn local(&mut self, at: usize, limit: usize, condition: Option<ConditionId>) -> Result<usize, Diagnostic> {
-        let name_at = after_template(self.tokens, at + 1);
+        let name_at = self.var_template(at + 1);
         let name = self.tokens.identifier(name_at, "a name")?;
         let end = self.semicolon(name_at, limit)?;
         self.uses(name_at + 1, end)?;

@@ -49,9 +49,9 @@ pub fn lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32
             let start = node.start - indent as u32;
             comment_lines(text, before, start)..end + blank as u32 + 1
         }
-        // In the middle of a line the blanks behind go too: `f(@if(a) x, y)`.
-        (false, false) if end == node.end => node.start..end + (tail.len() - tail.trim_start_matches([' ', '\t']).len()) as u32,
-        _ => node.start..end,
+        // At the end of a line the blanks before go too, elsewhere those behind: `f(@if(a) x, y)`.
+        (false, true) => node.start - indent as u32..end,
+        (_, false) => node.start..end + (tail.len() - tail.trim_start_matches([' ', '\t']).len()) as u32,
     }
 }
 

@@ -65,6 +65,8 @@ pub struct Node {
     pub label: String,
     /// Item indices by name, in source order.
     pub sets: HashMap<Name, Vec<u32>>,
+    /// Import indices by the name they bring.
+    pub aliases: HashMap<Name, Vec<usize>>,
     /// By reference: what it may mean, the first whose conditions hold.
     pub bindings: Vec<Vec<Candidate>>,
     /// Imports that lead nowhere: they count if the module is reached and the conditions hold.

@@ -54,8 +54,8 @@ impl<'a> Loader<'a> {
             self.resolve(at as u32);
             at += 1;
         }
-        let mut graph = self.graph();
-        let errors = certain_errors(&mut graph);
+        let graph = self.graph();
+        let errors = certain_errors(&graph);
         if errors.is_empty() { Ok(graph) } else { Err(errors) }
     }
 
@@ -97,6 +97,10 @@ impl<'a> Loader<'a> {
 
     fn read(&mut self, package: usize, path: &[String], asker: Span) -> Result<Option<u32>, Diagnostic> {
         for stem in self.stems(package, path) {
+            // A package's own module may have been read under its file's name, or will be.
+            if let Some(known @ (Ok(Some(_)) | Err(_))) = self.known.get(&(package, stem.clone())) {
+                return known.clone();
+            }
             for extension in ["wesl", "wgsl"] {
                 let found = source::read(self.sources, self.package(package), &format!("{stem}.{extension}"))
                     .map_err(|error| error.at(asker, "imported here"))?;
@@ -105,7 +109,9 @@ impl<'a> Loader<'a> {
                         let message = format!("more than {} modules", LIMITS.files);
                         return Err(Diagnostic::error(codes::TOO_MANY_FILES, message).at(asker, "the first one too many"));
                     }
-                    return Ok(Some(self.add(source, package, path.to_vec(), Some(asker))));
+                    let node = self.add(source, package, path.to_vec(), Some(asker));
+                    self.known.insert((package, stem), Ok(Some(node)));
+                    return Ok(Some(node));
                 }
             }
         }
@@ -127,6 +133,10 @@ impl<'a> Loader<'a> {
         for (index, item) in module.items.iter().enumerate().filter(|(_, item)| item.name != Name::UNDERSCORE) {
             sets.entry(item.name).or_default().push(index as u32);
         }
+        let mut aliases: HashMap<Name, Vec<usize>> = HashMap::new();
+        for (index, import) in module.imports.iter().enumerate() {
+            aliases.entry(import.alias).or_default().push(index);
+        }
         path.iter().for_each(|part| {
             self.names.intern(part);
         });
@@ -138,6 +148,7 @@ impl<'a> Loader<'a> {
             path,
             label,
             sets,
+            aliases,
             bindings: Vec::new(),
             broken_imports: Vec::new(),
             lints: Vec::new(),
@@ -202,8 +213,8 @@ impl<'a> Loader<'a> {
 }
 
 /// The errors that every composition meets: of the root module and of what it imports
-/// unconditionally. They are taken out of the graph, which is then of no further use.
-fn certain_errors(graph: &mut Graph) -> Diagnostics {
+/// unconditionally.
+fn certain_errors(graph: &Graph) -> Diagnostics {
     let mut certain = vec![false; graph.nodes.len()];
     let mut failed = vec![false; graph.failures.len()];
     let mut errors = Vec::new();
@@ -214,10 +225,16 @@ fn certain_errors(graph: &mut Graph) -> Diagnostics {
         }
         let node = &graph.nodes[index];
         let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
+<<<<<<< HEAD
         let broken: Vec<u32> =
             broken.map(|(_, failure)| *failure).filter(|failure| !std::mem::replace(&mut failed[*failure as usize], true)).collect();
         let found = node.module.errors.iter().cloned().chain(broken.into_iter().map(|failure| graph.failures[failure as usize].clone()));
         errors.extend(found.map(|error| traced(graph, error)));
+=======
+        let broken = broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
+        let found = node.module.errors.iter().chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
+        errors.extend(found.map(|error| traced(graph, error.clone())));
+>>>>>>> w-wesl
         let certainly = node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
         open.extend(certainly.filter_map(|candidate| match candidate.target {
             Target::Items { node, .. } => Some(node as usize),
@@ -225,6 +242,7 @@ fn certain_errors(graph: &mut Graph) -> Diagnostics {
         }));
     }
     errors.sort_by_key(|error| error.labels.first().map(|label| label.span));
+    errors.dedup();
     errors
 }
 

@@ -42,9 +42,8 @@ impl Loader<'_> {
             Origin::Package => Ok(vec![Absolute { package: Some(here.package), segments: path.segments.clone(), conditions: Vec::new() }]),
             Origin::Super(ups) => self.above(node, ups as usize, &path.segments, span).map(|absolute| vec![absolute]),
             Origin::Scope => {
-                let named = |index: &usize| here.module.imports[*index].alias == path.segments[0];
-                let (seen, through): (Vec<usize>, Vec<usize>) =
-                    (0..here.module.imports.len()).filter(named).partition(|index| visiting.contains(index));
+                let named = here.aliases.get(&path.segments[0]).into_iter().flatten();
+                let (seen, through): (Vec<usize>, Vec<usize>) = named.partition(|index| visiting.contains(index));
                 if through.is_empty() {
                     let cyclic = visiting.len() > 1 && !seen.is_empty();
                     return self.in_package(node, &path.segments, span, cyclic).map(|absolute| vec![absolute]);
@@ -97,14 +96,14 @@ impl Loader<'_> {
             None if own => Some(self.nodes[node as usize].package),
             None if segments[0] == Name::CONSTANTS => None,
             None if in_circle => return Err(cyclic(span)),
-            None => return Err(self.unknown_package(first, span)),
+            None => return Err(self.unknown_package(node, first, span)),
         };
         Ok(Absolute { package, segments: segments[1..].to_vec(), conditions: Vec::new() })
     }
 
-    fn unknown_package(&self, first: &str, span: Span) -> Diagnostic {
+    fn unknown_package(&self, node: u32, first: &str, span: Span) -> Diagnostic {
         let error = Diagnostic::error(codes::UNKNOWN_PACKAGE, format!("there is no package `{first}`")).at(span, "not a package");
-        let files = self.packages.root.files.list(&["wesl", "wgsl"]);
+        let files = self.package(self.nodes[node as usize].package).files.list(&["wesl", "wgsl"]);
         let own = files.iter().any(|file| file.split(['/', '.']).next() == Some(first));
         match own {
             true => error.note(format!("help: for the module of this package write `package::{first}`")),
@@ -123,7 +122,13 @@ impl Loader<'_> {
             return Ok(Target::Module);
         }
         Err(match parent {
+            // What is missing may be in the part that could not be read.
+            Some(node) if !self.nodes[node as usize].module.errors.is_empty() => self.nodes[node as usize].module.errors[0].clone(),
             Some(node) => self.missing_item(node, *last, span),
+            // The last name may be an item's or a module's: below a folder, a module's.
+            None if parents.is_empty() || self.is_module(package, parents, span, false)? => {
+                self.missing_module(package, &absolute.segments, span)
+            }
             None => self.missing_module(package, parents, span),
         })
     }
@@ -170,7 +175,7 @@ impl Loader<'_> {
         let mut known: Vec<String> = Vec::new();
         for file in listing {
             let parts: Vec<String> = file.rsplit_once('.').map_or(&*file, |(stem, _)| stem).split('/').map(str::to_owned).collect();
-            known.push(self.label(package, &parts));
+            known.extend((1..=parts.len()).map(|depth| self.label(package, &parts[..depth])));
         }
         Diagnostic::error(codes::MISSING_MODULE, format!("there is no module `{label}`"))
             .at(span, "not found")

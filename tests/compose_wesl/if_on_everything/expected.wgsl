@@ -7,22 +7,15 @@ const a = 1;
 // package::main
 
 const foo = a;
-
 override o1 = 10;
-
 var<private> v1 = 10;
-
 alias T = f32;
-
 const_assert 0 < 1;
-
 struct S {
     x: u32,
     @size(16) w: u32
 }
-
 fn params(foo: u32, baz: u32) {}
-
 fn statements() -> i32 {
     { let a = 1; }
     if foo > 0 { let a = 2; } else if foo < 0 { } else { }

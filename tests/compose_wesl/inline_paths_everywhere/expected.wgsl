@@ -3,7 +3,6 @@
 const GROUP = 0;
 const BINDING = 1;
 const COUNT = 4;
-
 const factor = 2.0;
 alias F = f32;
 struct S { x: F }
@@ -14,7 +13,6 @@ fn touch() {}
 
 @group(GROUP) @binding(BINDING) var<uniform> u: S;
 alias A = array<S, COUNT>;
-
 override scale: f32 = factor;
 const_assert COUNT > 1;
 @compute @workgroup_size(COUNT, 1)

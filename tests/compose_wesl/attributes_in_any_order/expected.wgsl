@@ -1,0 +1,4 @@
+@compute @workgroup_size(N) fn main() {}
+/* why */ @compute @workgroup_size(1)
+fn second() {}
+const N = 2;

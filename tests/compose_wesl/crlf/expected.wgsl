@@ -1,0 +1,4 @@
+// doc
+fn main() {
+    let y = 2; // y
+}

@@ -1,0 +1,6 @@
+fn main() {
+    {
+        { inner(); }
+    }
+}
+fn inner() { }
