@@ -179,27 +179,14 @@ fn lex_error(source: SourceId, text: &str, error: lexer::LexError) -> Diagnostic
 fn split(module: &mut Module, symbols: &Symbols) {
     let (mut token, mut byte) = (0, 0);
     while token < module.tokens.len() {
-<<<<<<< HEAD
         let hash = find_from(&module.tokens, token, |token| token.first_of_line && token.symbol == known::HASH);
-=======
-        let hash = token
-            + module.tokens[token..]
-                .iter()
-                .position(|token| token.first_of_line && token.symbol == known::HASH)
-                .unwrap_or(module.tokens.len() - token);
->>>>>>> w-shaderlib
         let start = module.tokens.get(hash).map_or(module.text.len(), |token| token.start as usize);
         push_text(module, token..hash, byte..start);
         if hash == module.tokens.len() {
             return;
         }
-<<<<<<< HEAD
         module.tokens[hash].first_of_part = true;
         let end = find_from(&module.tokens, hash + 1, |token| token.first_of_line);
-=======
-        let end =
-            hash + 1 + module.tokens[hash + 1..].iter().position(|token| token.first_of_line).unwrap_or(module.tokens.len() - hash - 1);
->>>>>>> w-shaderlib
         directive::push(module, hash, end, symbols);
         byte = lexer::line_end(&module.text, module.tokens[end - 1].end as usize);
         token = end;

@@ -225,16 +225,9 @@ fn certain_errors(graph: &Graph) -> Diagnostics {
         }
         let node = &graph.nodes[index];
         let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
-<<<<<<< HEAD
-        let broken: Vec<u32> =
-            broken.map(|(_, failure)| *failure).filter(|failure| !std::mem::replace(&mut failed[*failure as usize], true)).collect();
-        let found = node.module.errors.iter().cloned().chain(broken.into_iter().map(|failure| graph.failures[failure as usize].clone()));
-        errors.extend(found.map(|error| traced(graph, error)));
-=======
         let broken = broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
         let found = node.module.errors.iter().chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
         errors.extend(found.map(|error| traced(graph, error.clone())));
->>>>>>> w-wesl
         let certainly = node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
         open.extend(certainly.filter_map(|candidate| match candidate.target {
             Target::Items { node, .. } => Some(node as usize),
