@@ -89,14 +89,19 @@ fn modules(folder: &Path, entry: &str) -> std::io::Result<String> {
 fn embedded(folder: &Path) -> std::io::Result<String> {
     let mut found = Vec::new();
     walk(folder, &mut found)?;
-    found.sort();
+    let mut named: Vec<(String, PathBuf)> = found.into_iter().map(|path| (relative(folder, &path), path)).collect();
+    named.sort();
     let mut table = String::from("/// Path below `shaderlib/` and text of every file, by path.\npub const FILES: &[(&str, &str)] = &[\n");
-    for path in found {
-        let relative = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-        let _ = writeln!(table, "({relative:?}, include_str!({path:?})),");
+    for (name, path) in named {
+        let _ = writeln!(table, "({name:?}, include_str!({path:?})),");
     }
     table.push_str("];\n");
     Ok(table)
+}
+
+/// The name that is looked up: sorted as text, since paths sort by component (`a/b` before `a.b`).
+fn relative(folder: &Path, path: &Path) -> String {
+    path.strip_prefix(folder).unwrap_or(path).to_string_lossy().replace('\\', "/")
 }
 
 fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {

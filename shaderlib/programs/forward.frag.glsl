@@ -1,0 +1,186 @@
+#version 450
+//! The fragment stage of `forward`. Bindings and locations are tabulated in forward.wesl.
+// Stage variables have prefixes: naga lets the members of a block hide globals of their names.
+
+#include "../math/safe.glsl"
+#include "forward/camera.glsl"
+
+layout(location = 0) in vec3 in_position;
+#if FREQUENCY == FREQUENCY_FRAGMENT
+layout(location = 1) in vec3 in_normal;
+#elif FREQUENCY == FREQUENCY_FLAT
+layout(location = 1) flat in vec3 in_normal;
+#endif
+layout(location = 2) in vec4 in_color;
+#if BASE_MAP || NORMAL_MAP
+layout(location = 3) in vec2 in_uv;
+#endif
+#if LIGHTMAP
+layout(location = 4) in vec2 in_light_uv;
+#endif
+#if NORMAL_MAP
+layout(location = 5) in vec4 in_tangent;
+#endif
+#if MATERIAL == MATERIAL_ARRAY
+layout(location = 6) flat in uint in_material;
+#endif
+#if FREQUENCY == FREQUENCY_VERTEX
+layout(location = 7) in vec3 in_scattered;
+layout(location = 8) in vec3 in_reflected;
+#endif
+
+layout(location = 0) out vec4 out_color;
+
+#if BASE_MAP
+layout(set = 1, binding = 1) uniform texture2D base_map;
+#endif
+#if NORMAL_MAP
+layout(set = 1, binding = 2) uniform texture2D normal_map;
+#endif
+#if LIGHTMAP
+layout(set = 1, binding = 3) uniform texture2D light_map;
+#endif
+#if BASE_MAP || NORMAL_MAP || LIGHTMAP
+layout(set = 1, binding = 4) uniform sampler map_sampler;
+#endif
+
+#if FOG != FOG_NONE
+#include "../color/transfer.glsl"
+
+/// What distance fades into.
+layout(std140, set = 0, binding = 3) uniform Haze {
+    vec3 color;
+    /// `exp2`: per scene unit.
+    float density;
+    /// `linear`: distances of the first and of the full fog, in scene units.
+    float start;
+    float end;
+} haze;
+#endif
+
+#if LIGHTMAP
+/// Light that was computed beforehand.
+vec3 baked() {
+    return texture(sampler2D(light_map, map_sampler), in_light_uv).rgb;
+}
+#endif
+
+// Without lamps, ambient and baked light there is nothing to shade.
+#define SHADES (LIGHTS != LIGHTS_NONE || AMBIENT != AMBIENT_NONE || LIGHTMAP)
+
+#if !SHADES
+#elif LIGHTS == LIGHTS_NONE
+#include "forward/ambient.glsl"
+#if AMBIENT == AMBIENT_IBL
+#include "../ambient/ibl.glsl"
+#include "forward/viewer.glsl"
+#endif
+
+/// The colour of the surface where no lamp shines.
+vec3 shade(vec3 base) {
+#if AMBIENT == AMBIENT_IBL
+    vec3 n = safe_normalize(in_normal, vec3(0.0));
+    vec3 mirrored = reflect(-towards_viewer(in_position), n);
+    vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), n).rgb;
+    vec3 specular = texture(samplerCube(sky_specular, sky_sampler), mirrored).rgb;
+    return ibl_mix(base, diffuse, specular, surroundings.diffuse_share, surroundings.specular_share);
+#elif AMBIENT != AMBIENT_NONE && LIGHTMAP
+    return base * (ambient_light(safe_normalize(in_normal, vec3(0.0))) + baked());
+#elif AMBIENT != AMBIENT_NONE
+    return base * ambient_light(safe_normalize(in_normal, vec3(0.0)));
+#else
+    return base * baked();
+#endif
+}
+#elif FREQUENCY == FREQUENCY_VERTEX
+#include "../lighting/classic.glsl"
+#include "forward/materials.glsl"
+
+/// The colour of the surface, from the light summed up at the corners.
+vec3 shade(vec3 base) {
+#if MATERIAL == MATERIAL_ARRAY
+    Material material = materials.items[in_material];
+#else
+    Material material = materials.items[0];
+#endif
+    Accum sum = Accum(in_scattered, in_reflected);
+#if LIGHTMAP
+    sum.scattered += material.diffuse * baked();
+#endif
+    return resolve(base, material, sum);
+}
+#else
+#include "../surface/normal.glsl"
+#include "forward/lamps.glsl"
+
+#if AMBIENT == AMBIENT_IBL
+/// The sums with the light of the environment maps.
+Accum add_environment(Accum sum, Surface surface) {
+    vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), surface.normal).rgb;
+    vec3 specular = texture(samplerCube(sky_specular, sky_sampler), reflect(-surface.view, surface.normal)).rgb;
+    return Accum(
+        sum.scattered + surface.material.ambient * diffuse * surroundings.diffuse_share,
+        sum.reflected + surface.material.specular * specular * surroundings.specular_share
+    );
+}
+#endif
+
+/// The colour of the surface.
+vec3 shade(vec3 base) {
+    Surface surface;
+    surface.position = in_position;
+    surface.normal = safe_normalize(in_normal, vec3(0.0));
+#if TWO_SIDED
+    surface.normal = flip_if_back(surface.normal, gl_FrontFacing);
+#endif
+#if NORMAL_MAP
+    vec3 texel = texture(sampler2D(normal_map, map_sampler), in_uv).xyz;
+    surface.normal = perturb_normal(surface.normal, in_tangent, texel);
+#endif
+#if NEEDS_VIEW
+    surface.view = towards_viewer(in_position);
+#endif
+#if MATERIAL == MATERIAL_ARRAY && TWO_SIDED
+    surface.material = materials.items[material_index(int(in_material), gl_FrontFacing)];
+#elif MATERIAL == MATERIAL_ARRAY
+    surface.material = materials.items[in_material];
+#else
+    surface.material = materials.items[0];
+#endif
+#if SHADOW != SHADOW_NONE
+    surface.visibility = visibility(surface, gl_FragCoord.xy);
+#endif
+    Accum sum = lit(surface);
+#if LIGHTMAP
+    sum.scattered += surface.material.diffuse * baked();
+#endif
+#if AMBIENT == AMBIENT_IBL
+    sum = add_environment(sum, surface);
+#endif
+    return resolve(base, surface.material, sum);
+}
+#endif
+
+void main() {
+    vec4 base = in_color;
+#if BASE_MAP
+    base *= texture(sampler2D(base_map, map_sampler), in_uv);
+#endif
+#if SHADES
+    vec3 shaded = shade(base.rgb);
+#else
+    vec3 shaded = base.rgb;
+#endif
+#if FOG != FOG_NONE
+    float reach = distance(in_position, camera.world_from_view[3].xyz);
+#if FOG == FOG_LINEAR
+    shaded = mix(haze.color, shaded, fog_linear(reach, haze.start, haze.end));
+#else
+    shaded = mix(haze.color, shaded, fog_exp2(reach, haze.density));
+#endif
+#endif
+#if SATURATE
+    shaded = saturate_color(shaded);
+#endif
+    out_color = vec4(shaded, base.a);
+}

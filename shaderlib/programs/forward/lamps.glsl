@@ -1,0 +1,169 @@
+//! The lamps of `forward`, and what they do to a surface: in the vertex stage with
+//! `frequency=vertex`, else in the fragment stage.
+
+#ifndef LAMPLIGHT_PROGRAMS_FORWARD_LAMPS_GLSL
+#define LAMPLIGHT_PROGRAMS_FORWARD_LAMPS_GLSL
+
+#include "../../lighting/classic.glsl"
+#include "ambient.glsl"
+#include "materials.glsl"
+#include "viewer.glsl"
+
+/// The lights, of which the first `count` shine.
+layout(std140, set = 0, binding = 1) uniform Lamps {
+    uint count;
+    Light lights[MAX_LIGHTS];
+} lamps;
+
+/// A point of a surface, as light meets it.
+struct Surface {
+    vec3 position;
+    vec3 normal;
+#if NEEDS_VIEW
+    /// Towards the viewer.
+    vec3 view;
+#endif
+    Material material;
+#if SHADOW != SHADOW_NONE
+    /// How much of the shadow caster's light arrives.
+    float visibility;
+#endif
+};
+
+#if SHADOW != SHADOW_NONE
+#include "shadow.glsl"
+#endif
+
+#if ATTENUATION != ATTENUATION_POLYNOMIAL
+/// The falloff of this permutation in place of the polynomial.
+float falloff(Light light, LightSample arriving) {
+#if LIGHTS == LIGHTS_MIXED
+    if (light.kind != LIGHT_POINT && light.kind != LIGHT_SPOT) {
+        return arriving.attenuation;
+    }
+#endif
+#if ATTENUATION == ATTENUATION_NONE
+    return 1.0;
+#elif ATTENUATION == ATTENUATION_LINEAR_RADIUS
+    return linear_radius(arriving.distance, light.range);
+#else
+    float d2 = arriving.distance * arriving.distance;
+    float inv_range2 = 0.0;
+    if (light.range > 0.0) {
+        inv_range2 = 1.0 / (light.range * light.range);
+    }
+    // A light of one centimetre, where a scene unit is a metre.
+    return inverse_square(d2, 0.0001) * window(d2, inv_range2);
+#endif
+}
+#endif
+
+#if CONE != CONE_EXPONENT
+/// The cone of this permutation in place of the power of the cosine.
+float cone(Light light, LightSample arriving) {
+#if LIGHTS == LIGHTS_MIXED
+    if (light.kind != LIGHT_SPOT) {
+        return arriving.spot;
+    }
+#endif
+#if CONE == CONE_HARD
+    return cone_hard(dot(-arriving.l, light.axis), light.cutoff);
+#else
+    return cone_smooth(dot(-arriving.l, light.axis), light.inner, light.outer);
+#endif
+}
+#endif
+
+#if SPECULAR == SPECULAR_GGX
+/// The microfacet highlight, times n.l.
+vec3 ggx(Surface surface, vec3 l) {
+    vec3 n = surface.normal;
+    vec3 h = safe_normalize(l + surface.view, n);
+    vec3 n_cross_h = cross(n, h);
+    float alpha = surface.material.roughness * surface.material.roughness;
+    float nl = clamp(dot(n, l), 0.0, 1.0);
+    float nv = clamp(dot(n, surface.view), 0.0, 1.0);
+    float lobe = d_ggx(clamp(dot(n, h), 0.0, 1.0), dot(n_cross_h, n_cross_h), alpha) * v_smith_ggx(nv, nl, alpha);
+    return nl * lobe * f_schlick(surface.material.specular, 1.0, dot(surface.view, h));
+}
+#endif
+
+/// The sums with the light of one lamp.
+Accum add_lamp(Accum sum, Surface surface, uint i) {
+    Light light = lamps.lights[i];
+#if LIGHTS == LIGHTS_DIRECTIONAL
+    LightSample arriving = sample_directional(light);
+#elif LIGHTS == LIGHTS_POINT
+    LightSample arriving = sample_point(light, surface.position);
+#elif LIGHTS == LIGHTS_SPOT
+    LightSample arriving = sample_spot(light, surface.position);
+#else
+    LightSample arriving = sample_light(light, surface.position);
+#endif
+#if ATTENUATION != ATTENUATION_POLYNOMIAL
+    arriving.attenuation = falloff(light, arriving);
+#endif
+#if CONE != CONE_EXPONENT
+    arriving.spot = cone(light, arriving);
+#endif
+
+#if AMBIENT != AMBIENT_CONSTANT
+    float ambient = 0.0;
+#elif AMBIENT_ATTENUATED
+    float ambient = arriving.attenuation * arriving.spot;
+#elif LIGHTS == LIGHTS_MIXED
+    float ambient = light.kind == LIGHT_OFF ? 0.0 : 1.0;
+#else
+    float ambient = 1.0;
+#endif
+
+#if DIFFUSE == DIFFUSE_LAMBERT
+    float diffuse = lambert(surface.normal, arriving.l);
+#elif DIFFUSE == DIFFUSE_HALF_LAMBERT
+    float diffuse = half_lambert(surface.normal, arriving.l);
+#elif DIFFUSE == DIFFUSE_WRAP
+    float diffuse = wrap(surface.normal, arriving.l, surface.material.wrap);
+#else
+    float diffuse = oren_nayar(surface.normal, arriving.l, surface.view, surface.material.sigma);
+#endif
+
+#if SPECULAR == SPECULAR_PHONG
+    float specular = phong(surface.normal, arriving.l, surface.view, surface.material.shininess);
+#elif SPECULAR == SPECULAR_BLINN_PHONG
+    float specular = blinn_phong(surface.normal, arriving.l, surface.view, surface.material.shininess);
+#elif SPECULAR == SPECULAR_BLINN_PHONG_NORMALIZED
+    float specular = blinn_phong_normalized(surface.normal, arriving.l, surface.view, surface.material.shininess);
+#else
+    float specular = 0.0;
+#endif
+
+#if SHADOW == SHADOW_NONE
+    float visibility = 1.0;
+#else
+    float visibility = i == caster.light ? shadow_mix(surface.visibility, light.shadow_strength) : 1.0;
+#endif
+
+#if SPECULAR != SPECULAR_GGX
+    return accumulate(sum, surface.material, light, arriving, ambient, diffuse, specular, visibility);
+#else
+    Accum next = accumulate(sum, surface.material, light, arriving, ambient, diffuse, specular, visibility);
+    vec3 radiance = light.color * (arriving.attenuation * arriving.spot * visibility * light.strength);
+    next.reflected += radiance * ggx(surface, arriving.l);
+    return next;
+#endif
+}
+
+/// All light that leaves the point towards the viewer, but for the environment maps'.
+Accum lit(Surface surface) {
+#if AMBIENT == AMBIENT_NONE || AMBIENT == AMBIENT_IBL
+    Accum sum = Accum(vec3(0.0), vec3(0.0));
+#else
+    Accum sum = Accum(surface.material.ambient * ambient_light(surface.normal), vec3(0.0));
+#endif
+    for (uint i = 0u; i < min(lamps.count, uint(MAX_LIGHTS)); i++) {
+        sum = add_lamp(sum, surface, i);
+    }
+    return sum;
+}
+
+#endif

@@ -1,0 +1,123 @@
+//! The shadow of one lamp of `forward`. `lamps.glsl` includes it where `Surface` is known.
+
+#ifndef LAMPLIGHT_PROGRAMS_FORWARD_SHADOW_GLSL
+#define LAMPLIGHT_PROGRAMS_FORWARD_SHADOW_GLSL
+
+#include "../../math/noise.glsl"
+#include "../../shadow/bias.glsl"
+#include "../../shadow/coord.glsl"
+
+/// The light that casts the shadow, and how its map is read.
+layout(std140, set = 0, binding = 4) uniform Caster {
+    /// Spot and directional lights: projection times view of the shadow map.
+    mat4 clip_from_world;
+    /// Point lights: distances of the near and far plane of the faces, in scene units.
+    float near;
+    float far;
+    /// Which of the lamps, below `max_lights`.
+    uint light;
+    /// Points this near to the light and nearer are lit; the w of its clip space.
+    float min_w;
+    /// Subtracted from the depth that is compared.
+    float bias;
+    /// How far the point is moved along its normal, in texels of the map.
+    float normal_offset;
+    /// Size of a texel in scene units: everywhere for directional lights, at distance 1 for others.
+    float texel;
+    /// `pcf_random16`, `pcf_vogel`: radius of the filter; `pcss`: width of the light; in texels.
+    float radius;
+    /// `evsm`: the positive and the negative exponent, as in `moments`.
+    vec2 exponents;
+    /// `vsm`, `evsm`: see `shadow::moments`.
+    float min_variance;
+    float bleed;
+    /// `vsm`: least visibility.
+    float least;
+} caster;
+
+/// The point that is looked up: off the surface, so that it does not shadow itself.
+vec3 receiver(Surface surface, Light light) {
+#if SHADOW_LIGHT == SHADOW_LIGHT_DIRECTIONAL
+    return normal_offset(surface.position, surface.normal, -light.axis, caster.texel, caster.normal_offset);
+#else
+    vec3 offset = light.position - surface.position;
+    vec3 l = safe_normalize(offset, vec3(0.0));
+    return normal_offset(surface.position, surface.normal, l, caster.texel * length(offset), caster.normal_offset);
+#endif
+}
+
+#if SHADOW_LIGHT == SHADOW_LIGHT_POINT
+#include "../../shadow/compare.glsl"
+
+layout(set = 0, binding = 6) uniform textureCube shadow_cube;
+layout(set = 0, binding = 7) uniform samplerShadow shadow_sampler;
+
+/// How much of the shadow caster's light arrives; `pixel` is the place in the framebuffer.
+float visibility(Surface surface, vec2 pixel) {
+    Light light = lamps.lights[caster.light];
+    vec3 offset = receiver(surface, light) - light.position;
+    float depth = constant_bias(cube_depth(offset, caster.near, caster.far), caster.bias);
+    return cube_compare(shadow_cube, shadow_sampler, offset, depth);
+}
+#else
+/// Where the shadow map holds the point, the bias taken off its depth.
+ShadowUv place_in_map(Surface surface) {
+    vec3 point = receiver(surface, lamps.lights[caster.light]);
+    ShadowUv at = project(shadow_coord(caster.clip_from_world, point), caster.min_w);
+    at.depth = constant_bias(at.depth, caster.bias);
+    return at;
+}
+
+#if SHADOW == SHADOW_VSM || SHADOW == SHADOW_EVSM
+#include "../../shadow/moments.glsl"
+
+layout(set = 0, binding = 10) uniform texture2D shadow_moments;
+layout(set = 0, binding = 11) uniform sampler moment_sampler;
+
+/// How much of the shadow caster's light arrives; `pixel` is the place in the framebuffer.
+float visibility(Surface surface, vec2 pixel) {
+    ShadowUv at = place_in_map(surface);
+    vec4 moments = texture(sampler2D(shadow_moments, moment_sampler), at.uv);
+#if SHADOW == SHADOW_VSM
+    float visible = vsm_visibility(moments.xy, at.depth, caster.min_variance, caster.least, caster.bleed);
+#else
+    float visible = evsm_visibility(moments, at.depth, caster.exponents, caster.min_variance, caster.bleed);
+#endif
+    return at.inside ? visible : 1.0;
+}
+#else
+#include "../../shadow/compare.glsl"
+
+layout(set = 0, binding = 5) uniform texture2D shadow_map;
+layout(set = 0, binding = 7) uniform samplerShadow shadow_sampler;
+#if SHADOW == SHADOW_PCSS
+layout(set = 0, binding = 8) uniform texture2D shadow_depth;
+layout(set = 0, binding = 9) uniform sampler depth_sampler;
+#endif
+
+/// How much of the shadow caster's light arrives; `pixel` is the place in the framebuffer.
+float visibility(Surface surface, vec2 pixel) {
+    ShadowUv at = place_in_map(surface);
+#if SHADOW == SHADOW_PCF_VOGEL || SHADOW == SHADOW_PCSS
+    float phi = 6.2831853 * interleaved_gradient_noise(pixel);
+#endif
+#if SHADOW == SHADOW_HARD
+    return hard(shadow_map, shadow_sampler, at);
+#elif SHADOW == SHADOW_PCF_3X3
+    return pcf_3x3(shadow_map, shadow_sampler, at);
+#elif SHADOW == SHADOW_PCF_5X5
+    return pcf_5x5(shadow_map, shadow_sampler, at);
+#elif SHADOW == SHADOW_PCF_CASTANO_5
+    return pcf_castano_5(shadow_map, shadow_sampler, at);
+#elif SHADOW == SHADOW_PCF_RANDOM16
+    return pcf_random16(shadow_map, shadow_sampler, at, caster.radius, pixel);
+#elif SHADOW == SHADOW_PCF_VOGEL
+    return pcf_vogel(shadow_map, shadow_sampler, at, 16, caster.radius, phi);
+#else
+    return pcss(shadow_map, shadow_sampler, shadow_depth, depth_sampler, at, caster.radius, phi);
+#endif
+}
+#endif
+#endif
+
+#endif

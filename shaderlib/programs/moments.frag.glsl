@@ -1,0 +1,26 @@
+#version 450
+//! Moments of the depth, as a light sees it: the fragment stage. Bindings are tabulated in moments.wesl.
+
+#include "../shadow/bias.glsl"
+#include "../shadow/moments.glsl"
+
+/// How moments are made of a depth.
+layout(std140, set = 0, binding = 1) uniform Moments {
+    /// `evsm`: the positive and the negative exponent, as in the caster of `forward`.
+    vec2 exponents;
+    /// Added to the depth.
+    float bias;
+} terms;
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    float depth = constant_bias(gl_FragCoord.z, -terms.bias);
+#if MOMENTS == MOMENTS_EVSM
+    out_color = evsm_moments(depth, terms.exponents);
+#elif SLOPE
+    out_color = vec4(vsm_moments_slope(depth, dFdx(depth), dFdy(depth)), 0.0, 0.0);
+#else
+    out_color = vec4(vsm_moments(depth), 0.0, 0.0);
+#endif
+}
