@@ -1,8 +1,15 @@
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+//! The one test binary. Each kind of test lists its cases, most of them found by their files.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
 mod harness;
+mod snapshot;
 
-fn main() {
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
     let arguments = libtest_mimic::Arguments::from_args();
-    libtest_mimic::run(&arguments, harness::trials()).exit();
+    let kinds = [snapshot::trials, harness::trials];
+    let trials = kinds.iter().flat_map(|kind| kind()).collect();
+    libtest_mimic::run(&arguments, trials).exit_code()
 }
