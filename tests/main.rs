@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments = libtest_mimic::Arguments::from_args();
-    let kinds = [snapshot::trials, harness::trials];
+    let kinds = [harness::trials];
     let trials = kinds.iter().flat_map(|kind| kind()).collect();
     libtest_mimic::run(&arguments, trials).exit_code()
 }

@@ -1,9 +1,15 @@
 //! Numeric proof: cases, executors, reports.
 
+pub mod cases;
+pub mod check;
 pub mod executors;
 pub mod fixture;
+pub mod formula;
 mod gpu;
 pub mod kernel;
+pub mod laws;
+pub mod references;
+pub mod tolerance;
 
 use crate::diagnostic::Diagnostic;
 use kernel::Kernel;

@@ -75,7 +75,7 @@ pub fn read(path: &str, node: &Node, found: &mut Vec<(String, Domain, Node)>) ->
                 read(&format!("{path}.{}", key.name), inner, found)?;
             }
         }
-        _ => found.push((path.to_owned(), domain(node)?, node.clone())),
+        _ => found.push((path.to_owned(), domain(node).map_err(|error| vec![error])?, node.clone())),
     }
     Ok(())
 }
