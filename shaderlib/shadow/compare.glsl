@@ -64,9 +64,11 @@ float pcf_castano_3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
     vec2 w1 = 1.0 + 2.0 * f;
     vec2 p0 = (centre + (2.0 - f) / w0 - 1.0) / size;
     vec2 p1 = (centre + f / w1 + 1.0) / size;
-    float upper = w0.x * compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), p0, at.depth) + w1.x * compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(p1.x, p0.y), at.depth);
-    float lower = w0.x * compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(p0.x, p1.y), at.depth) + w1.x * compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), p1, at.depth);
-    return (w0.y * upper + w1.y * lower) / 16.0;
+    float a = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), p0, at.depth);
+    float b = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(p1.x, p0.y), at.depth);
+    float c = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(p0.x, p1.y), at.depth);
+    float d = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), p1, at.depth);
+    return (w0.y * (w0.x * a + w1.x * b) + w1.y * (w0.x * c + w1.x * d)) / 16.0;
 }
 
 /// One row of `pcf_castano_5`: three bilinear comparisons.

@@ -42,7 +42,8 @@ ShadowUv project_gl(vec4 sc, float min_w) {
 
 /// The distance along the view axis that a perspective depth stands for.
 float linearize_depth(float d, float near, float far) {
-    return near * far / max(far - d * (far - near), SMALLEST_NORMAL);
+    // The weighted sum does not cancel near d = 1, as far - d*(far - near) does.
+    return near * far / max(far * (1.0 - d) + near * d, SMALLEST_NORMAL);
 }
 
 /// The brightness Igalia's tutorial shows for a depth.

@@ -89,17 +89,23 @@ fn part(path: &str, result: &[Shape]) -> Option<std::ops::Range<usize>> {
     Some(first as usize..(first + shape.words()) as usize)
 }
 
-/// What the terms allow one component of a row's result. Subnormal results may be flushed.
-pub fn allowed(terms: &[Bound], row: &[f64], word: usize, expected: f64) -> f64 {
-    let terms = terms.iter().filter(|bound| bound.words.contains(&word));
-    let sum: f64 = terms
-        .map(|Bound { term, .. }| {
-            let values: Vec<f64> = term.formulas.iter().map(|formula| formula.scalar(row)).collect();
-            (term.kind.allowed)(term.coefficient, &values, expected)
-        })
-        .filter(|allowed| !allowed.is_nan())
-        .sum();
-    sum + f64::from(f32::MIN_POSITIVE)
+/// The values of the terms' formulas over a row, which do not depend on the component.
+pub fn values(terms: &[Bound], row: &[f64]) -> Vec<f64> {
+    terms.iter().flat_map(|bound| &bound.term.formulas).map(|formula| formula.scalar(row)).collect()
+}
+
+/// What the terms allow one component of a row's result, with the row's [`values`].
+pub fn allowed(terms: &[Bound], values: &[f64], word: usize, expected: f64) -> f64 {
+    let (mut sum, mut rest) = (0.0, values);
+    for Bound { term, words } in terms {
+        let (own, others) = rest.split_at(term.formulas.len().min(rest.len()));
+        rest = others;
+        let allowed = (term.kind.allowed)(term.coefficient, own, expected);
+        if words.contains(&word) && !allowed.is_nan() {
+            sum += allowed;
+        }
+    }
+    sum
 }
 
 /// Distance from the f32 nearest to `y` to its neighbour away from zero.

@@ -106,16 +106,27 @@ fn compare(job: &Job<'_>, row: &[f64], expected: &Expected, found: &[u32], kinds
 }
 
 fn compare_one(job: &Job<'_>, row: &[f64], expected: &[f64], found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
+    let values = tolerance::values(&job.terms, row);
     let component = |word: usize| {
         let found = number(found[word], kinds[word]);
         let expected = expected[word];
-        let error = if found == expected { 0.0 } else { (found - expected).abs() };
-        let exact = kinds[word] != ScalarKind::Float;
-        let allowed = if exact { f64::MIN_POSITIVE } else { tolerance::allowed(&job.terms, row, word, expected) };
-        // A value that is no number is infinitely far off.
-        Worst { row: index, word, found, expected, error: if error.is_nan() { f64::INFINITY } else { error }, allowed }
+        let is_float = kinds[word] == ScalarKind::Float;
+        let allowed = if is_float { tolerance::allowed(&job.terms, &values, word, expected) } else { 0.0 };
+        Worst { row: index, word, found, expected, error: distance(found, expected, is_float), allowed }
     };
     (0..kinds.len()).map(component).max_by(|a, b| a.share().total_cmp(&b.share()))
+}
+
+/// How far off a component is. Subnormals may be flushed; no number is infinitely far off.
+fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
+    let error = if found == expected { 0.0 } else { (found - expected).abs() };
+    if error.is_nan() {
+        f64::INFINITY
+    } else if is_float && error <= f64::from(f32::MIN_POSITIVE) {
+        0.0
+    } else {
+        error
+    }
 }
 
 fn is_indeterminate(expected: &Expected) -> bool {
@@ -139,11 +150,12 @@ pub fn law(job: &Job<'_>, law: &BoundLaw<'_>, results: &[u32], transformed: Opti
         if outside || job.expected.get(index).is_some_and(is_indeterminate) || is_ambiguous(job, row) {
             continue;
         }
+        let values = tolerance::values(&job.terms, row);
         for (word, kind) in kinds.iter().enumerate().filter(|(_, kind)| **kind != ScalarKind::Bool) {
             let at = index * kinds.len() + word;
             let value = number(results[at], *kind);
             let other = transformed.map(|words| number(words[at], *kind));
-            let allowed = if other.is_some() { 2.0 * tolerance::allowed(&job.terms, row, word, value) } else { 0.0 };
+            let allowed = if other.is_some() { 2.0 * tolerance::allowed(&job.terms, &values, word, value) + f64::from(f32::MIN_POSITIVE) } else { 0.0 };
             let broken = laws::broken_by(law.law, value, other, word);
             if value.is_nan() || other.is_some_and(f64::is_nan) || broken > allowed {
                 verdict.broken += 1;

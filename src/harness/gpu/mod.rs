@@ -37,7 +37,10 @@ impl Session for Gpu {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        let stride = kernel.input_words().max(1) as usize;
+        if kernel.input_words() == 0 {
+            return self.draw(kernel, &[], 1);
+        }
+        let stride = kernel.input_words() as usize;
         let mut results = Vec::new();
         for batch in inputs.chunks(kernel.batch() as usize * stride) {
             results.extend(self.draw(kernel, batch, (batch.len() / stride) as u32)?);
