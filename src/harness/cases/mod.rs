@@ -215,8 +215,20 @@ fn oracle(node: &Node) -> Result<Oracle, Diagnostic> {
 
 fn table_row(node: &Node) -> Result<TableRow, Diagnostic> {
     let expect = node.required("expect")?.numbers()?;
-    let values = node.entries()?.iter().filter(|(key, _)| key.name != "expect").map(|(key, value)| Ok((key.name.clone(), value.numbers()?)));
-    Ok(TableRow { values: values.collect::<Result<_, _>>()?, expect, span: node.span })
+    Ok(TableRow { values: values_by_path("", node, &["expect"])?, expect, span: node.span })
+}
+
+/// Values of a table by path; tables within it are fields.
+fn values_by_path(prefix: &str, node: &Node, skipped: &[&str]) -> Result<Vec<(String, Vec<f64>)>, Diagnostic> {
+    let mut values = Vec::new();
+    for (key, inner) in node.entries()?.iter().filter(|(key, _)| !skipped.contains(&key.name.as_str())) {
+        let path = format!("{prefix}{}", key.name);
+        match inner.value {
+            reader::Value::Table(_) => values.extend(values_by_path(&format!("{path}."), inner, &[])?),
+            _ => values.push((path, inner.numbers()?)),
+        }
+    }
+    Ok(values)
 }
 
 fn tolerance_terms(node: &Node) -> Result<Vec<Term<Text>>, Diagnostic> {
@@ -261,7 +273,7 @@ fn law(node: &Node) -> Result<Law, Diagnostic> {
         laws::Takes::Numbers => law.numbers = value.numbers()?,
         laws::Takes::Names => law.names = texts(value)?,
         laws::Takes::Point => {
-            law.at = value.entries()?.iter().map(|(key, value)| Ok((key.name.clone(), value.numbers()?))).collect::<Result<_, Diagnostic>>()?;
+            law.at = values_by_path("", value, &[])?;
             law.numbers = node.required("gives")?.numbers()?;
         }
     }
