@@ -1,6 +1,7 @@
 //! Weaves the modules that an entry point reaches into one text, with a map back to the authors'.
 
 mod source_map;
+pub mod wesl;
 
 pub use source_map::{Segment, SourceMap};
 

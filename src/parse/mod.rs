@@ -1,1 +1,3 @@
 //! From text to items, imports and conditions.
+
+pub mod wesl;

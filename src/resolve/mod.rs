@@ -1,5 +1,7 @@
 //! From parsed modules to a graph of items and what each refers to.
 
+pub mod wesl;
+
 use crate::source::Package;
 
 /// The packages a composition may read.
