@@ -1,6 +1,7 @@
 //! From parsed modules to a graph of items and what each refers to.
 
 pub mod wesl;
+pub mod glsl;
 
 use crate::source::Package;
 
