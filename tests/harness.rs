@@ -1,80 +1,91 @@
 //! The numeric harness: executors, kernels, cases.
 
 use std::collections::BTreeMap;
+use std::sync::Mutex;
 
 use lamplight::compose::Language;
-use lamplight::harness::{cases, check, executors, kernel};
-use lamplight::source::{Embedded, Files, SourceSet};
+use lamplight::harness::library::Library;
+use lamplight::harness::{self, check, executors, expression, kernel};
+use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
 /// One trial for each property of the harness and each executor.
 pub fn trials() -> Vec<Trial> {
-    let executors = executors::ALL.iter().map(|executor| Trial::test(format!("harness::executor::{}", executor.name), move || runs(executor)));
-    executors.chain([Trial::test("harness::library", library)]).collect()
+    let executors = executors::ALL.iter().map(|executor| {
+        Trial::test(format!("harness::executor::{}", executor.name), move || {
+            harness::on_thread(|| runs(executor).map_err(|failed| failed.message().unwrap_or_default().to_owned()))
+                .ok_or("panicked")?
+                .map_err(Failed::from)
+        })
+    });
+    executors.chain([Trial::test("harness::library", library), Trial::test("harness::expressions", expressions)]).collect()
+}
+
+/// Runs with every executor open, on a thread that ends before the trial does.
+fn opened<T: Send>(run: impl FnOnce(&mut [check::Open]) -> Result<T, Failed> + Send) -> Result<T, Failed> {
+    let outcome = harness::on_thread(|| {
+        let mut open = Vec::new();
+        for entry in executors::ALL {
+            open.push(check::Open { executor: entry.name, session: (entry.open)().map_err(|error| entry.missing(&error))? });
+        }
+        run(&mut open).map_err(|failed| failed.message().unwrap_or_default().to_owned())
+    });
+    outcome.ok_or("panicked")?.map_err(Failed::from)
 }
 
 /// The library's own cases, in both languages, on every executor.
 fn library() -> Result<(), Failed> {
-    let mut sources = SourceSet::default();
-    let mut files = Vec::new();
-    let only = std::env::var("ONLY").unwrap_or_default();
-    for path in Embedded.list(&["toml"]) {
-        let module = path.trim_end_matches(".toml").replace('/', "::");
-        if !module.contains("::") || !module.contains(&only) {
-            continue;
+    opened(|open| {
+        let library = Library::embedded();
+        let sources = Mutex::new(SourceSet::default());
+        let only = std::env::var("LAMPLIGHT_CASES").unwrap_or_default();
+        let paths: Vec<_> = library.case_files().into_iter().filter(|path| path.contains(&only)).collect();
+        let report =
+            library.check(&sources, &paths, &[Language::Wesl, Language::Glsl], open).map_err(|errors| render(&sources, &errors))?;
+        println!("{}", check::table(&report));
+        if report.passed() { Ok(()) } else { Err(check::failures(&report).into()) }
+    })
+}
+
+/// Values of expressions, alike in both languages and on every executor.
+const EXPRESSIONS: &[(&str, &str)] = &[
+    ("lighting::spot::cone_exponent(0.5, 0.25, 2.0)", "0.25"),
+    ("lamplight::lighting::spot::cone_hard(0.5, 0.75) + 1f", "1"),
+    ("vec3f(1, 2, 3).zyx * 0.5", "1.5 1 0.5"),
+    ("mat2x2<f32>(1.0, 2.0, 3.0, 4.0)", "1 2 3 4"),
+    ("math::safe::is_nan_bits(1.0)", "false"),
+    ("lighting::material::material_index(3, false)", "7"),
+    (
+        "ambient::sh::sh4_irradiance(vec3f(0.0), array<vec3f, 4>(vec3f(1.0), vec3f(), vec3f(0.0), vec3<f32>(0.0)))",
+        "0.886227 0.886227 0.886227",
+    ),
+    ("brdf::diffuse::lambert(vec3f(0.0, 1.0, 0.0), vec3f(0.0, 1.0, 0.0))", "1"),
+    ("shadow::coord::project(vec4f(0.0, 0.0, 0.5, 1.0), 0.0)", "0.5 0.5 0.5 true"),
+];
+
+fn expressions() -> Result<(), Failed> {
+    opened(|open| {
+        let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
+        let mut wrong = String::new();
+        for (text, expected) in EXPRESSIONS {
+            for open in open.iter_mut() {
+                for language in [Language::Wesl, Language::Glsl] {
+                    let found = match expression::evaluate(&library, &sources, text, language, open.session.as_mut()) {
+                        Ok(value) => value.to_string(),
+                        Err(errors) => render(&sources, &errors).message().unwrap_or_default().to_owned(),
+                    };
+                    if found != *expected {
+                        wrong += &format!("{text} in {language:?} on {}: {found}, not {expected}\n", open.executor);
+                    }
+                }
+            }
         }
-        let id = sources.add(path.as_str(), Embedded.read(&path).ok().flatten().unwrap_or_default());
-        files.push((module, cases::parse(&sources, id).map_err(|errors| render(&sources, &errors))?));
-    }
-    let mut open = Vec::new();
-    for entry in executors::ALL {
-        open.push(check::Open { executor: entry.name, session: (entry.open)().map_err(|error| entry.missing(&error))? });
-    }
-    let start = std::time::Instant::now();
-    let report = check::check(&files, &[Language::Wesl, Language::Glsl], &flat, &mut open).map_err(|errors| render(&sources, &errors))?;
-    println!("{}{}{:?}", check::table(&report), check::failures(&report), start.elapsed());
-    if report.passed() { Ok(()) } else { Err("numbers are off".into()) }
+        if wrong.is_empty() { Ok(()) } else { Err(wrong.into()) }
+    })
 }
 
-fn render(sources: &SourceSet, errors: &[lamplight::diagnostic::Diagnostic]) -> Failed {
-    lamplight::diagnostic::render::render(sources, errors, Default::default()).into()
-}
-
-fn flat(module: &str, language: Language, _: &[String]) -> Result<std::sync::Arc<naga::Module>, Vec<lamplight::diagnostic::Diagnostic>> {
-    let path = module.replace("::", "/");
-    let mut text = String::new();
-    let error = |e: String| vec![lamplight::diagnostic::Diagnostic::error(lamplight::diagnostic::codes::WGSL_ERROR, e)];
-    let extension = if language == Language::Wesl { "wesl" } else { "glsl" };
-    include(&path, extension, &mut Vec::new(), &mut text);
-    if language == Language::Wesl {
-        return naga::front::wgsl::parse_str(&text).map(Into::into).map_err(|e| error(e.emit_to_string(&text)));
-    }
-    let text = format!("#version 450\n{text}\nvoid main() {{}}\n");
-    let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);
-    naga::front::glsl::Frontend::default().parse(&options, &text).map(Into::into).map_err(|e| error(e.emit_to_string(&text)))
-}
-
-fn include(path: &str, extension: &str, seen: &mut Vec<String>, text: &mut String) {
-    if seen.iter().any(|known| known == path) {
-        return;
-    }
-    seen.push(path.to_owned());
-    let own = Embedded.read(&format!("{path}.{extension}")).ok().flatten().unwrap_or_default();
-    for line in own.lines() {
-        if let Some(rest) = line.strip_prefix("import package::") {
-            let parts: Vec<_> = rest.split("::").collect();
-            include(&format!("{}/{}", parts[0], parts[1]), extension, seen, text);
-        } else if let Some(rest) = line.strip_prefix("#include \"") {
-            let folder = path.split('/').next().unwrap();
-            let rest = rest.trim_end_matches('"').trim_end_matches(".glsl");
-            let inner = rest.strip_prefix("../").map_or(format!("{folder}/{rest}"), str::to_owned);
-            include(&inner, extension, seen, text);
-        }
-    }
-    for line in own.lines().filter(|line| !line.starts_with("import ") && !line.starts_with("#include")) {
-        text.push_str(line);
-        text.push('\n');
-    }
+fn render(sources: &Mutex<SourceSet>, errors: &[lamplight::diagnostic::Diagnostic]) -> Failed {
+    lamplight::diagnostic::render::render(&sources.lock().unwrap(), errors, Default::default()).into()
 }
 
 const SHAPES: &str = "
@@ -88,7 +99,7 @@ fn shapes(a: f32, o: Outer, u: vec3u) -> Outer {
     return r;
 }";
 
-fn runs(executor: &executors::Entry) -> Result<(), Failed> {
+fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
     let module = naga::front::wgsl::parse_str(SHAPES)?;
     let kernel = kernel::build(&module, "shapes", &BTreeMap::new()).map_err(|error| format!("{error:?}"))?;
     assert_eq!((kernel.input_words(), kernel.result_words()), (17, 13));

@@ -63,9 +63,6 @@ impl Report {
     }
 }
 
-/// Stack of the threads that compile shaders: naga recurses along expressions.
-const STACK: usize = 64 << 20;
-
 /// Checks the cases of each module (`lighting::spot` and its file).
 ///
 /// Errors are mistakes in the cases or in the modules; failing numbers are in the report.
@@ -83,7 +80,7 @@ pub fn check(files: &[(String, File)], languages: &[Language], subjects: &Subjec
     }
     let columns: Vec<Vec<Outcome>> = std::thread::scope(|scope| {
         let jobs = &jobs;
-        let threads: Vec<_> = open.iter_mut().map(|open| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, move || run_all(jobs, open))).collect();
+        let threads: Vec<_> = open.iter_mut().map(|open| std::thread::Builder::new().stack_size(super::STACK).spawn_scoped(scope, move || run_all(jobs, open))).collect();
         threads.into_iter().filter_map(|thread| thread.ok()?.join().ok()).collect()
     });
     Ok(Report { outcomes: interleaved(columns) })
