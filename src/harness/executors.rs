@@ -23,7 +23,8 @@ pub struct Unavailable {
 impl Entry {
     /// What to tell someone on whose machine it is missing.
     pub fn missing(&self, unavailable: &Unavailable) -> String {
-        let install = if self.needs.is_empty() { String::new() } else { format!("\ninstall it with: apt-get install {}", self.needs.join(" ")) };
+        let install =
+            if self.needs.is_empty() { String::new() } else { format!("\ninstall it with: apt-get install {}", self.needs.join(" ")) };
         format!("the executor `{}` is not available: {}{install}", self.name, unavailable.reason)
     }
 }

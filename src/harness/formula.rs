@@ -216,7 +216,10 @@ impl Parser<'_> {
     fn call(&mut self, name: &str, range: Range<usize>) -> Parsed {
         let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
             let known = nearest(name, FUNCTIONS.iter().map(|function| function.name));
-            return Err((range, format!("there is no function `{name}`{}", known.map_or(String::new(), |known| format!("; did you mean `{known}`?")))));
+            return Err((
+                range,
+                format!("there is no function `{name}`{}", known.map_or(String::new(), |known| format!("; did you mean `{known}`?"))),
+            ));
         };
         self.at += 1;
         let mut arguments = vec![self.binary(0)?];

@@ -69,8 +69,13 @@ pub fn transformed(law: &Law, rows: &Rows, scope: &Scope<'_>) -> Result<Option<R
     let places: Vec<_> = law.names.iter().map(|name| place(law, name, scope)).collect::<Result<_, _>>()?;
     for row in words.chunks_mut(rows.stride) {
         match law.kind.name {
-            "rising" | "falling" => places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize).for_each(|word| raise(&mut row[word], rows.kinds[word])),
-            "even" => places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize).for_each(|word| row[word] ^= 0x8000_0000),
+            "rising" | "falling" => places
+                .iter()
+                .flat_map(|(first, shape)| *first..first + shape.words() as usize)
+                .for_each(|word| raise(&mut row[word], rows.kinds[word])),
+            "even" => {
+                places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize).for_each(|word| row[word] ^= 0x8000_0000)
+            }
             "swap" => swap(row, &places),
             "at" => set(law, row, scope)?,
             _ => return Ok(None),

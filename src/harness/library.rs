@@ -48,13 +48,20 @@ impl Library {
 
     /// First path components of the modules: `lighting`, `brdf`, and so on.
     pub fn folders(&self) -> Vec<String> {
-        let mut folders: Vec<_> = self.files.list(&["wesl"]).iter().filter_map(|path| Some(path.split_once(['/', '.'])?.0.to_owned())).collect();
+        let mut folders: Vec<_> =
+            self.files.list(&["wesl"]).iter().filter_map(|path| Some(path.split_once(['/', '.'])?.0.to_owned())).collect();
         folders.dedup();
         folders
     }
 
     /// Checks case files (paths below the package) in the languages on the open executors.
-    pub fn check(&self, sources: &Mutex<SourceSet>, paths: &[String], languages: &[Language], open: &mut [Open]) -> Result<Report, Diagnostics> {
+    pub fn check(
+        &self,
+        sources: &Mutex<SourceSet>,
+        paths: &[String],
+        languages: &[Language],
+        open: &mut [Open],
+    ) -> Result<Report, Diagnostics> {
         let files = self.read(sources, paths)?;
         let subjects = |module: &str, language: Language, functions: &[String]| self.module(sources, module, language, functions);
         check::check(&files, languages, &subjects, open)
@@ -73,7 +80,13 @@ impl Library {
     }
 
     /// A module with the named functions of a module of the package.
-    pub fn module(&self, sources: &Mutex<SourceSet>, module: &str, language: Language, functions: &[String]) -> Result<Arc<naga::Module>, Diagnostics> {
+    pub fn module(
+        &self,
+        sources: &Mutex<SourceSet>,
+        module: &str,
+        language: Language,
+        functions: &[String],
+    ) -> Result<Arc<naga::Module>, Diagnostics> {
         let path = module.replace("::", "/");
         let (root, extra) = match language {
             Language::Wesl => {
@@ -92,7 +105,13 @@ impl Library {
     }
 
     /// A module of its own package that imports this one by name.
-    pub fn importing(&self, sources: &Mutex<SourceSet>, root: (&str, &str), language: Language, function: &str) -> Result<Validated, Diagnostics> {
+    pub fn importing(
+        &self,
+        sources: &Mutex<SourceSet>,
+        root: (&str, &str),
+        language: Language,
+        function: &str,
+    ) -> Result<Validated, Diagnostics> {
         let files = Memory(BTreeMap::from([(root.0.to_owned(), root.1.to_owned())]));
         let mut dependencies = self.dependencies();
         dependencies.push(self.package());
@@ -113,11 +132,23 @@ fn shared(name: &str, files: &Arc<dyn Files>) -> Package {
     Package { name: name.to_owned(), files: Box::new(Overlay { base: files.clone(), extra: BTreeMap::new() }) }
 }
 
-fn compose_module(sources: &Mutex<SourceSet>, packages: &Packages, root: &str, language: Language, functions: &[String]) -> Result<Validated, Diagnostics> {
+fn compose_module(
+    sources: &Mutex<SourceSet>,
+    packages: &Packages,
+    root: &str,
+    language: Language,
+    functions: &[String],
+) -> Result<Validated, Diagnostics> {
     validate::validate(&composed(sources, packages, root, language, functions)?)
 }
 
-fn composed(sources: &Mutex<SourceSet>, packages: &Packages, root: &str, language: Language, functions: &[String]) -> Result<Composed, Diagnostics> {
+fn composed(
+    sources: &Mutex<SourceSet>,
+    packages: &Packages,
+    root: &str,
+    language: Language,
+    functions: &[String],
+) -> Result<Composed, Diagnostics> {
     let settings = Settings::default();
     let mut keep = functions.to_vec();
     match language {

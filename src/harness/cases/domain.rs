@@ -17,15 +17,27 @@ struct Kind {
 }
 
 const KINDS: &[Kind] = &[
-    Kind { key: "values", others: &[], read: |value, _| Ok(Domain::Values(value.elements()?.iter().map(Node::numbers).collect::<Result<_, _>>()?)) },
+    Kind {
+        key: "values",
+        others: &[],
+        read: |value, _| Ok(Domain::Values(value.elements()?.iter().map(Node::numbers).collect::<Result<_, _>>()?)),
+    },
     Kind { key: "grid", others: &["count"], read: |value, all| Ok(Domain::Grid { range: value.pair()?, count: count(all)? }) },
     Kind { key: "log", others: &["count"], read: log },
-    Kind { key: "random", others: &["count", "seed"], read: |value, all| Ok(Domain::Random { range: value.pair()?, count: count(all)?, seed: seed(all)? }) },
+    Kind {
+        key: "random",
+        others: &["count", "seed"],
+        read: |value, all| Ok(Domain::Random { range: value.pair()?, count: count(all)?, seed: seed(all)? }),
+    },
     Kind { key: "unit", others: &["seed"], read: |value, all| Ok(Domain::Unit { count: value.count(1, MOST)?, seed: seed(all)? }) },
     Kind { key: "hemisphere", others: &["count", "seed"], read: |value, all| about(value, all, About::Hemisphere) },
     Kind { key: "grazing", others: &["count", "seed"], read: |value, all| about(value, all, About::Grazing) },
     Kind { key: "same", others: &[], read: |value, _| Ok(Domain::About { of: path(value)?, kind: About::Same, count: 1, seed: 0 }) },
-    Kind { key: "around", others: &["ulps"], read: |value, all| Ok(Domain::Around { value: value.numbers()?, ulps: all.required("ulps")?.count(1, 1000)? }) },
+    Kind {
+        key: "around",
+        others: &["ulps"],
+        read: |value, all| Ok(Domain::Around { value: value.numbers()?, ulps: all.required("ulps")?.count(1, 1000)? }),
+    },
     Kind { key: "special", others: &[], read: |value, _| Ok(Domain::Special(value.choice(SPECIALS)?)) },
 ];
 
@@ -94,7 +106,9 @@ fn domain(node: &Node) -> Result<Domain, Diagnostic> {
         Value::Array(elements) => elements.iter().map(domain).collect::<Result<_, _>>().map(Domain::Union),
         Value::Table(_) => match KINDS.iter().find(|kind| node.get(kind.key).is_some()) {
             Some(kind) => (kind.read)(node.required(kind.key)?, node),
-            None => Err(node.error("this table is no domain").note(format!("domains are {}", KINDS.iter().map(|kind| kind.key).collect::<Vec<_>>().join(", ")))),
+            None => Err(node
+                .error("this table is no domain")
+                .note(format!("domains are {}", KINDS.iter().map(|kind| kind.key).collect::<Vec<_>>().join(", ")))),
         },
         _ => node.number().map(|number| Domain::Values(vec![vec![number]])),
     }
@@ -149,7 +163,11 @@ impl Domain {
         let kinds = shape.kinds();
         let to_words = |value: Vec<f64>| {
             let splat = value.len() == 1;
-            kinds.iter().enumerate().map(|(index, kind)| word(value.get(if splat { 0 } else { index }).copied().unwrap_or(0.0), *kind)).collect()
+            kinds
+                .iter()
+                .enumerate()
+                .map(|(index, kind)| word(value.get(if splat { 0 } else { index }).copied().unwrap_or(0.0), *kind))
+                .collect()
         };
         self.values(kinds.len(), other, salt).into_iter().map(to_words).collect()
     }

@@ -78,7 +78,8 @@ fn patterned(node: &Node, kind: TextureKind, width: u32, height: u32) -> Result<
     let pattern = node.required("pattern")?.choice(PATTERNS)?;
     let numbers = |name: &str, default: f64| node.get(name).map_or(Ok(vec![default]), Node::numbers);
     let number = |name: &str, default: f64| node.get(name).map_or(Ok(default), Node::number);
-    let settings = Settings { low: numbers("low", 0.0)?, high: numbers("high", 1.0)?, cells: number("cells", 4.0)?, edge: number("edge", 0.5)? };
+    let settings =
+        Settings { low: numbers("low", 0.0)?, high: numbers("high", 1.0)?, cells: number("cells", 4.0)?, edge: number("edge", 0.5)? };
     let channel = |values: &[f64], index: usize| values.get(index).or(values.last()).copied().unwrap_or(0.0);
     let mut texels = Vec::new();
     for (layer, y) in (0..kind.layers()).flat_map(|layer| (0..height).map(move |y| (layer, y))) {

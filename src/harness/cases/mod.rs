@@ -58,9 +58,8 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::{SourceId, SourceSet, Span};
 use reader::Node;
 
-const CASE_KEYS: &[&str] = &[
-    "function", "inputs", "mode", "oracle", "formula", "rows", "tolerance", "where", "near", "margin", "ambiguous", "laws", "fixtures",
-];
+const CASE_KEYS: &[&str] =
+    &["function", "inputs", "mode", "oracle", "formula", "rows", "tolerance", "where", "near", "margin", "ambiguous", "laws", "fixtures"];
 
 /// Cases of one module.
 #[derive(Debug)]
@@ -194,9 +193,9 @@ fn chosen_fixtures(node: &Node, fixtures: &BTreeMap<String, Arc<Fixture>>) -> Re
     let Some(table) = node.get("fixtures") else { return Ok(BTreeMap::new()) };
     let chosen = table.entries()?.iter().map(|(parameter, name)| {
         let wanted = name.text()?;
-        let found = fixtures.get(wanted).ok_or_else(|| {
-            name.error(format!("there is no fixture `{wanted}`")).suggest(wanted, fixtures.keys().map(String::as_str))
-        })?;
+        let found = fixtures
+            .get(wanted)
+            .ok_or_else(|| name.error(format!("there is no fixture `{wanted}`")).suggest(wanted, fixtures.keys().map(String::as_str)))?;
         Ok((parameter.name.clone(), found.clone()))
     });
     chosen.collect()

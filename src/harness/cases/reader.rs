@@ -44,7 +44,9 @@ fn node(value: &Spanned<DeValue<'_>>, source: SourceId) -> Node {
     let span = Span::new(source, value.span());
     let value = match value.get_ref() {
         DeValue::Boolean(value) => Value::Bool(*value),
-        DeValue::Integer(value) => i64::from_str_radix(value.as_str(), value.radix()).map_or(Value::Number(f64::NAN), |n| Value::Number(n as f64)),
+        DeValue::Integer(value) => {
+            i64::from_str_radix(value.as_str(), value.radix()).map_or(Value::Number(f64::NAN), |n| Value::Number(n as f64))
+        }
         DeValue::Float(value) => Value::Number(value.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::String(value) => Value::Text(value.to_string()),
         DeValue::Datetime(value) => Value::Text(value.to_string()),

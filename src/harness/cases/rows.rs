@@ -70,7 +70,8 @@ pub fn rows(case: &Case, scope: &Scope<'_>) -> Result<Rows, Diagnostic> {
     let rows = Rows { numbers: numbers(&words, &kinds), words, stride, kinds, units };
     let Some(filter) = &case.filter else { return Ok(rows) };
     let filter = filter.bind(scope)?;
-    let kept = (0..rows.len()).filter(|index| filter.scalar(rows.row(*index)) == 1.0).flat_map(|index| rows.row_words(index).to_vec()).collect();
+    let kept =
+        (0..rows.len()).filter(|index| filter.scalar(rows.row(*index)) == 1.0).flat_map(|index| rows.row_words(index).to_vec()).collect();
     Ok(rows.with_words(kept))
 }
 
@@ -82,7 +83,8 @@ fn generated(case: &Case, scope: &Scope<'_>, kinds: &[ScalarKind], stride: usize
     for (index, column) in columns.iter().enumerate() {
         rows = if case.zip && index > 0 { zipped(rows, column, kinds, scope) } else { product(rows, column, kinds, scope, case)? };
     }
-    let units = columns.iter().filter(|column| column.domain.is_unit()).map(|column| column.first..column.first + column.shape.words() as usize);
+    let units =
+        columns.iter().filter(|column| column.domain.is_unit()).map(|column| column.first..column.first + column.shape.words() as usize);
     Ok((rows.concat(), units.collect()))
 }
 
@@ -107,13 +109,20 @@ fn columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Dia
     for (name, _) in &scope.0 {
         let given = |path: &str| path == *name || path.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
         if !case.inputs.iter().any(|(path, _, _)| given(path)) {
-            return Err(Diagnostic::error(codes::CASE_INVALID, format!("the parameter `{name}` is given no values")).at(case.span, "of this function"));
+            return Err(Diagnostic::error(codes::CASE_INVALID, format!("the parameter `{name}` is given no values"))
+                .at(case.span, "of this function"));
         }
     }
     Ok(columns)
 }
 
-fn product(rows: Vec<Vec<u32>>, column: &Column<'_>, kinds: &[ScalarKind], scope: &Scope<'_>, case: &Case) -> Result<Vec<Vec<u32>>, Diagnostic> {
+fn product(
+    rows: Vec<Vec<u32>>,
+    column: &Column<'_>,
+    kinds: &[ScalarKind],
+    scope: &Scope<'_>,
+    case: &Case,
+) -> Result<Vec<Vec<u32>>, Diagnostic> {
     let fixed = column.domain.needs().is_empty().then(|| values(&rows[0], column, kinds, scope, 0));
     let mut grown = Vec::new();
     for (salt, row) in rows.iter().enumerate() {
@@ -128,7 +137,9 @@ fn product(rows: Vec<Vec<u32>>, column: &Column<'_>, kinds: &[ScalarKind], scope
         grown.extend(values.iter().map(|value| placed(row, column.first, value)));
         if grown.len() > MOST_ROWS {
             let message = format!("the domains of `{}` multiply to more than {MOST_ROWS} rows", case.function);
-            return Err(Diagnostic::error(codes::CASE_INVALID, message).at(case.span, "of this function").note("`mode = \"zip\"` takes the domains side by side"));
+            return Err(Diagnostic::error(codes::CASE_INVALID, message)
+                .at(case.span, "of this function")
+                .note("`mode = \"zip\"` takes the domains side by side"));
         }
     }
     Ok(grown)

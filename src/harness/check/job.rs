@@ -66,8 +66,11 @@ pub fn prepare<'a>(module: &str, file: &'a File, languages: &[Language], subject
     let mut functions: Vec<String> = file.cases.iter().map(|case| case.function.clone()).collect();
     functions.sort();
     functions.dedup();
-    let modules: Vec<_> =
-        languages.iter().map(|language| Ok((*language, subjects(module, *language, &functions)?))).collect::<Result<_, Diagnostics>>()?;
+    let modules: Vec<_> = languages
+        .iter()
+        .map(|language| Ok((*language, subjects(module, *language, &functions)?)))
+        .collect::<Result<_, Diagnostics>>()
+        .map_err(|errors| errors.into_iter().map(|error| placed(error, file)).collect::<Vec<_>>())?;
     let jobs: Vec<_> = file.cases.par_iter().map(|case| job(module, case, &modules)).collect();
     let (mut done, mut errors) = (Vec::new(), Vec::new());
     for result in jobs {
@@ -77,6 +80,15 @@ pub fn prepare<'a>(module: &str, file: &'a File, languages: &[Language], subject
         }
     }
     if errors.is_empty() { Ok(done) } else { Err(errors) }
+}
+
+/// An error without a place is put at the case that names the function it is about.
+fn placed(error: Diagnostic, file: &File) -> Diagnostic {
+    let about = file.cases.iter().find(|case| error.message.contains(&format!("`{}`", case.function)));
+    match about {
+        Some(case) if error.labels.is_empty() => error.at(case.span, "named here"),
+        _ => error,
+    }
 }
 
 fn job<'a>(module: &str, case: &'a Case, modules: &[(Language, Arc<naga::Module>)]) -> Result<Job<'a>, Diagnostic> {
@@ -94,7 +106,11 @@ fn job<'a>(module: &str, case: &'a Case, modules: &[(Language, Arc<naga::Module>
         return Err(placed(Diagnostic::error(codes::CASE_INVALID, "no row is left to try")));
     }
     let terms = tolerance::bind(&case.tolerance, &scope, &first.results).map_err(placed)?;
-    let laws = case.laws.iter().map(|law| Ok(BoundLaw { law, rows: laws::transformed(law, &rows, &scope)? })).collect::<Result<_, Diagnostic>>()?;
+    let laws = case
+        .laws
+        .iter()
+        .map(|law| Ok(BoundLaw { law, rows: laws::transformed(law, &rows, &scope)? }))
+        .collect::<Result<_, Diagnostic>>()?;
     let mut job = Job {
         module: module.to_owned(),
         case,
@@ -115,9 +131,8 @@ fn job<'a>(module: &str, case: &'a Case, modules: &[(Language, Arc<naga::Module>
 /// Both languages must have the same parameters and results.
 fn agree(kernels: &[(Language, Kernel)]) -> Result<(), Diagnostic> {
     let kinds = |kernel: &Kernel| kernel.words().flat_map(|(_, shape)| shape.kinds()).collect::<Vec<_>>();
-    let differs = kernels.iter().find(|(_, kernel)| {
-        kinds(kernel) != kinds(&kernels[0].1) || kernel.result_kinds() != kernels[0].1.result_kinds()
-    });
+    let differs =
+        kernels.iter().find(|(_, kernel)| kinds(kernel) != kinds(&kernels[0].1) || kernel.result_kinds() != kernels[0].1.result_kinds());
     match differs {
         Some((_, kernel)) => {
             let message = format!("`{}` has other parameters or another result in the other language", kernel.name);

@@ -155,7 +155,11 @@ pub fn law(job: &Job<'_>, law: &BoundLaw<'_>, results: &[u32], transformed: Opti
             let at = index * kinds.len() + word;
             let value = number(results[at], *kind);
             let other = transformed.map(|words| number(words[at], *kind));
-            let allowed = if other.is_some() { 2.0 * tolerance::allowed(&job.terms, &values, word, value) + f64::from(f32::MIN_POSITIVE) } else { 0.0 };
+            let allowed = if other.is_some() {
+                2.0 * tolerance::allowed(&job.terms, &values, word, value) + f64::from(f32::MIN_POSITIVE)
+            } else {
+                0.0
+            };
             let broken = laws::broken_by(law.law, value, other, word);
             if value.is_nan() || other.is_some_and(f64::is_nan) || broken > allowed {
                 verdict.broken += 1;

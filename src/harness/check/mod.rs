@@ -80,7 +80,10 @@ pub fn check(files: &[(String, File)], languages: &[Language], subjects: &Subjec
     }
     let columns: Vec<Vec<Outcome>> = std::thread::scope(|scope| {
         let jobs = &jobs;
-        let threads: Vec<_> = open.iter_mut().map(|open| std::thread::Builder::new().stack_size(super::STACK).spawn_scoped(scope, move || run_all(jobs, open))).collect();
+        let threads: Vec<_> = open
+            .iter_mut()
+            .map(|open| std::thread::Builder::new().stack_size(super::STACK).spawn_scoped(scope, move || run_all(jobs, open)))
+            .collect();
         threads.into_iter().filter_map(|thread| thread.ok()?.join().ok()).collect()
     });
     Ok(Report { outcomes: interleaved(columns) })

@@ -3,7 +3,8 @@
 use super::{Outcome, Report};
 use crate::compose::Language;
 
-const HEADINGS: [&str; 9] = ["function", "language", "executor", "inputs", "worst ULP", "worst error", "allowed ULP", "headroom", "ambiguous"];
+const HEADINGS: [&str; 9] =
+    ["function", "language", "executor", "inputs", "worst ULP", "worst error", "allowed ULP", "headroom", "ambiguous"];
 
 /// One line for each function, language and executor.
 pub fn table(report: &Report) -> String {
@@ -25,10 +26,21 @@ fn row(outcome: &Outcome) -> [String; 9] {
     let tail = match &outcome.verdict {
         Err(_) => ["-", "-", "-", "-", "not run", "-"].map(str::to_owned),
         Ok(verdict) => {
-            let share = if verdict.passed() { verdict.worst.map_or("exact".to_owned(), |worst| headroom(worst.share())) } else { "FAILED".to_owned() };
+            let share = if verdict.passed() {
+                verdict.worst.map_or("exact".to_owned(), |worst| headroom(worst.share()))
+            } else {
+                "FAILED".to_owned()
+            };
             let number = |pick: fn(&super::Worst) -> f64| verdict.worst.as_ref().map_or("0".to_owned(), |worst| short(pick(worst)));
             let ambiguous = format!("{:.2} %", 100.0 * verdict.ambiguous as f64 / verdict.inputs.max(1) as f64);
-            [verdict.inputs.to_string(), number(|worst| worst.ulps()), number(|worst| worst.error), number(|worst| worst.allowed_ulps()), share, ambiguous]
+            [
+                verdict.inputs.to_string(),
+                number(|worst| worst.ulps()),
+                number(|worst| worst.error),
+                number(|worst| worst.allowed_ulps()),
+                share,
+                ambiguous,
+            ]
         }
     };
     let mut cells = head.into_iter().chain(tail);
@@ -39,7 +51,14 @@ fn row(outcome: &Outcome) -> [String; 9] {
 pub fn failures(report: &Report) -> String {
     let mut text = String::new();
     for outcome in report.outcomes.iter().filter(|outcome| !outcome.passed()) {
-        let place = format!("{}::{} ({}, {} on {})", outcome.module, outcome.function, language(outcome.language), outcome.executor, outcome.adapter);
+        let place = format!(
+            "{}::{} ({}, {} on {})",
+            outcome.module,
+            outcome.function,
+            language(outcome.language),
+            outcome.executor,
+            outcome.adapter
+        );
         match &outcome.verdict {
             Err(error) => text += &format!("{place} did not run: {}\n", error.message),
             Ok(verdict) => {

@@ -27,7 +27,12 @@ pub fn shrink(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, failing
     Ok(describe(job, &best, &found))
 }
 
-fn first_failing(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, candidates: &[Vec<u32>]) -> Result<Option<Vec<u32>>, Diagnostic> {
+fn first_failing(
+    job: &Job<'_>,
+    kernel: &Kernel,
+    session: &mut dyn Session,
+    candidates: &[Vec<u32>],
+) -> Result<Option<Vec<u32>>, Diagnostic> {
     if candidates.is_empty() {
         return Ok(None);
     }

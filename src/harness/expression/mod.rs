@@ -54,12 +54,18 @@ fn component(word: u32, kind: ScalarKind) -> String {
 }
 
 /// The value of an expression. Errors point into it, as a source named `<expression>`.
-pub fn evaluate(library: &Library, sources: &Mutex<SourceSet>, text: &str, language: Language, session: &mut dyn Session) -> Result<Value, Diagnostics> {
+pub fn evaluate(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    text: &str,
+    language: Language,
+    session: &mut dyn Session,
+) -> Result<Value, Diagnostics> {
     let id = lock(sources).add("<expression>", text);
-    let module = module(library, sources, text, language).map_err(|(errors, wrapper)| {
-        errors.into_iter().map(|error| relocated(error, &lock(sources), &wrapper, id)).collect::<Vec<_>>()
-    })?;
-    let whole = |error: Diagnostic| if error.labels.is_empty() { error.at(Span::new(id, 0..text.len()), "in this expression") } else { error };
+    let module = module(library, sources, text, language)
+        .map_err(|(errors, wrapper)| errors.into_iter().map(|error| relocated(error, &lock(sources), &wrapper, id)).collect::<Vec<_>>())?;
+    let whole =
+        |error: Diagnostic| if error.labels.is_empty() { error.at(Span::new(id, 0..text.len()), "in this expression") } else { error };
     let kernel = kernel::build(&module, FUNCTION, &BTreeMap::new()).map_err(|error| vec![whole(error)])?;
     let words = session.run(&kernel, &[]).map_err(|error| vec![whole(error)])?;
     Ok(Value { words, kinds: kernel.result_kinds() })
@@ -92,7 +98,8 @@ fn returning(validated: Validated) -> Result<(naga::Module, Handle<naga::Type>),
     let nothing = || Diagnostic::error(codes::UNTESTABLE_FUNCTION, "the expression has no value");
     let handle = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(FUNCTION)).map(|(handle, _)| handle);
     let handle = handle.ok_or_else(nothing)?;
-    let value: Handle<Expression> = module.functions[handle].named_expressions.iter().last().map(|(value, _)| *value).ok_or_else(nothing)?;
+    let value: Handle<Expression> =
+        module.functions[handle].named_expressions.iter().last().map(|(value, _)| *value).ok_or_else(nothing)?;
     let ty = match &info[handle][value].ty {
         TypeResolution::Handle(ty) => *ty,
         TypeResolution::Value(inner) => module.types.insert(naga::Type { name: None, inner: inner.clone() }, naga::Span::UNDEFINED),

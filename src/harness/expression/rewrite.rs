@@ -78,7 +78,12 @@ pub fn glsl(expression: &str, library: &Library, module: &Module, ty: Handle<Typ
 }
 
 /// The GLSL for the first tokens, and how many those are.
-fn translate(expression: &str, tokens: &[Range<usize>], library: &Library, includes: &mut std::collections::BTreeSet<String>) -> (String, usize) {
+fn translate(
+    expression: &str,
+    tokens: &[Range<usize>],
+    library: &Library,
+    includes: &mut std::collections::BTreeSet<String>,
+) -> (String, usize) {
     let text = |index: usize| tokens.get(index).map_or("", |range| &expression[range.clone()]);
     if text(1) == "::" {
         let mut used = 1;
@@ -95,6 +100,13 @@ fn translate(expression: &str, tokens: &[Range<usize>], library: &Library, inclu
     let solid: Vec<usize> = (0..tokens.len().min(48)).filter(|index| !text(*index).trim().is_empty()).collect();
     let starts_here = solid.first() == Some(&0);
     match constructor(&solid.iter().map(|index| text(*index)).collect::<Vec<_>>()).filter(|_| starts_here) {
+        // GLSL has no constructor without arguments.
+        Some((name, used))
+            if solid.get(used + 1).is_some_and(|close| (text(solid[used]), text(*close)) == ("(", ")")) && !name.contains('[') =>
+        {
+            let zero = if name.starts_with('b') { "false" } else { "0" };
+            (format!("{name}({zero})"), solid[used + 1] + 1)
+        }
         Some((name, used)) => (name, solid[used - 1] + 1),
         None => (literal(text(0)), 1),
     }

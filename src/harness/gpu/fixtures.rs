@@ -109,13 +109,7 @@ fn draw_layer(
     queue.submit([encoder.finish()]);
 }
 
-fn create(
-    device: &wgpu::Device,
-    texture: &Texture,
-    layers: u32,
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
+fn create(device: &wgpu::Device, texture: &Texture, layers: u32, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers },
@@ -134,8 +128,7 @@ fn write(queue: &wgpu::Queue, target: &wgpu::Texture, texture: &Texture, layers:
     let layer = row * texture.height as usize;
     let texels = &texture.texels[layers.start as usize * layer..layers.end as usize * layer];
     let bytes: Vec<u8> = texels.iter().flat_map(|value| value.to_le_bytes()).collect();
-    let layout =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row as u32 * 4), rows_per_image: Some(texture.height) };
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row as u32 * 4), rows_per_image: Some(texture.height) };
     let size = wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers.len() as u32 };
     queue.write_texture(target.as_image_copy(), &bytes, layout, size);
 }

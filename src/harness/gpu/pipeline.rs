@@ -51,8 +51,11 @@ pub fn pipeline(
     color: Option<wgpu::TextureFormat>,
     depth: Option<wgpu::TextureFormat>,
 ) -> wgpu::RenderPipeline {
-    let layout =
-        device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor { label: None, bind_group_layouts: &[Some(layout)], immediate_size: 0 });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
     let targets: Vec<_> = color.map(|format| Some(wgpu::ColorTargetState::from(format))).into_iter().collect();
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,

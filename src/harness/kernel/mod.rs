@@ -148,14 +148,7 @@ pub fn build(module: &Module, function: &str, fixtures: &BTreeMap<String, Arc<Fi
     let handle = find(module, function)?;
     let parameters = parameters(module, handle, fixtures)?;
     let results = results(module, handle)?;
-    let kernel = Kernel {
-        id: next_id(),
-        name: function.to_owned(),
-        module: Module::default(),
-        function: handle,
-        parameters,
-        results,
-    };
+    let kernel = Kernel { id: next_id(), name: function.to_owned(), module: Module::default(), function: handle, parameters, results };
     if kernel.batch() == 0 {
         return Err(Diagnostic::error(codes::UNTESTABLE_FUNCTION, format!("the words of `{function}` do not fit into a texture")));
     }

@@ -69,8 +69,7 @@ impl Body<'_> {
         let position = self.vector(VectorSize::Quad, ScalarKind::Float);
         let target = self.vector(VectorSize::Quad, ScalarKind::Uint);
         let built_in = Binding::BuiltIn(BuiltIn::Position { invariant: false });
-        let color =
-            Binding::Location { location: 0, interpolation: None, sampling: None, blend_src: None, per_primitive: false };
+        let color = Binding::Location { location: 0, interpolation: None, sampling: None, blend_src: None, per_primitive: false };
         self.function.arguments = vec![FunctionArgument { name: None, ty: position, binding: Some(built_in) }];
         self.function.result = Some(FunctionResult { ty: target, binding: Some(color) });
 

@@ -2,8 +2,10 @@
 
 use super::{Arguments, Entry, Expected};
 
-pub const REFERENCES: Entry =
-    Entry { module: "lighting::material", functions: &[("material_index", material_index), ("material_index_oglpg", material_index_oglpg)] };
+pub const REFERENCES: Entry = Entry {
+    module: "lighting::material",
+    functions: &[("material_index", material_index), ("material_index_oglpg", material_index_oglpg)],
+};
 
 /// Two materials for each index, the front's first.
 fn material_index(a: &mut Arguments<'_>) -> Expected {

@@ -5,10 +5,8 @@ use super::{Arguments, Entry, Expected};
 use crate::harness::fixture::{Sampler, Texture};
 use glam::DVec2;
 
-pub const REFERENCES: Entry = Entry {
-    module: "shadow::compare",
-    functions: &[("hard", |a| grid(a, 0)), ("pcf_3x3", |a| grid(a, 1)), ("pcf_5x5", |a| grid(a, 2))],
-};
+pub const REFERENCES: Entry =
+    Entry { module: "shadow::compare", functions: &[("hard", |a| grid(a, 0)), ("pcf_3x3", |a| grid(a, 1)), ("pcf_5x5", |a| grid(a, 2))] };
 
 /// The mean of comparisons two texels apart; outside the map is lit.
 fn grid(a: &mut Arguments<'_>, reach: i32) -> Expected {
