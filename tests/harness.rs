@@ -10,6 +10,8 @@ use lamplight::harness::{self, check, executors, expression, kernel};
 use lamplight::source::{Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
+type Run = fn() -> Result<(), Failed>;
+
 /// One trial for each property of the harness and each executor.
 pub fn trials() -> Vec<Trial> {
     let executors = executors::ALL.iter().map(|executor| {
@@ -19,7 +21,7 @@ pub fn trials() -> Vec<Trial> {
                 .map_err(Failed::from)
         })
     });
-    let others: [(&str, fn() -> Result<(), Failed>); 5] = [
+    let others: [(&str, Run); 5] = [
         ("library", library),
         ("expressions", expressions),
         ("expression_errors", expression_errors),

@@ -17,15 +17,15 @@ pub enum Formula {
     /// First word and count.
     Words(usize, usize),
     Negated(Box<Formula>),
-    Binary(Operator, Box<Formula>, Box<Formula>),
+    Binary(&'static Operator, Box<Formula>, Box<Formula>),
     Call(&'static Function, Vec<Formula>),
 }
 
 /// A binary operator: spelling, precedence, meaning.
-type Operator = &'static (&'static str, u8, fn(f64, f64) -> f64);
+type Operator = (&'static str, u8, fn(f64, f64) -> f64);
 
 /// Longest first where one is the beginning of another.
-const OPERATORS: &[(&str, u8, fn(f64, f64) -> f64)] = &[
+const OPERATORS: &[Operator] = &[
     ("||", 1, |a, b| truth(a != 0.0 || b != 0.0)),
     ("&&", 2, |a, b| truth(a != 0.0 && b != 0.0)),
     ("<=", 3, |a, b| truth(a <= b)),
@@ -158,7 +158,7 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    fn operator(&mut self, weakest: u8) -> Option<Operator> {
+    fn operator(&mut self, weakest: u8) -> Option<&'static Operator> {
         self.skip();
         let rest = &self.text[self.at..];
         OPERATORS.iter().find(|operator| rest.starts_with(operator.0)).filter(|operator| operator.1 >= weakest)

@@ -241,7 +241,7 @@ fn hemisphere(base: &[f64], random: &mut Random) -> Vec<f64> {
 
 /// A direction at right angles, tilted by 10^-1 to 10^-7 to either side.
 fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
-    let tilt = 10f64.powi(-1 - (index / 2 % 7) as i32) * if index % 2 == 0 { 1.0 } else { -1.0 };
+    let tilt = 10f64.powi(-1 - (index / 2 % 7) as i32) * if index.is_multiple_of(2) { 1.0 } else { -1.0 };
     let unit = random.unit(base.len());
     let along = dot(&unit, base) / dot(base, base).max(1e-300);
     let tilted: Vec<f64> = unit.iter().zip(base).map(|(x, n)| x - along * n + tilt * n).collect();

@@ -195,7 +195,7 @@ impl Body<'_> {
     /// A value of the type from words; `None` when the type is not made of words.
     fn unflatten(&mut self, ty: Handle<Type>, words: &mut dyn Iterator<Item = Value>) -> Option<Value> {
         let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
-            TypeInner::Scalar(scalar) => return words.next().map(|word| self.from_word(word, scalar.kind)),
+            TypeInner::Scalar(scalar) => return words.next().map(|word| self.word_as(word, scalar.kind)),
             TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
             TypeInner::Matrix { columns, rows, scalar } => vec![self.vector(rows, scalar.kind); columns as usize],
             TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => vec![base; count.get() as usize],
@@ -206,7 +206,7 @@ impl Body<'_> {
         Some(self.add(Expression::Compose { ty, components }))
     }
 
-    fn from_word(&mut self, word: Value, kind: ScalarKind) -> Value {
+    fn word_as(&mut self, word: Value, kind: ScalarKind) -> Value {
         match kind {
             ScalarKind::Uint => word,
             ScalarKind::Bool => {
@@ -221,7 +221,7 @@ impl Body<'_> {
     fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
         let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
             TypeInner::Scalar(scalar) => {
-                let word = self.to_word(value, scalar.kind);
+                let word = self.as_word(value, scalar.kind);
                 return words.push(word);
             }
             TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
@@ -236,7 +236,7 @@ impl Body<'_> {
         }
     }
 
-    fn to_word(&mut self, value: Value, kind: ScalarKind) -> Value {
+    fn as_word(&mut self, value: Value, kind: ScalarKind) -> Value {
         match kind {
             ScalarKind::Uint => value,
             ScalarKind::Bool => {
