@@ -1,1 +1,129 @@
 //! One output language a file, from a valid module.
+//!
+//! All targets keep WebGPU's conventions, so that one host-side path serves them: NDC depth is
+//! [0, 1], NDC y points up, texture and framebuffer rows start at the top.
+//! - `spirv`: as written; the host gives a viewport of negative height (Vulkan 1.1), as wgpu does.
+//! - `glsl450`, `glsl330`, `essl300`: a vertex stage ends with `y = -y, z = 2z - w`, so that under
+//!   GL's own clip space (leave `glClipControl` alone) depth values, shadow lookups, derivatives
+//!   and `gl_FragCoord` are those of the other targets. Images are stored top row first: the last
+//!   pass to the window flips them, and front faces wind the other way round for `glFrontFace`.
+//! - `msl`, `hlsl`, `wgsl`: the same conventions are native.
+
+mod glsl;
+mod isolate;
+mod names;
+mod reflect;
+mod slots;
+
+pub use isolate::{fingerprint, isolate};
+pub use reflect::reflect;
+
+use naga::ShaderStage;
+
+use crate::bundle::{self, Native, Target};
+use crate::compose::Language;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::validate::{Validated, guard, on_large_stack};
+
+/// An output language.
+#[derive(Debug)]
+pub struct Entry {
+    pub target: Target,
+    /// Of files, without the dot.
+    pub extension: &'static str,
+    /// Whether the bytes are not text.
+    pub binary: bool,
+    /// One line for listings.
+    pub about: &'static str,
+    /// Writes the entry point of a module without overrides; only [`emit`] calls it.
+    pub write: fn(&Source<'_>) -> Result<Emitted, String>,
+}
+
+/// One file for each output language.
+pub mod targets {
+    use super::Entry;
+    include!(concat!(env!("OUT_DIR"), "/targets.rs"));
+
+    /// The entry of a target.
+    pub fn find(target: crate::bundle::Target) -> Option<&'static Entry> {
+        ALL.iter().copied().find(|entry| entry.target == target)
+    }
+}
+
+/// What a target writes from.
+pub struct Source<'a> {
+    pub module: &'a naga::Module,
+    pub info: &'a naga::valid::ModuleInfo,
+    pub stage: ShaderStage,
+    pub entry: &'a str,
+    /// Index of the entry point in the module.
+    pub index: usize,
+}
+
+/// One shader in one output language.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Emitted {
+    pub bytes: Vec<u8>,
+    /// Its entry point's name, slots and combined samplers.
+    pub native: Native,
+}
+
+/// Writes one entry point for one target; overrides become their defaults, except in WGSL.
+///
+/// # Errors
+/// `emit-failed` with the writer's words; `naga-internal` where it panicked;
+/// `unknown-entry-point`.
+pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
+    let index = find(validated, entry)?;
+    let Some(writer) = targets::find(target) else {
+        return Err(Diagnostic::error(codes::EMIT_FAILED, format!("there is no writer for target `{target}`")));
+    };
+    on_large_stack(|| guard("", || write(validated, index, writer)))
+        .and_then(|result| result)
+        .map_err(|error| error.note(format!("while writing `{entry}` for target `{target}`")))
+}
+
+fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted, Diagnostic> {
+    let failed = |reason: String| Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target));
+    let point = &validated.module.entry_points[index];
+    if writer.target == Target::WGSL || validated.module.overrides.is_empty() {
+        let source = Source { module: &validated.module, info: &validated.info, stage: point.stage, entry: &point.name, index };
+        return (writer.write)(&source).map_err(failed);
+    }
+    let chosen = Some((point.stage, point.name.as_str()));
+    let (module, info) =
+        naga::back::pipeline_constants::process_overrides(&validated.module, &validated.info, chosen, &Default::default())
+            .map_err(|error| failed(error.to_string()))?;
+    (writer.write)(&Source { module: &module, info: &info, stage: point.stage, entry: &point.name, index: 0 }).map_err(failed)
+}
+
+/// Index of the entry point of that name.
+fn find(validated: &Validated, entry: &str) -> Result<usize, Diagnostic> {
+    let points = &validated.module.entry_points;
+    points.iter().position(|point| point.name == entry).ok_or_else(|| {
+        let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
+        let list = if names.is_empty() { "there are none".to_owned() } else { format!("there are: {}", names.join(", ")) };
+        Diagnostic::error(codes::UNKNOWN_ENTRY_POINT, format!("no entry point is named `{entry}`"))
+            .suggest(entry, names.iter().copied())
+            .note(list)
+    })
+}
+
+/// Whether a module's stage is one the crate handles.
+fn stage(stage: ShaderStage) -> Option<bundle::Stage> {
+    match stage {
+        ShaderStage::Vertex => Some(bundle::Stage::Vertex),
+        ShaderStage::Fragment => Some(bundle::Stage::Fragment),
+        ShaderStage::Compute => Some(bundle::Stage::Compute),
+        _ => None,
+    }
+}
+
+impl From<Language> for bundle::Language {
+    fn from(language: Language) -> Self {
+        match language {
+            Language::Wesl => Self::Wesl,
+            Language::Glsl => Self::Glsl,
+        }
+    }
+}

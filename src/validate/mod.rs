@@ -1,18 +1,67 @@
 //! naga's parser and validator over a composed text, its errors in the author's words and places.
+//!
+//! naga recurses over what it reads and panics on some inputs, so that every call into it is
+//! bounded first ([`limits`]), runs on a large stack and has its panics caught ([`guard`]).
 
-use crate::compose::{Composed, Language};
-use crate::diagnostic::Diagnostics;
+mod guard;
+mod limits;
+mod report;
+
+pub use guard::{guard, on_large_stack};
+pub use limits::{LIMITS, Limits};
+
+use naga::front::{glsl, wgsl};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+
+use crate::compose::{Composed, Language, Stage};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
 /// A module that naga accepts, with what it found out about it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Validated {
     pub language: Language,
     pub module: naga::Module,
-    pub info: naga::valid::ModuleInfo,
+    pub info: ModuleInfo,
 }
 
+/// What every target of the crate has: sample shading and cube arrays, which naga takes for
+/// granted, and no type of 16 or 64 bits. Cube arrays are refused by the targets without them.
+pub const CAPABILITIES: Capabilities = Capabilities::MULTISAMPLED_SHADING.union(Capabilities::CUBE_ARRAY_TEXTURES);
+
 /// Parses and validates.
+///
+/// # Errors
+/// `limit-exceeded` before naga sees the text; `wgsl-error` or `glsl-error` from its parser or
+/// validator, in the author's places; `naga-internal` where it panicked.
 pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
-    let _ = composed;
-    Err(Vec::new())
+    limits::check(composed).map_err(|error| vec![error])?;
+    on_large_stack(|| guard(&composed.text, || parse(composed).and_then(|module| analyse(composed, module))))
+        .map_err(|error| vec![error])
+        .and_then(|result| result)
+}
+
+fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
+    match composed.language {
+        Language::Wesl => wgsl::parse_str(&composed.text).map_err(|error| vec![report::wgsl(composed, &error)]),
+        Language::Glsl => {
+            let stage = composed.stage.ok_or_else(|| vec![Diagnostic::error(codes::GLSL_ERROR, "the stage of the GLSL text is not known")])?;
+            let options = glsl::Options::from(naga_stage(stage));
+            glsl::Frontend::default().parse(&options, &composed.text).map_err(|errors| report::glsl(composed, &errors))
+        }
+    }
+}
+
+fn analyse(composed: &Composed, module: naga::Module) -> Result<Validated, Diagnostics> {
+    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
+        .validate(&module)
+        .map_err(|error| vec![report::validation(composed, &error)])?;
+    Ok(Validated { language: composed.language, module, info })
+}
+
+fn naga_stage(stage: Stage) -> naga::ShaderStage {
+    match stage {
+        Stage::Vertex => naga::ShaderStage::Vertex,
+        Stage::Fragment => naga::ShaderStage::Fragment,
+        Stage::Compute => naga::ShaderStage::Compute,
+    }
 }

@@ -1,0 +1,140 @@
+//! A bundle in memory: what a writer takes and what a loader can give back whole.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Error, Language, Native, Reflection};
+
+/// 128 bits of BLAKE3: names units and blobs by what they are.
+pub type Hash = [u8; 16];
+
+/// Everything of a bundle, by program.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Contents {
+    pub programs: BTreeMap<String, ProgramContents>,
+}
+
+/// One program: its axes, and its shaders by language and entry point.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ProgramContents {
+    pub axes: Vec<Axis>,
+    pub languages: BTreeMap<Language, BTreeMap<String, EntryContents>>,
+}
+
+/// One axis of a program, its values in the manifest's order.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Axis {
+    pub name: String,
+    pub values: Vec<String>,
+    /// The value a key need not name.
+    pub default: String,
+    /// `static`, `spec` or `dynamic`.
+    pub mode: String,
+}
+
+/// One entry point: many keys share a unit.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct EntryContents {
+    /// By [`Unit::hash`].
+    pub units: BTreeMap<Hash, Unit>,
+    /// Canonical key to unit.
+    pub keys: BTreeMap<String, Hash>,
+}
+
+/// One shader in all its targets.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unit {
+    pub reflection: Arc<Reflection>,
+    /// By name of the target, so that a bundle may have targets this build does not know.
+    pub targets: BTreeMap<String, Artifact>,
+}
+
+/// One shader in one target.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Artifact {
+    pub bytes: Arc<[u8]>,
+    /// Of the blob's file in the directory form.
+    pub extension: String,
+    pub native: Arc<Native>,
+}
+
+impl Unit {
+    /// Equal for units of equal content, on any machine.
+    pub fn hash(&self) -> Result<Hash, Error> {
+        let mut hasher = blake3::Hasher::new();
+        let mut part = |bytes: &[u8]| {
+            hasher.update(&(bytes.len() as u64).to_le_bytes());
+            hasher.update(bytes);
+        };
+        part(&json(&*self.reflection)?);
+        for (target, artifact) in &self.targets {
+            part(target.as_bytes());
+            part(artifact.extension.as_bytes());
+            part(&json(&*artifact.native)?);
+            part(&artifact.bytes);
+        }
+        Ok(short(&hasher.finalize()))
+    }
+}
+
+impl EntryContents {
+    /// Adds a unit and returns its hash, by which keys refer to it.
+    pub fn add(&mut self, unit: Unit) -> Result<Hash, Error> {
+        let hash = unit.hash()?;
+        self.units.entry(hash).or_insert(unit);
+        Ok(hash)
+    }
+}
+
+impl Contents {
+    /// Adds the programs, units and keys of another bundle, as from another shard.
+    ///
+    /// # Errors
+    /// [`Error::Conflict`] where both have a key or a program's axes and disagree.
+    pub fn merge(&mut self, other: Self) -> Result<(), Error> {
+        for (name, program) in other.programs {
+            let mine = self.programs.entry(name.clone()).or_insert_with(|| ProgramContents { axes: program.axes.clone(), ..Default::default() });
+            if mine.axes != program.axes {
+                return Err(Error::Conflict(format!("the axes of program `{name}`")));
+            }
+            for (language, entries) in program.languages {
+                for (entry, contents) in entries {
+                    merge_entry(mine.languages.entry(language).or_default().entry(entry).or_default(), contents)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn merge_entry(mine: &mut EntryContents, other: EntryContents) -> Result<(), Error> {
+    mine.units.extend(other.units);
+    for (key, unit) in other.keys {
+        if *mine.keys.entry(key.clone()).or_insert(unit) != unit {
+            return Err(Error::Conflict(format!("permutation `{key}`")));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn json<T: Serialize>(value: &T) -> Result<Vec<u8>, Error> {
+    serde_json::to_vec(value).map_err(|error| Error::Io(error.to_string()))
+}
+
+pub(super) fn short(hash: &blake3::Hash) -> Hash {
+    let mut short = [0; 16];
+    short.copy_from_slice(&hash.as_bytes()[..16]);
+    short
+}
+
+/// The checksum used everywhere in a bundle.
+pub(super) fn checksum(bytes: &[u8]) -> Hash {
+    short(&blake3::hash(bytes))
+}
+
+/// Lower-case hexadecimal.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]).filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
+}

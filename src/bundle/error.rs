@@ -1,0 +1,74 @@
+//! What can go wrong with a bundle.
+
+use std::fmt;
+
+/// Why a bundle, or something of it, cannot be had.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system's words.
+    Io(String),
+    /// Bytes are not what was written: which part, and what is wrong with it.
+    Corrupt { part: String, reason: String },
+    /// The bundle was written in a format that this loader does not read.
+    Version { found: u32, known: u32 },
+    /// There is no program, entry point or target of that name; the names there are.
+    NotFound { what: &'static str, name: String, known: Vec<String> },
+    /// A key names an axis or a value that the program does not have.
+    BadKey { key: String, reason: String },
+    /// The bundle has no such permutation.
+    Miss(Box<Miss>),
+    /// Two bundles to merge disagree.
+    Conflict(String),
+}
+
+/// A permutation that was asked for and is not in the bundle.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Miss {
+    /// In canonical form.
+    pub asked: String,
+    /// The permutation that differs in the fewest axes, the first by text among equals.
+    pub nearest: Option<String>,
+}
+
+impl Error {
+    /// The missing permutation, if that is the error.
+    pub fn miss(&self) -> Option<&Miss> {
+        match self {
+            Self::Miss(miss) => Some(miss),
+            _ => None,
+        }
+    }
+
+    pub(super) fn corrupt(part: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self::Corrupt { part: part.into(), reason: reason.into() }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io(reason) => write!(f, "the bundle cannot be read or written: {reason}"),
+            Self::Corrupt { part, reason } => write!(f, "the bundle is damaged: {part}: {reason}"),
+            Self::Version { found, known } => write!(f, "the bundle has format version {found}, this loader reads version {known}"),
+            Self::NotFound { what, name, known } => write!(f, "the bundle has no {what} `{name}`; it has: {}", known.join(", ")),
+            Self::BadKey { key, reason } => write!(f, "`{key}` is not a key of this program: {reason}"),
+            Self::Miss(miss) => {
+                write!(f, "the bundle has no permutation `{}`", miss.asked)?;
+                match &miss.nearest {
+                    Some(nearest) => write!(f, "; the nearest is `{nearest}`"),
+                    None => f.write_str("; it has none at all"),
+                }
+            }
+            Self::Conflict(what) => write!(f, "the bundles disagree about {what}"),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl From<std::io::Error> for Error {
+    fn from(error: std::io::Error) -> Self {
+        Self::Io(error.to_string())
+    }
+}

@@ -1,0 +1,170 @@
+//! What an engine must know of a shader to use it.
+
+use serde::{Deserialize, Serialize};
+
+/// Source language of an entry point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Language {
+    Wesl,
+    Glsl,
+}
+
+/// Stage of an entry point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    Vertex,
+    Fragment,
+    Compute,
+}
+
+/// One entry point, the same for every target. Types are spelt as in WGSL; sizes, offsets and
+/// strides are in bytes.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Reflection {
+    pub stage: Stage,
+    /// Of compute shaders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub workgroup_size: Option<[u32; 3]>,
+    pub inputs: Vec<Varying>,
+    pub outputs: Vec<Varying>,
+    /// Resources that are used, by group and binding.
+    pub bindings: Vec<Binding>,
+    /// Which textures are sampled with which samplers, sorted.
+    pub pairs: Vec<Pair>,
+    pub overrides: Vec<Override>,
+}
+
+/// A value that enters or leaves the stage.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Varying {
+    /// The author's name, of the argument or the member.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// `@location`, unless it is built in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub location: Option<u32>,
+    /// `@builtin`, by its WGSL name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub builtin: Option<String>,
+    #[serde(rename = "type")]
+    pub ty: String,
+    /// `perspective`, `linear` or `flat`, between stages.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interpolation: Option<String>,
+    /// `center`, `centroid` or `sample`, between stages.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampling: Option<String>,
+}
+
+/// What a binding holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    Uniform,
+    Storage,
+    Texture,
+    StorageTexture,
+    Sampler,
+    ComparisonSampler,
+}
+
+/// A resource.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Binding {
+    pub group: u32,
+    pub binding: u32,
+    pub name: String,
+    pub kind: Kind,
+    #[serde(rename = "type")]
+    pub ty: String,
+    /// Of buffers; without the elements of a trailing array of unknown length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<u32>,
+    /// Whether the shader writes to it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub writable: bool,
+    /// Members of a buffer that is a struct.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub members: Vec<Member>,
+}
+
+/// A member of a struct in a buffer.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Member {
+    pub name: String,
+    #[serde(rename = "type")]
+    pub ty: String,
+    /// From the start of the struct it is in.
+    pub offset: u32,
+    pub size: u32,
+    /// Between elements of an array.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stride: Option<u32>,
+    /// Members of a struct, or of each element of an array of structs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub members: Vec<Member>,
+}
+
+/// A place by group and binding.
+pub type Place = [u32; 2];
+
+/// A texture and the sampler it is sampled with.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct Pair {
+    pub texture: Place,
+    pub sampler: Place,
+}
+
+/// A constant that is chosen when the pipeline is made. Targets other than WGSL have its default.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Override {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<u16>,
+    #[serde(rename = "type")]
+    pub ty: String,
+    /// As a WGSL literal, where it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub default: Option<String>,
+}
+
+/// How one target names and numbers things.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Native {
+    /// Name of the entry point in the output.
+    pub entry_name: String,
+    /// Where each binding of the reflection ended up.
+    pub slots: Vec<Slot>,
+    /// Names of combined samplers, in targets that have no separate ones.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub combined: Vec<Combined>,
+}
+
+/// The place of one binding in a target.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Slot {
+    pub group: u32,
+    pub binding: u32,
+    /// Register space or descriptor set, where the target has them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub space: Option<u32>,
+    /// Register, binding, table index or texture unit; `None` where only names exist.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub index: Option<u32>,
+    /// The identifier in the output, where the API looks it up by name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+/// A texture and its sampler as one object.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct Combined {
+    pub texture: Place,
+    /// `None` for a texture that is only loaded from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampler: Option<Place>,
+    pub name: String,
+}

@@ -1,0 +1,68 @@
+//! What the GLSL targets share: combined samplers, names and coordinates.
+
+use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
+use naga::proc::BoundsCheckPolicies;
+
+use super::reflect::place;
+use super::slots::{EXPLICIT_LIMIT, Numbering, assign, native};
+use super::{Emitted, Source};
+use crate::bundle::{Combined, Kind, Native};
+
+/// Writes GLSL of one version.
+pub fn write(source: &Source<'_>, version: Version, numbering: Numbering) -> Result<Emitted, String> {
+    let options = options(source, version, numbering)?;
+    let pipeline = PipelineOptions { shader_stage: source.stage, entry_point: source.entry.to_owned(), multiview: None };
+    let mut text = String::new();
+    let info = Writer::new(&mut text, source.module, source.info, &options, &pipeline, BoundsCheckPolicies::default())
+        .and_then(|mut writer| writer.write())
+        .map_err(|error| error.to_string())?;
+    Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &info, numbering) })
+}
+
+fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Result<Options, String> {
+    let mut options = Options { version, writer_flags: WriterFlags::ADJUST_COORDINATE_SPACE, ..Options::default() };
+    if numbering == Numbering::Explicit {
+        for (binding, _, index) in assign(source, numbering) {
+            let slot = index.and_then(|index| u8::try_from(index).ok()).ok_or_else(|| {
+                format!(
+                    "@group({}) @binding({}) has no number: this target takes groups and bindings below {EXPLICIT_LIMIT}",
+                    binding.group, binding.binding
+                )
+            })?;
+            options.binding_map.insert(binding, slot);
+        }
+    }
+    Ok(options)
+}
+
+/// Samplers vanish into the textures they are used with: only combined names have units.
+fn reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Numbering) -> Native {
+    let mut native = native(source, "main", numbering);
+    let samplers: Vec<_> = assign(source, numbering)
+        .into_iter()
+        .filter(|(_, kind, _)| matches!(kind, Kind::Sampler | Kind::ComparisonSampler))
+        .map(|(binding, ..)| [binding.group, binding.binding])
+        .collect();
+    native.slots.retain(|slot| !samplers.contains(&[slot.group, slot.binding]));
+    native.combined = combined(source, info);
+    let blocks = info.uniforms.iter().filter_map(|(handle, name)| Some((place(source.module, *handle)?, name.clone())));
+    let textures = native.combined.iter().map(|combined| (combined.texture, combined.name.clone()));
+    let names: std::collections::BTreeMap<_, _> = blocks.chain(textures).collect();
+    for slot in &mut native.slots {
+        slot.name = names.get(&[slot.group, slot.binding]).cloned();
+    }
+    native
+}
+
+fn combined(source: &Source<'_>, info: &ReflectionInfo) -> Vec<Combined> {
+    let mut found: Vec<Combined> = info
+        .texture_mapping
+        .iter()
+        .filter_map(|(name, mapping)| {
+            let sampler = mapping.sampler.and_then(|sampler| place(source.module, sampler));
+            Some(Combined { texture: place(source.module, mapping.texture)?, sampler, name: name.clone() })
+        })
+        .collect();
+    found.sort();
+    found
+}

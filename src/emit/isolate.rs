@@ -1,0 +1,50 @@
+//! One entry point with only what it needs.
+
+use std::fmt::Write;
+
+use naga::compact::{KeepUnused, compact};
+use naga::valid::{ValidationFlags, Validator};
+
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::validate::{CAPABILITIES, Validated, guard, on_large_stack};
+
+/// Keeps one entry point and what it reaches.
+///
+/// # Errors
+/// `unknown-entry-point`, and `naga-internal` where naga panics or rejects its own work.
+pub fn isolate(validated: &Validated, entry: &str) -> Result<Validated, Diagnostics> {
+    let index = super::find(validated, entry).map_err(|error| vec![error])?;
+    on_large_stack(|| guard("", || keep(validated, index))).and_then(|result| result).map_err(|error| vec![error])
+}
+
+/// 128 bits over the whole module, equal for modules that every writer treats alike; spans and
+/// file names do not enter it.
+pub fn fingerprint(validated: &Validated) -> [u8; 16] {
+    let mut hasher = Hashed(blake3::Hasher::new());
+    // The module's debug form shows every field but the spans, in the order of its arenas.
+    // Writing to a hasher does not fail.
+    let _ = write!(hasher, "{:?}", validated.module);
+    let mut short = [0; 16];
+    short.copy_from_slice(&hasher.0.finalize().as_bytes()[..16]);
+    short
+}
+
+fn keep(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
+    let mut module = validated.module.clone();
+    module.entry_points = vec![module.entry_points.swap_remove(index)];
+    compact(&mut module, KeepUnused::No);
+    // The module is part of a valid one: only the analysis is needed again, not the checks.
+    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES)
+        .validate(&module)
+        .map_err(|error| Diagnostic::error(codes::NAGA_INTERNAL, format!("a compacted module is not valid: {error}")))?;
+    Ok(Validated { language: validated.language, module, info })
+}
+
+struct Hashed(blake3::Hasher);
+
+impl Write for Hashed {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}

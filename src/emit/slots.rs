@@ -1,0 +1,70 @@
+//! Where bindings go in each target, by fixed schemes.
+
+use naga::ResourceBinding;
+
+use super::Source;
+use super::reflect::{kind, used};
+use crate::bundle::{Kind, Native, Slot};
+
+/// How a target numbers bindings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Numbering {
+    /// Group and binding as the author wrote them.
+    Author,
+    /// `16 * group + binding`, one number.
+    Explicit,
+    /// Buffers, textures and samplers each from 0, in the order of group and binding.
+    PerKind,
+    /// None: by name only.
+    Named,
+}
+
+/// Groups and bindings that [`Numbering::Explicit`] can tell apart.
+pub const EXPLICIT_LIMIT: u32 = 16;
+
+/// Every used binding, sorted, with its kind and its number in the target.
+pub fn assign(source: &Source<'_>, numbering: Numbering) -> Vec<(ResourceBinding, Kind, Option<u32>)> {
+    let globals = used(source.module, source.info.get_entry_point(source.index));
+    let mut found: Vec<(ResourceBinding, Kind)> =
+        globals.filter_map(|(_, variable)| Some((variable.binding?, kind(source.module, variable)?))).collect();
+    found.sort();
+    let mut next = [0; 3];
+    found.into_iter().map(|(binding, kind)| (binding, kind, number(numbering, binding, &mut next[table(kind)]))).collect()
+}
+
+/// The reflection of a target without combined samplers.
+pub fn native(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native {
+    let slots = assign(source, numbering)
+        .into_iter()
+        .map(|(binding, _, index)| Slot {
+            group: binding.group,
+            binding: binding.binding,
+            space: (numbering == Numbering::Author).then_some(binding.group),
+            index,
+            name: None,
+        })
+        .collect();
+    Native { entry_name: entry.to_owned(), slots, combined: Vec::new() }
+}
+
+fn number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -> Option<u32> {
+    match numbering {
+        Numbering::Author => Some(binding.binding),
+        Numbering::Explicit => {
+            (binding.group < EXPLICIT_LIMIT && binding.binding < EXPLICIT_LIMIT).then(|| EXPLICIT_LIMIT * binding.group + binding.binding)
+        }
+        Numbering::PerKind => {
+            *next += 1;
+            Some(*next - 1)
+        }
+        Numbering::Named => None,
+    }
+}
+
+fn table(kind: Kind) -> usize {
+    match kind {
+        Kind::Uniform | Kind::Storage => 0,
+        Kind::Texture | Kind::StorageTexture => 1,
+        Kind::Sampler | Kind::ComparisonSampler => 2,
+    }
+}

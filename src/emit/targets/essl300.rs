@@ -1,0 +1,17 @@
+//! GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2.
+//!
+//! The language has no explicit bindings: look up the names of the reflection with
+//! `glGetUniformBlockIndex` and `glGetUniformLocation`. Coordinates: see [`crate::emit`].
+
+use naga::back::glsl::Version;
+
+use crate::bundle::Target;
+use crate::emit::glsl;
+use crate::emit::slots::Numbering;
+use crate::emit::{Emitted, Entry, Source};
+
+pub const TARGET: Entry = Entry { target: Target::ESSL300, extension: "essl300.glsl", binary: false, about: "GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2", write };
+
+fn write(source: &Source<'_>) -> Result<Emitted, String> {
+    glsl::write(source, Version::new_gles(300), Numbering::Named)
+}

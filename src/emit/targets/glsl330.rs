@@ -1,0 +1,17 @@
+//! GLSL 3.30 core, for OpenGL 3.3.
+//!
+//! The language has no explicit bindings: look up the names of the reflection with
+//! `glGetUniformBlockIndex` and `glGetUniformLocation`. Coordinates: see [`crate::emit`].
+
+use naga::back::glsl::Version;
+
+use crate::bundle::Target;
+use crate::emit::glsl;
+use crate::emit::slots::Numbering;
+use crate::emit::{Emitted, Entry, Source};
+
+pub const TARGET: Entry = Entry { target: Target::GLSL330, extension: "glsl330.glsl", binary: false, about: "GLSL 3.30 core, for OpenGL 3.3", write };
+
+fn write(source: &Source<'_>) -> Result<Emitted, String> {
+    glsl::write(source, Version::Desktop(330), Numbering::Named)
+}

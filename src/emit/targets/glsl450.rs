@@ -1,0 +1,18 @@
+//! GLSL 4.50 core, for OpenGL 4.5.
+//!
+//! Uniform blocks, storage blocks and texture units have `layout(binding = 16 * group + binding)`,
+//! the same in every stage and permutation, since GL shares its units between stages.
+//! Coordinates: see [`crate::emit`].
+
+use naga::back::glsl::Version;
+
+use crate::bundle::Target;
+use crate::emit::glsl;
+use crate::emit::slots::Numbering;
+use crate::emit::{Emitted, Entry, Source};
+
+pub const TARGET: Entry = Entry { target: Target::GLSL450, extension: "glsl450.glsl", binary: false, about: "GLSL 4.50 core, for OpenGL 4.5", write };
+
+fn write(source: &Source<'_>) -> Result<Emitted, String> {
+    glsl::write(source, Version::Desktop(450), Numbering::Explicit)
+}

@@ -1,0 +1,96 @@
+//! Large stacks, and panics turned into diagnostics.
+
+use std::cell::{Cell, RefCell};
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::{Once, OnceLock};
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::diagnostic::{Diagnostic, codes};
+
+/// Bytes of stack for each thread that runs naga: reserved address space, touched only when
+/// needed. With [`super::LIMITS`] it is several times what the deepest accepted text was
+/// measured to take.
+const STACK_BYTES: usize = 128 << 20;
+
+/// Bytes of the composed text that a report of an internal error quotes.
+const QUOTED_BYTES: usize = 16 << 10;
+
+thread_local! {
+    static ON_LARGE_STACK: Cell<bool> = const { Cell::new(false) };
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+    static PANIC: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Runs `work` on a thread with a large stack, of a pool that is made once.
+///
+/// Wrap a whole batch in one call: rayon's iterators inside it use the same pool, and nested
+/// calls run in place. Where no thread can be made, `work` runs on the caller's.
+pub fn on_large_stack<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    match pool() {
+        Some(pool) if !ON_LARGE_STACK.get() => pool.install(work),
+        _ => work(),
+    }
+}
+
+/// Runs `work`, which calls naga over `text`; a panic becomes a diagnostic, and prints nothing.
+pub fn guard<R>(text: &str, work: impl FnOnce() -> R) -> Result<R, Diagnostic> {
+    hush();
+    let outer = GUARDED.replace(true);
+    // The values `work` may leave half changed are dropped with it: callers keep only its result.
+    let result = panic::catch_unwind(AssertUnwindSafe(work));
+    GUARDED.set(outer);
+    result.map_err(|_| {
+        let reason = PANIC.take().unwrap_or_else(|| "no message".to_owned());
+        Diagnostic::error(codes::NAGA_INTERNAL, format!("naga stopped with an internal error: {reason}")).note(quote(text))
+    })
+}
+
+fn pool() -> Option<&'static ThreadPool> {
+    static POOL: OnceLock<Option<ThreadPool>> = OnceLock::new();
+    POOL.get_or_init(|| {
+        ThreadPoolBuilder::new()
+            .stack_size(STACK_BYTES)
+            .thread_name(|index| format!("naga-{index}"))
+            .start_handler(|_| ON_LARGE_STACK.set(true))
+            .build()
+            .ok()
+    })
+    .as_ref()
+}
+
+/// Puts a panic hook before the present one that keeps guarded panics silent, once.
+fn hush() {
+    static HUSHED: Once = Once::new();
+    HUSHED.call_once(|| {
+        let previous = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            if GUARDED.get() {
+                PANIC.set(Some(describe(info)));
+            } else {
+                previous(info);
+            }
+        }));
+    });
+}
+
+/// The panic's message and the line of naga it came from, without the path of the machine.
+fn describe(info: &panic::PanicHookInfo<'_>) -> String {
+    let payload = info.payload();
+    let message = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let message = message.unwrap_or("no message");
+    match info.location() {
+        Some(place) => {
+            let file = place.file().replace('\\', "/");
+            let file = file.rsplit_once("/src/").map_or(file.as_str(), |(_, tail)| tail);
+            format!("{message} ({file}:{})", place.line())
+        }
+        None => message.to_owned(),
+    }
+}
+
+fn quote(text: &str) -> String {
+    let end = text.floor_char_boundary(QUOTED_BYTES);
+    let rest = if end < text.len() { format!("\n[{} more bytes]", text.len() - end) } else { String::new() };
+    format!("the composed text:\n{}{rest}", &text[..end])
+}

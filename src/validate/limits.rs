@@ -1,0 +1,184 @@
+//! Bounds on a composed text, checked in one pass before naga reads it.
+//!
+//! naga's parsers and validator recurse over the syntax tree, and an exhausted stack cannot be
+//! caught. What is bounded here is an upper estimate of that tree's depth: the operators that
+//! may nest in one statement, brackets within brackets, and the length as a whole.
+
+use crate::compose::Composed;
+use crate::diagnostic::{Diagnostic, codes};
+
+/// Bounds on what naga is given.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Bytes of the text.
+    pub bytes: usize,
+    /// Brackets of any kind within each other.
+    pub nesting: usize,
+    /// Operators of one expression, or branches of one chain of `else if`.
+    pub operators: usize,
+}
+
+/// The limits [`super::validate`] uses. Naga's stack overflowed at some 20,000 operators of a
+/// thread of 2 MiB; the whole shader library stays below 40 in one expression.
+pub const LIMITS: Limits = Limits { bytes: 4 << 20, nesting: 256, operators: 4096 };
+
+/// Refuses a text that might exhaust naga's stack.
+pub fn check(composed: &Composed) -> Result<(), Diagnostic> {
+    let text = &composed.text;
+    if text.len() > LIMITS.bytes {
+        let message = format!("the composed text has {} bytes, more than the limit of {}", text.len(), LIMITS.bytes);
+        return Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message));
+    }
+    match scan(text.as_bytes()) {
+        None => Ok(()),
+        Some(excess) => Err(report(composed, &excess)),
+    }
+}
+
+struct Excess {
+    offset: usize,
+    what: &'static str,
+    limit: usize,
+}
+
+fn report(composed: &Composed, excess: &Excess) -> Diagnostic {
+    let error = Diagnostic::error(codes::LIMIT_EXCEEDED, format!("more than {} {}", excess.limit, excess.what));
+    match composed.map.lookup(excess.offset..excess.offset + 1) {
+        Some(span) => error.at(span, "the limit is reached here"),
+        None => error.note(format!("the limit is reached at byte {} of the composed text", excess.offset)),
+    }
+}
+
+/// What is open around the byte being read: one for each bracket, and one for the file.
+#[derive(Default)]
+struct Level {
+    /// Operators since the last `,` or `;` of this level.
+    operators: usize,
+    /// The most of them before any `,` of this level.
+    most: usize,
+}
+
+struct Scan<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    levels: Vec<Level>,
+    /// Operators of all open levels together: an upper estimate of the depth of the tree here.
+    open: usize,
+    /// A `}` was just read: unless `else` follows, the statement is over.
+    after_block: bool,
+}
+
+fn scan(bytes: &[u8]) -> Option<Excess> {
+    let mut scan = Scan { bytes, at: 0, levels: vec![Level::default()], open: 0, after_block: false };
+    while scan.at < bytes.len() {
+        let offset = scan.at;
+        scan.step();
+        if scan.levels.len() > LIMITS.nesting {
+            return Some(Excess { offset, what: "brackets within each other", limit: LIMITS.nesting });
+        }
+        if scan.open > LIMITS.operators {
+            return Some(Excess { offset, what: "operators in one expression", limit: LIMITS.operators });
+        }
+    }
+    None
+}
+
+impl Scan<'_> {
+    fn step(&mut self) {
+        let byte = self.bytes[self.at];
+        self.at += 1;
+        match byte {
+            b' ' | b'\t' | b'\n' | b'\r' => return,
+            b'/' if self.peek() == Some(b'/') => return self.skip_line(),
+            b'/' if self.peek() == Some(b'*') => return self.skip_block(),
+            b'a'..=b'z' | b'A'..=b'Z' | b'_' => return self.word(),
+            _ => self.end_block(),
+        }
+        match byte {
+            b'(' | b'[' | b'{' => self.levels.push(Level::default()),
+            b')' | b']' => self.close(),
+            b'}' => {
+                self.close();
+                self.after_block = true;
+            }
+            b',' => self.separate(),
+            b';' => self.reset(),
+            b'.' if self.peek().is_none_or(|next| !next.is_ascii_alphabetic()) => {}
+            b'+' | b'-' | b'*' | b'/' | b'%' | b'<' | b'>' | b'=' | b'!' | b'~' | b'&' | b'|' | b'^' | b'?' | b':' | b'.' => self.count(1),
+            _ => {}
+        }
+    }
+
+    fn peek(&self) -> Option<u8> {
+        self.bytes.get(self.at).copied()
+    }
+
+    /// An identifier or keyword; words that nest statements without brackets count.
+    fn word(&mut self) {
+        let start = self.at - 1;
+        while self.peek().is_some_and(|byte| byte.is_ascii_alphanumeric() || byte == b'_') {
+            self.at += 1;
+        }
+        let word = &self.bytes[start..self.at];
+        if word == b"else" {
+            self.after_block = false;
+        }
+        self.end_block();
+        if matches!(word, b"if" | b"else" | b"for" | b"while" | b"do" | b"switch") {
+            self.count(1);
+        }
+    }
+
+    fn end_block(&mut self) {
+        if std::mem::take(&mut self.after_block) {
+            self.reset();
+        }
+    }
+
+    fn count(&mut self, operators: usize) {
+        if let Some(level) = self.levels.last_mut() {
+            level.operators += operators;
+            self.open += operators;
+        }
+    }
+
+    fn separate(&mut self) {
+        if let Some(level) = self.levels.last_mut() {
+            level.most = level.most.max(level.operators);
+            self.open -= std::mem::take(&mut level.operators);
+        }
+    }
+
+    fn reset(&mut self) {
+        if let Some(level) = self.levels.last_mut() {
+            self.open -= level.operators;
+            *level = Level::default();
+        }
+    }
+
+    /// A bracket nests as deep as its deepest part, and is itself one step.
+    fn close(&mut self) {
+        if self.levels.len() > 1
+            && let Some(inner) = self.levels.pop()
+        {
+            self.open -= inner.operators;
+            self.count(1 + inner.most.max(inner.operators));
+        }
+    }
+
+    fn skip_line(&mut self) {
+        while self.peek().is_some_and(|byte| byte != b'\n') {
+            self.at += 1;
+        }
+    }
+
+    /// Block comments nest in WGSL and not in GLSL; stopping at the first end is the estimate
+    /// that sees more text.
+    fn skip_block(&mut self) {
+        self.at += 1;
+        while self.at < self.bytes.len() && !(self.bytes[self.at] == b'*' && self.bytes.get(self.at + 1) == Some(&b'/')) {
+            self.at += 1;
+        }
+        self.at = (self.at + 2).min(self.bytes.len());
+    }
+}
