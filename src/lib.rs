@@ -17,6 +17,8 @@ pub mod parse;
 #[cfg(feature = "compile")]
 pub mod permute;
 #[cfg(feature = "compile")]
+pub mod project;
+#[cfg(feature = "compile")]
 pub mod resolve;
 #[cfg(feature = "compile")]
 pub mod source;

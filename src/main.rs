@@ -1,3 +1,5 @@
 //! The `lamplight` command.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    lamplight::cli::main()
+}

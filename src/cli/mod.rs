@@ -1,1 +1,73 @@
-//! The command line.
+//! The command line: reads what was asked, calls the stages, prints what they return.
+//!
+//! One file a command. Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 a check or a
+//! comparison failed, 4 the environment lacks something.
+
+mod bundle;
+mod check;
+mod compile;
+mod compose;
+mod eval;
+mod explain;
+mod failure;
+mod generate;
+mod input;
+mod list;
+mod progress;
+mod show;
+mod variants;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// Lighting and shadow functions in WGSL and GLSL: composed, compiled, bundled, proven.
+#[derive(Parser)]
+#[command(name = "lamplight", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// How diagnostics are printed on standard error.
+    #[arg(long, global = true, value_enum, default_value_t)]
+    diagnostics: failure::DiagnosticForm,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    List(list::Arguments),
+    Show(show::Arguments),
+    Compose(compose::Arguments),
+    Compile(compile::Arguments),
+    Gen(generate::Arguments),
+    Variants(variants::Arguments),
+    Bundle(bundle::Arguments),
+    Eval(eval::Arguments),
+    Check(check::Arguments),
+    Explain(explain::Arguments),
+}
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match dispatch(cli.command, cli.diagnostics) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(cli.diagnostics),
+    }
+}
+
+fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failure> {
+    match command {
+        Command::List(arguments) => list::run(arguments),
+        Command::Show(arguments) => show::run(arguments),
+        Command::Compose(arguments) => compose::run(arguments, form),
+        Command::Compile(arguments) => compile::run(arguments, form),
+        Command::Gen(arguments) => generate::run(arguments, form),
+        Command::Variants(arguments) => variants::run(arguments, form),
+        Command::Bundle(arguments) => bundle::run(arguments),
+        Command::Eval(arguments) => eval::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
+    }
+}

@@ -1,1 +1,77 @@
-fn main() {}
+//! The maintainer's commands, one file each.
+
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod ci;
+mod external;
+mod generate;
+mod machine;
+mod test;
+mod validate;
+
+use std::process::ExitCode;
+
+/// A command: its name, one line of help, and what it does with its arguments.
+type Command = (&'static str, &'static str, fn(&[String]) -> Outcome);
+
+/// Exit code 0, or another with its reason on standard error.
+type Outcome = Result<(), Failure>;
+
+/// Why a command failed, with the exit code of the contract.
+struct Failure {
+    code: u8,
+    message: String,
+}
+
+impl Failure {
+    /// The input is wrong (1).
+    fn input(message: impl Into<String>) -> Self {
+        Self { code: 1, message: message.into() }
+    }
+
+    /// Wrong usage (2).
+    fn usage(message: impl Into<String>) -> Self {
+        Self { code: 2, message: message.into() }
+    }
+
+    /// A check or a comparison failed (3).
+    fn check(message: impl Into<String>) -> Self {
+        Self { code: 3, message: message.into() }
+    }
+
+    /// The environment lacks something (4).
+    fn environment(message: impl Into<String>) -> Self {
+        Self { code: 4, message: message.into() }
+    }
+}
+
+const COMMANDS: &[Command] = &[
+    ("gen", "write the library's bundle to target/bundles/ and validate it", generate::run),
+    ("test", "install what the tests need, then run every test", test::run),
+    ("validate", "run the external validators over a bundle", validate::run),
+    ("ci", "what continuous integration runs: format, lints, tests", ci::run),
+];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let command = arguments.first().and_then(|name| COMMANDS.iter().find(|(known, ..)| known == name));
+    let outcome = match command {
+        Some((.., run)) => run(&arguments[1..]),
+        None => Err(Failure::usage(usage())),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{}", failure.message);
+            ExitCode::from(failure.code)
+        }
+    }
+}
+
+fn usage() -> String {
+    let mut text = String::from("usage: cargo xtask COMMAND\n");
+    for (name, about, _) in COMMANDS {
+        text.push_str(&format!("\n  {name:10} {about}"));
+    }
+    text
+}

@@ -1,0 +1,38 @@
+//! `lamplight explain CODE`: a diagnostic explained.
+
+use std::io::{Write, stdout};
+
+use clap::Args;
+
+use super::failure::Failure;
+use crate::diagnostic::{codes, nearest};
+
+/// Explain a diagnostic's code; without one, list them all.
+#[derive(Args)]
+pub struct Arguments {
+    /// The code, as printed in brackets: `unknown-axis`.
+    code: Option<String>,
+}
+
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    match arguments.code {
+        Some(name) => explain(&name),
+        None => list(),
+    }
+}
+
+fn explain(name: &str) -> Result<(), Failure> {
+    let Some(code) = codes::find(name) else {
+        let hint = nearest(name, codes::ALL.iter().map(|code| code.name)).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        return Err(Failure::input(format!("no diagnostic has the code `{name}`{hint}")));
+    };
+    Ok(writeln!(stdout(), "{}: {}\n\n{}", code.name, code.title, code.explanation)?)
+}
+
+fn list() -> Result<(), Failure> {
+    let width = codes::ALL.iter().map(|code| code.name.len()).max().unwrap_or(0);
+    for code in codes::ALL {
+        writeln!(stdout(), "{:width$}  {}", code.name, code.title)?;
+    }
+    Ok(())
+}

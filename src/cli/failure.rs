@@ -1,0 +1,91 @@
+//! How a command fails, and how that is told.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::ValueEnum;
+
+use crate::diagnostic::render::{Form, render};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::source::SourceSet;
+
+/// Why a command did not succeed.
+pub enum Failure {
+    /// The input is wrong: exit code 1, diagnostics into its text.
+    Input(SourceSet, Diagnostics),
+    /// A sentence and the exit code of the contract.
+    Message(u8, String),
+}
+
+impl Failure {
+    /// The input is wrong in a way that has no place in a text.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::Message(1, message.into())
+    }
+
+    /// Wrong usage.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self::Message(2, message.into())
+    }
+
+    /// A check or a comparison failed.
+    pub fn check(message: impl Into<String>) -> Self {
+        Self::Message(3, message.into())
+    }
+
+    /// The environment lacks something.
+    pub fn environment(message: impl Into<String>) -> Self {
+        Self::Message(4, message.into())
+    }
+
+    /// Says on standard error what went wrong; the exit code.
+    pub fn report(self, form: DiagnosticForm) -> ExitCode {
+        match self {
+            Self::Input(sources, diagnostics) => {
+                warn(&sources, &diagnostics, form);
+                ExitCode::from(1)
+            }
+            Self::Message(code, message) => {
+                let _ = writeln!(io::stderr(), "error: {message}");
+                ExitCode::from(code)
+            }
+        }
+    }
+}
+
+/// A pipe that was closed by its reader ends the command in peace; any other failure is told.
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => std::process::exit(0),
+            _ => Self::environment(error.to_string()),
+        }
+    }
+}
+
+/// Prints diagnostics that do not stop the command, or those that did.
+pub fn warn(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
+    let _ = io::stderr().write_all(render(sources, diagnostics, form.into()).as_bytes());
+}
+
+/// [`Form`] as an option's value.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum DiagnosticForm {
+    /// With excerpts of the text.
+    #[default]
+    Human,
+    /// One line each.
+    Short,
+    /// One JSON object a line.
+    Json,
+}
+
+impl From<DiagnosticForm> for Form {
+    fn from(form: DiagnosticForm) -> Self {
+        match form {
+            DiagnosticForm::Human => Self::Human,
+            DiagnosticForm::Short => Self::Short,
+            DiagnosticForm::Json => Self::Json,
+        }
+    }
+}

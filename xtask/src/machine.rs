@@ -1,0 +1,99 @@
+//! What the machine must have, and how to get it on Debian and Ubuntu.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::{Failure, Outcome};
+
+/// A thing the tests need: the Debian package that brings it, and how to see that it is there.
+struct Need {
+    package: &'static str,
+    what: &'static str,
+    found: fn() -> bool,
+}
+
+const NEEDS: &[Need] = &[
+    Need { package: "libvulkan1", what: "the Vulkan loader", found: || library("libvulkan.so.1") },
+    Need { package: "mesa-vulkan-drivers", what: "the software Vulkan driver (lavapipe)", found: lavapipe },
+    Need { package: "libegl1", what: "EGL", found: || library("libEGL.so.1") },
+    Need { package: "libgles2", what: "the GL ES loader", found: || library("libGLESv2.so.2") },
+    Need { package: "libgl1-mesa-dri", what: "the software GL driver (llvmpipe)", found: || installed("libgl1-mesa-dri") },
+    Need { package: "spirv-tools", what: "spirv-val", found: || program("spirv-val") },
+    Need { package: "glslang-tools", what: "glslangValidator", found: || program("glslangValidator") },
+];
+
+/// Installs what is missing where that is allowed; says exactly what to install where it is not.
+pub fn prepare() -> Outcome {
+    let missing = missing();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    for need in &missing {
+        eprintln!("missing: {} (Debian package {})", need.what, need.package);
+    }
+    let packages: Vec<&str> = missing.iter().map(|need| need.package).collect();
+    install(&packages)?;
+    match self::missing().as_slice() {
+        [] => Ok(()),
+        still => Err(Failure::environment(format!("installed {}, yet {} is not found", packages.join(" "), still[0].what))),
+    }
+}
+
+fn missing() -> Vec<&'static Need> {
+    NEEDS.iter().filter(|need| !(need.found)()).collect()
+}
+
+fn install(packages: &[&str]) -> Outcome {
+    let by_hand = format!("sudo apt-get update && sudo apt-get install -y --no-install-recommends {}", packages.join(" "));
+    let Some(prefix) = privilege() else {
+        return Err(Failure::environment(format!("these tests need more than is installed here; run\n\n    {by_hand}\n")));
+    };
+    let run = |arguments: &[&str]| {
+        let line: Vec<&str> = prefix.iter().copied().chain(["apt-get"]).chain(arguments.iter().copied()).collect();
+        Command::new(line[0]).args(&line[1..]).env("DEBIAN_FRONTEND", "noninteractive").status().is_ok_and(|status| status.success())
+    };
+    let arguments: Vec<&str> = ["install", "-y", "-qq", "--no-install-recommends"].iter().chain(packages).copied().collect();
+    if run(&["update", "-qq"]) && run(&arguments) {
+        Ok(())
+    } else {
+        Err(Failure::environment(format!("apt-get could not install what the tests need; run\n\n    {by_hand}\n")))
+    }
+}
+
+/// What to put before `apt-get`: nothing for root, `sudo -n` where it asks no password.
+fn privilege() -> Option<&'static [&'static str]> {
+    if !program("apt-get") {
+        return None;
+    }
+    if quiet("id", &["-u"]).is_some_and(|id| id.trim() == "0") {
+        return Some(&[]);
+    }
+    quiet("sudo", &["-n", "true"]).map(|_| ["sudo", "-n"].as_slice())
+}
+
+fn quiet(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).stderr(Stdio::null()).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+fn program(name: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(name).is_file())
+}
+
+fn library(name: &str) -> bool {
+    let folders = ["/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu", "/usr/lib64", "/usr/lib", "/usr/local/lib"];
+    folders.iter().any(|folder| Path::new(folder).join(name).exists())
+}
+
+fn lavapipe() -> bool {
+    let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
+    folders.iter().flat_map(std::fs::read_dir).flatten().flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("lvp_icd"))
+}
+
+fn installed(package: &str) -> bool {
+    if !program("dpkg") {
+        return library("dri/swrast_dri.so") || library("libgallium_dri.so");
+    }
+    quiet("dpkg-query", &["-W", "-f=${Status}", package]).is_some_and(|status| status.contains("install ok installed"))
+}

@@ -1,0 +1,26 @@
+//! The one test command.
+
+use crate::{Failure, Outcome, machine};
+use std::process::Command;
+
+/// Prepares the machine, then runs every test; arguments go to the test binary.
+pub fn run(arguments: &[String]) -> Outcome {
+    machine::prepare()?;
+    cargo(&["test", "--package", "lamplight", "--lib"], &[])?;
+    cargo(&["test", "--package", "lamplight", "--doc"], &[])?;
+    cargo(&["test", "--package", "lamplight", "--test", "all"], arguments)
+}
+
+/// Runs cargo in the workspace; a failure is exit code 3.
+pub fn cargo(arguments: &[&str], rest: &[String]) -> Outcome {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments).current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    if !rest.is_empty() {
+        command.arg("--").args(rest);
+    }
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(_) => Err(Failure::check(format!("failed: cargo {}", arguments.join(" ")))),
+        Err(error) => Err(Failure::environment(format!("cargo could not be run: {error}"))),
+    }
+}
