@@ -229,7 +229,6 @@ pub enum Instruction {
     Load { to: Slot, pointer: Slot, offset: u32, n: u32 },
     Store { pointer: Slot, offset: u32, from: Slot, n: u32 },
     Jump { to: u32 },
-    JumpIf { condition: Slot, to: u32 },
     JumpUnless { condition: Slot, to: u32 },
     Switch { selector: Slot, table: u32 },
     Call { to: u32 },
@@ -303,4 +302,11 @@ pub struct Access {
     pub n: u8,
     pub words: bool,
     pub depth: bool,
+}
+
+impl Access {
+    /// Whether the level follows from how the coordinates differ between neighbours.
+    pub fn implicit(&self) -> bool {
+        matches!(self.ask, Ask::Sample { level: Level::Auto | Level::Bias(_), gather: None, .. })
+    }
 }

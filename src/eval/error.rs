@@ -18,11 +18,11 @@ impl Error {
     }
 
     pub(super) fn unsupported(what: impl std::fmt::Display) -> Self {
-        Self::new(&codes::EVAL_UNSUPPORTED, format!("the CPU executor does not support {what}"))
+        Self::new(codes::EVAL_UNSUPPORTED, format!("the CPU executor does not support {what}"))
     }
 
     pub(super) fn too_large(what: impl Into<String>) -> Self {
-        Self::new(&codes::EVAL_TOO_LARGE, what)
+        Self::new(codes::EVAL_TOO_LARGE, what)
     }
 
     /// Sets the place unless it is known already.

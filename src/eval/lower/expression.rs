@@ -12,7 +12,7 @@ impl Body<'_, '_> {
         match self.locs[handle.index()] {
             Some(loc) => Ok(loc),
             None if self.expressions[handle].needs_pre_emit() || self.constant => self.evaluate(handle),
-            None => Err(Error::new(&crate::diagnostic::codes::EVAL_INTERNAL, "an expression is used before it is evaluated")),
+            None => Err(Error::new(crate::diagnostic::codes::EVAL_INTERNAL, "an expression is used before it is evaluated")),
         }
     }
 

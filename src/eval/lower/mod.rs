@@ -130,7 +130,7 @@ impl<'m> Build<'m> {
         body.constant = true;
         for (handle, _) in expressions.iter() {
             match body.evaluate(handle) {
-                Err(error) if error.code == &crate::diagnostic::codes::EVAL_TOO_LARGE => return Err(error),
+                Err(error) if error.code == crate::diagnostic::codes::EVAL_TOO_LARGE => return Err(error),
                 _ => {}
             }
         }

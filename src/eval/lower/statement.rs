@@ -22,7 +22,10 @@ impl Body<'_, '_> {
             self.span = function.local_variables.get_span(handle);
             match variable.init {
                 Some(init) => {
+                    // A constant expression that no statement emits.
+                    self.constant = true;
                     let from = self.operand(init)?;
+                    self.constant = false;
                     self.emit(Instruction::spread(to, from, n));
                 }
                 None => self.emit(Instruction::Zero { to, n }),
@@ -216,7 +219,7 @@ impl Body<'_, '_> {
     fn land(&mut self, jump: usize) {
         let here = self.here() as u32;
         match &mut self.build.program.code[jump] {
-            Instruction::Jump { to } | Instruction::JumpIf { to, .. } | Instruction::JumpUnless { to, .. } => *to = here,
+            Instruction::Jump { to } | Instruction::JumpUnless { to, .. } => *to = here,
             _ => {}
         }
     }

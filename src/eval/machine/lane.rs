@@ -6,6 +6,7 @@ use super::super::number::Number;
 use super::super::program::Program;
 use super::super::resources::Resources;
 use super::compute::compute;
+use super::texture;
 use super::watch::Watch;
 use crate::diagnostic::codes;
 
@@ -26,6 +27,15 @@ pub(super) struct Env<'e> {
     pub program: &'e Program,
     pub resources: &'e Resources,
     pub loop_limit: u64,
+    /// Whether the lane has neighbours.
+    pub quad: bool,
+}
+
+impl Env<'_> {
+    /// The place of an instruction.
+    pub fn span(&self, pc: u32) -> naga::Span {
+        self.program.spans.get(pc as usize).copied().unwrap_or_default()
+    }
 }
 
 /// Why a lane stopped.
@@ -45,9 +55,8 @@ pub(super) fn run<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) ->
         lane.pc += 1;
         match *instruction {
             Instruction::Jump { to } => lane.pc = to,
-            Instruction::JumpIf { condition, to } if lane.word(condition) != 0 => lane.pc = to,
             Instruction::JumpUnless { condition, to } if lane.word(condition) == 0 => lane.pc = to,
-            Instruction::JumpIf { .. } | Instruction::JumpUnless { .. } => {}
+            Instruction::JumpUnless { .. } => {}
             Instruction::Mark { point } => watch.hits[point as usize] += 1,
             Instruction::Trip => {
                 lane.trips += 1;
@@ -69,6 +78,11 @@ pub(super) fn run<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) ->
                 lane.pc = at;
                 return Ok(Stop::Quad);
             }
+            Instruction::Image { access } if env.quad && env.program.images[access as usize].implicit() => {
+                lane.pc = at;
+                return Ok(Stop::Quad);
+            }
+            Instruction::Image { access } => texture::single(env, access, &mut lane.memory, watch).map_err(|error| error.or_at(env.span(at)))?,
             _ => {
                 let mut doubt = false;
                 compute(instruction, &mut lane.memory, &mut doubt);
@@ -98,10 +112,10 @@ fn target(program: &Program, table: u32, selector: u32) -> u32 {
 #[cold]
 fn endless(env: Env, pc: u32) -> Error {
     let message = format!("the loops of this call made more than {} trips", env.loop_limit);
-    Error::new(&codes::EVAL_LOOP_LIMIT, message).or_at(env.program.spans.get(pc as usize).copied().unwrap_or_default())
+    Error::new(codes::EVAL_LOOP_LIMIT, message).or_at(env.span(pc))
 }
 
 #[cold]
 fn lost(program: &Program, pc: u32) -> Error {
-    Error::new(&codes::EVAL_INTERNAL, format!("no instruction {pc} of {}", program.code.len()))
+    Error::new(codes::EVAL_INTERNAL, format!("no instruction {pc} of {}", program.code.len()))
 }

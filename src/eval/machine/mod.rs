@@ -4,6 +4,8 @@ mod compute;
 mod geometry;
 mod lane;
 mod packing;
+mod quad;
+mod texture;
 mod watch;
 mod word;
 
@@ -25,6 +27,9 @@ pub struct Machine<'p, N> {
     program: &'p Program,
     resources: Resources,
     lane: Lane<N>,
+    /// Lanes of a quad, once one has run, and which of them were discarded.
+    quad: Vec<Lane<N>>,
+    killed: [bool; 4],
     watch: Watch,
     /// Loop trips one call may make, all loops together.
     pub loop_limit: u64,
@@ -44,7 +49,7 @@ impl<'p, N: Number> Machine<'p, N> {
             };
         }
         let watch = Watch::new(program);
-        let mut machine = Self { program, resources: Resources::default(), lane, watch, loop_limit: LOOP_LIMIT };
+        let mut machine = Self { program, resources: Resources::default(), lane, quad: Vec::new(), killed: [false; 4], watch, loop_limit: LOOP_LIMIT };
         machine.run(program.start)?;
         Ok(machine)
     }
@@ -69,6 +74,7 @@ impl<'p, N: Number> Machine<'p, N> {
                 _ => {}
             }
         }
+        self.quad.clear();
         self.resources = resources;
         Ok(())
     }
@@ -124,7 +130,7 @@ impl<'p, N: Number> Machine<'p, N> {
         (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
         self.lane.calls.clear();
         loop {
-            let env = lane::Env { program: self.program, resources: &self.resources, loop_limit: self.loop_limit };
+            let env = lane::Env { program: self.program, resources: &self.resources, loop_limit: self.loop_limit, quad: false };
             match lane::run(env, &mut self.lane, &mut self.watch)? {
                 Stop::Done => return Ok(()),
                 Stop::Quad => return Err(needs_quad(self.program, self.lane.pc)),
@@ -165,16 +171,16 @@ impl<'p, N: Number> Machine<'p, N> {
 }
 
 fn callable(program: &Program, id: FunctionId, given: usize) -> Result<&Function, Error> {
-    let function = program.signature(id).ok_or_else(|| Error::new(&codes::EVAL_ARGUMENTS, "no such function in this program"))?;
+    let function = program.signature(id).ok_or_else(|| Error::new(codes::EVAL_ARGUMENTS, "no such function in this program"))?;
     if let Some(error) = &function.error {
         return Err(error.clone());
     }
     let (name, wanted) = (&function.name, function.arguments.len());
     if given != wanted {
-        return Err(Error::new(&codes::EVAL_ARGUMENTS, format!("`{name}` takes {wanted} scalars and was given {given}")));
+        return Err(Error::new(codes::EVAL_ARGUMENTS, format!("`{name}` takes {wanted} scalars and was given {given}")));
     }
     if function.arguments.contains(&Kind::Pointer) {
-        return Err(Error::new(&codes::EVAL_ARGUMENTS, format!("`{name}` has a pointer parameter and cannot be called from outside")));
+        return Err(Error::new(codes::EVAL_ARGUMENTS, format!("`{name}` has a pointer parameter and cannot be called from outside")));
     }
     Ok(function)
 }
@@ -203,7 +209,7 @@ fn outcome<'l, N>(lane: &'l Lane<N>, function: &Function) -> &'l [N] {
 
 fn needs_quad(program: &Program, pc: u32) -> Error {
     let span = program.spans.get(pc as usize).copied().unwrap_or_default();
-    Error::new(&codes::EVAL_NEEDS_QUAD, "a derivative needs a quad of four fragments").or_at(span)
+    Error::new(codes::EVAL_NEEDS_QUAD, "a derivative needs a quad of four fragments").or_at(span)
 }
 
 /// A slot from the 32 bits of a scalar.

@@ -1,4 +1,5 @@
-//! `f64`: the value of the code as written. `f32`: every operation rounded to nearest.
+//! `f64`: the value of the code as written. `f32`: every operation rounded to nearest, the
+//! transcendental ones through f64, since libraries for f32 are less exact.
 
 use super::{Number, half_from, half_to};
 use crate::eval::code::{Binary, Compare, Ternary, Unary};
@@ -42,32 +43,32 @@ macro_rules! native {
                     Unary::Negate => -x,
                     Unary::Abs => x.abs(),
                     Unary::Saturate => x.max(0.0).min(1.0),
-                    Unary::Cos => x.cos(),
-                    Unary::Cosh => x.cosh(),
-                    Unary::Sin => x.sin(),
-                    Unary::Sinh => x.sinh(),
-                    Unary::Tan => x.tan(),
-                    Unary::Tanh => x.tanh(),
-                    Unary::Acos => x.acos(),
-                    Unary::Asin => x.asin(),
-                    Unary::Atan => x.atan(),
-                    Unary::Asinh => x.asinh(),
-                    Unary::Acosh => x.acosh(),
-                    Unary::Atanh => x.atanh(),
-                    Unary::Radians => x.to_radians(),
-                    Unary::Degrees => x.to_degrees(),
+                    Unary::Cos => f64::from(x).cos() as $float,
+                    Unary::Cosh => f64::from(x).cosh() as $float,
+                    Unary::Sin => f64::from(x).sin() as $float,
+                    Unary::Sinh => f64::from(x).sinh() as $float,
+                    Unary::Tan => f64::from(x).tan() as $float,
+                    Unary::Tanh => f64::from(x).tanh() as $float,
+                    Unary::Acos => f64::from(x).acos() as $float,
+                    Unary::Asin => f64::from(x).asin() as $float,
+                    Unary::Atan => f64::from(x).atan() as $float,
+                    Unary::Asinh => f64::from(x).asinh() as $float,
+                    Unary::Acosh => f64::from(x).acosh() as $float,
+                    Unary::Atanh => f64::from(x).atanh() as $float,
+                    Unary::Radians => f64::from(x).to_radians() as $float,
+                    Unary::Degrees => f64::from(x).to_degrees() as $float,
                     Unary::Ceil => x.ceil(),
                     Unary::Floor => x.floor(),
                     Unary::Round => x.round_ties_even(),
                     Unary::Fract => x - x.floor(),
                     Unary::Trunc => x.trunc(),
-                    Unary::Exp => x.exp(),
-                    Unary::Exp2 => x.exp2(),
-                    Unary::Log => x.ln(),
-                    Unary::Log2 => x.log2(),
+                    Unary::Exp => f64::from(x).exp() as $float,
+                    Unary::Exp2 => f64::from(x).exp2() as $float,
+                    Unary::Log => f64::from(x).ln() as $float,
+                    Unary::Log2 => f64::from(x).log2() as $float,
                     Unary::Sign => [0.0, 1.0, -1.0][usize::from(x > 0.0) + 2 * usize::from(x < 0.0)],
                     Unary::Sqrt => x.sqrt(),
-                    Unary::InverseSqrt => 1.0 / x.sqrt(),
+                    Unary::InverseSqrt => (1.0 / f64::from(x).sqrt()) as $float,
                     Unary::Quantize => half_to(half_from(f64::from(x))) as $float,
                 }
             }
@@ -82,10 +83,10 @@ macro_rules! native {
                     Binary::Remainder => a % b,
                     Binary::Min => a.min(b),
                     Binary::Max => a.max(b),
-                    Binary::Atan2 => a.atan2(b),
+                    Binary::Atan2 => f64::from(a).atan2(f64::from(b)) as $float,
                     // WGSL defines pow by log2 of the base, which a negative base has not.
                     Binary::Pow if a < 0.0 => $float::NAN,
-                    Binary::Pow => a.powf(b),
+                    Binary::Pow => f64::from(a).powf(f64::from(b)) as $float,
                     Binary::Step => [0.0, 1.0][usize::from(a <= b)],
                 }
             }
