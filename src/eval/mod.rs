@@ -26,6 +26,7 @@ mod number;
 mod program;
 mod resources;
 
+pub use code::Compare;
 pub use error::{Error, Finding, Kind as FindingKind};
 pub use layout::{Kind, MAX_SLOTS};
 pub use machine::{LOOP_LIMIT, Machine};

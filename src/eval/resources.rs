@@ -69,3 +69,28 @@ pub struct Sampler {
     pub levels: (f64, f64),
     pub compare: Option<Compare>,
 }
+
+impl Texture {
+    /// A texture of one level, its texels row by row.
+    pub fn flat(shape: Shape, width: u32, height: u32, layers: u32, texels: Vec<[f64; 4]>) -> Self {
+        Self { shape, levels: vec![Level { width, height, layers, texels }] }
+    }
+
+    /// Whether every level has the texels its size says, and a cube whole cubes.
+    pub(super) fn is_complete(&self) -> bool {
+        let filled = |level: &Level| {
+            let size = u64::from(level.width) * u64::from(level.height) * u64::from(level.layers);
+            size > 0 && size == level.texels.len() as u64 && (self.shape != Shape::Cube || level.layers.is_multiple_of(6))
+        };
+        !self.levels.is_empty() && self.levels.iter().all(filled)
+    }
+}
+
+impl Level {
+    /// The texel at column, row and layer.
+    pub(super) fn texel(&self, [x, y, z]: [i64; 3]) -> Option<[f64; 4]> {
+        let within = |at: i64, size: u32| usize::try_from(at).ok().filter(|at| *at < size as usize);
+        let (x, y, z) = (within(x, self.width)?, within(y, self.height)?, within(z, self.layers)?);
+        self.texels.get((z * self.height as usize + y) * self.width as usize + x).copied()
+    }
+}

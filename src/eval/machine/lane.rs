@@ -82,7 +82,7 @@ pub(super) fn run<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) ->
                 lane.pc = at;
                 return Ok(Stop::Quad);
             }
-            Instruction::Image { access } => texture::single(env, access, &mut lane.memory, watch).map_err(|error| error.or_at(env.span(at)))?,
+            Instruction::Image { access } => texture::single(env, access, &mut lane.memory, at, watch)?,
             _ => {
                 let mut doubt = false;
                 compute(instruction, &mut lane.memory, &mut doubt);

@@ -1,6 +1,7 @@
 //! Memory for a program, and the calls.
 
 mod compute;
+mod filter;
 mod geometry;
 mod lane;
 mod packing;
@@ -52,6 +53,11 @@ impl<'p, N: Number> Machine<'p, N> {
         let mut machine = Self { program, resources: Resources::default(), lane, quad: Vec::new(), killed: [false; 4], watch, loop_limit: LOOP_LIMIT };
         machine.run(program.start)?;
         Ok(machine)
+    }
+
+    /// The program this is the memory of.
+    pub fn program(&self) -> &'p Program {
+        self.program
     }
 
     /// Binds buffers, textures and samplers by group and binding. What stays unbound is an error
