@@ -82,7 +82,7 @@ impl<'m> Layout<'m> {
     pub fn component(&self, inner: &TypeInner, index: u32) -> Result<u32, Error> {
         match *inner {
             TypeInner::Struct { ref members, .. } => members.iter().take(index as usize).map(|member| self.size(member.ty)).sum(),
-            _ => Ok(index * self.element(inner)?.0),
+            _ => Ok(index.saturating_mul(self.element(inner)?.0)),
         }
     }
 

@@ -34,15 +34,28 @@ pub struct FunctionId(pub(super) u32);
 #[derive(Debug, Clone)]
 pub struct Function {
     pub name: String,
-    /// Kinds of the flattened arguments.
+    /// Kinds of the flattened arguments; for a pointer, those of what it points to.
     pub arguments: Vec<Kind>,
-    /// Kinds of the flattened result.
+    /// Kinds of the flattened result, then of what is left behind each pointer.
     pub result: Vec<Kind>,
-    pub(super) argument_slot: Slot,
+    /// Slots of the returned value alone.
+    pub(super) returned: u32,
+    pub(super) parameters: Vec<Parameter>,
     pub(super) result_slot: Slot,
     pub(super) entry: u32,
+    /// Buffers the function or its callees read, by index.
+    pub(super) buffers: Vec<u32>,
     /// Why the function cannot run, if so.
     pub error: Option<Error>,
+}
+
+/// Where a parameter lies, and what it points to if it is a pointer.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parameter {
+    pub slot: Slot,
+    /// Slots taken from outside: of the value, or of what the pointer points to.
+    pub n: u32,
+    pub pointee: Option<Slot>,
 }
 
 /// A block of statements that coverage counts.
@@ -83,6 +96,8 @@ pub(super) struct Global {
     pub ty: Handle<Type>,
     pub slot: Slot,
     pub slots: u32,
+    /// Least size as a buffer.
+    pub bytes: u32,
     pub role: Role,
 }
 
@@ -111,6 +126,11 @@ impl Program {
     /// The function or entry point of that name.
     pub fn function(&self, name: &str) -> Option<FunctionId> {
         self.functions.iter().position(|function| function.name == name).map(|index| FunctionId(index as u32))
+    }
+
+    /// The word that stands for a texture or sampler where a function takes one as argument.
+    pub fn handle(&self, group: u32, binding: u32) -> Option<u32> {
+        self.globals.iter().position(|global| global.binding == Some((group, binding))).map(|index| index as u32)
     }
 
     /// Every function and entry point.

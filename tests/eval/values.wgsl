@@ -73,6 +73,7 @@ fn of_structs(i: u32) -> f32 {
     return l.position.y + l.range;
 }
 
+// A pointer parameter takes what it points to, and gives back what is left there.
 fn bump(p: ptr<function, f32>) { *p += 1.0; }
 fn bump_all(v: ptr<function, array<f32, 3>>) {
     for (var i = 0; i < 3; i++) { bump(&(*v)[i]); }
@@ -84,7 +85,7 @@ fn pointers(x: f32) -> vec3f {
     return vec3f(a[0], a[1], a[2]);
 }
 
-// error: bump(1) = eval-arguments
+// expect: bump(1) = 2
 
 // expect: selects(true, 1, 2) = 2
 // expect: selects(false, 1, 2) = 1

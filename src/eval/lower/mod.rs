@@ -10,9 +10,9 @@ mod statement;
 use super::code::{Instruction, Operand, Slot};
 use super::error::Error;
 use super::layout::{Kind, Layout, MAX_SLOTS};
-use super::program::{Constant, Function, Global, Program, Role};
-use naga::valid::ModuleInfo;
-use naga::{AddressSpace, Arena, ArraySize, Expression, Handle, Module, Span, TypeInner};
+use super::program::{Constant, Function, Global, Parameter, Program, Role};
+use naga::valid::{FunctionInfo, ModuleInfo};
+use naga::{AddressSpace, Arena, ArraySize, Expression, Handle, Module, Span, Type, TypeInner};
 use std::collections::BTreeMap;
 
 /// Where an expression's value is.
@@ -158,7 +158,8 @@ impl<'m> Build<'m> {
         };
         let slot = if let Loc::Place(slot) = loc { slot } else { 0 };
         let binding = variable.binding.map(|binding| (binding.group, binding.binding));
-        self.program.globals.push(Global { name: variable.name.clone().unwrap_or_default(), binding, ty: variable.ty, slot, slots, role });
+        let bytes = inner.try_size(self.module.to_ctx()).unwrap_or(0);
+        self.program.globals.push(Global { name: variable.name.clone().unwrap_or_default(), binding, ty: variable.ty, slot, slots, bytes, role });
         Ok(loc)
     }
 
@@ -184,14 +185,16 @@ impl<'m> Build<'m> {
     }
 
     /// Lowers a function; what goes wrong is kept with it.
-    fn function(&mut self, name: String, function: &'m naga::Function, info: &'m naga::valid::FunctionInfo) {
+    fn function(&mut self, name: String, function: &'m naga::Function, info: &'m FunctionInfo) {
         let entry = Function {
             name,
             arguments: Vec::new(),
             result: Vec::new(),
-            argument_slot: 0,
+            returned: 0,
+            parameters: Vec::new(),
             result_slot: 0,
             entry: self.program.code.len() as u32,
+            buffers: Vec::new(),
             error: None,
         };
         let (code, points) = (self.program.code.len(), self.program.points.len());
@@ -206,27 +209,43 @@ impl<'m> Build<'m> {
         }
     }
 
-    fn lower_function(&mut self, function: &'m naga::Function, info: &'m naga::valid::FunctionInfo) -> Result<(), Error> {
-        let mut kinds = (Vec::new(), Vec::new());
-        let mut sizes = Vec::new();
+    fn lower_function(&mut self, function: &'m naga::Function, info: &'m FunctionInfo) -> Result<(), Error> {
+        let (mut arguments, mut result) = (Vec::new(), Vec::new());
+        if let Some(returned) = &function.result {
+            self.layout.kinds(returned.ty, &mut result)?;
+        }
+        let returned = result.len() as u32;
+        let mut parameters = Vec::new();
         for argument in &function.arguments {
-            sizes.push(self.layout.size(argument.ty)?);
-            self.layout.kinds(argument.ty, &mut kinds.0)?;
+            let pointee = pointee(&self.module.types[argument.ty].inner);
+            let mut kinds = Vec::new();
+            self.layout.kinds(pointee.unwrap_or(argument.ty), &mut kinds)?;
+            let (slots, n) = (self.layout.size(argument.ty)?, kinds.len() as u32);
+            let behind = pointee.map(|_| result.len() as u32);
+            parameters.push(Parameter { slot: self.alloc(slots)?, n, pointee: behind });
+            result.extend(kinds.iter().filter(|_| pointee.is_some()));
+            arguments.extend(kinds);
         }
-        if let Some(result) = &function.result {
-            self.layout.kinds(result.ty, &mut kinds.1)?;
-        }
-        let first = self.alloc(kinds.0.len() as u32)?;
-        let result_slot = self.alloc(kinds.1.len() as u32)?;
-        let arguments = sizes.iter().scan(first, |next, size| Some(std::mem::replace(next, *next + size))).collect();
-        let index = self.program.functions.len() as u32 - 1;
-        if let Some(entry) = self.program.functions.last_mut() {
-            (entry.arguments, entry.result, entry.argument_slot, entry.result_slot) = (kinds.0, kinds.1, first, result_slot);
-        }
+        let result_slot = self.alloc(result.len() as u32)?;
+        parameters.iter_mut().for_each(|parameter| parameter.pointee = parameter.pointee.map(|behind| result_slot + behind));
+        let slots = parameters.iter().map(|parameter| parameter.slot).collect();
+        let buffers = self.buffers(info);
+        let index = self.program.functions.len() - 1;
+        let entry = &mut self.program.functions[index];
+        *entry = Function { arguments, result, returned, parameters, result_slot, buffers, ..entry.clone() };
         let types = function.expressions.iter().map(|(handle, _)| info[handle].ty.inner_with(&self.module.types)).collect();
         let mut body = Body::new(self, &function.expressions, types);
-        (body.function, body.arguments) = (index, arguments);
+        (body.function, body.arguments) = (index as u32, slots);
         body.whole(function)
+    }
+
+    /// The buffers a function and its callees use, by index.
+    fn buffers(&self, info: &FunctionInfo) -> Vec<u32> {
+        let used = self.module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());
+        let bindings: Vec<_> = used.filter_map(|(_, variable)| variable.binding.map(|binding| (binding.group, binding.binding))).collect();
+        let globals = self.program.globals.iter().enumerate();
+        let wanted = globals.filter(|(_, global)| global.binding.is_some_and(|binding| bindings.contains(&binding)));
+        wanted.filter(|(_, global)| matches!(global.role, Role::Buffer | Role::Runtime { .. })).map(|(index, _)| index as u32).collect()
     }
 
     fn finish(mut self) -> Result<Program, Error> {
@@ -236,6 +255,14 @@ impl<'m> Build<'m> {
         self.program.code.push(Instruction::Return);
         self.program.spans.resize(self.program.code.len(), Span::UNDEFINED);
         Ok(self.program)
+    }
+}
+
+/// What a pointer parameter points to.
+fn pointee(inner: &TypeInner) -> Option<Handle<Type>> {
+    match *inner {
+        TypeInner::Pointer { base, .. } => Some(base),
+        _ => None,
     }
 }
 

@@ -180,7 +180,7 @@ impl Body<'_, '_> {
     /// The lane goes on as a helper of its quad; a function that ends so gives zero.
     fn kill(&mut self) -> Result<(), Error> {
         let function = &self.build.program.functions[self.function as usize];
-        let (to, n) = (function.result_slot, function.result.len() as u32);
+        let (to, n) = (function.result_slot, function.returned);
         self.emit(Instruction::Zero { to, n });
         self.emit(Instruction::Kill);
         Ok(())
@@ -188,14 +188,14 @@ impl Body<'_, '_> {
 
     fn call(&mut self, function: Handle<Function>, arguments: &[Handle<Expression>], result: Option<Handle<Expression>>) -> Result<(), Error> {
         let callee = &self.build.program.functions[function.index()];
-        let (mut to, result_slot, entry, n) = (callee.argument_slot, callee.result_slot, callee.entry, callee.result.len() as u32);
+        let (result_slot, entry, n) = (callee.result_slot, callee.entry, callee.returned);
+        let slots: Vec<u32> = callee.parameters.iter().map(|parameter| parameter.slot).collect();
         if let Some(error) = &callee.error {
             return Err(error.clone());
         }
-        for argument in arguments {
+        for (argument, to) in arguments.iter().zip(slots) {
             let (from, n) = (self.operand(*argument)?, self.slots(*argument)?);
             self.emit(Instruction::spread(to, from, n));
-            to += n;
         }
         self.emit(Instruction::Call { to: entry });
         if let Some(result) = result {

@@ -45,13 +45,13 @@ pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: 
         }
         Instruction::Index { to, base, index, size, count } => {
             let last = m[count as usize].word().saturating_sub(1);
-            m[to as usize] = N::from_word(m[base as usize].word() + m[index as usize].word().min(last) * size);
+            m[to as usize] = N::from_word(m[base as usize].word().wrapping_add(m[index as usize].word().min(last).wrapping_mul(size)));
         }
         Instruction::Pick { to, from, index, size, count } => {
             copy(m, to, from + m[index as usize].word().min(count.saturating_sub(1)) * size, size);
         }
-        Instruction::Load { to, pointer, offset, n } => copy(m, to, m[pointer as usize].word() + offset, n),
-        Instruction::Store { pointer, offset, from, n } => copy(m, m[pointer as usize].word() + offset, from, n),
+        Instruction::Load { to, pointer, offset, n } => copy(m, to, m[pointer as usize].word().wrapping_add(offset), n),
+        Instruction::Store { pointer, offset, from, n } => copy(m, m[pointer as usize].word().wrapping_add(offset), from, n),
         _ => {}
     }
 }

@@ -145,19 +145,16 @@ fn frexp<N: Number>(x: N) -> (N, i32) {
     if value == 0.0 || !value.is_finite() {
         return (x, 0);
     }
-    let mut exponent = value.abs().log2().floor() as i32 + 1;
-    // log2 may round up to a whole number just below a power of two.
-    if (value.abs() * f64::from(-exponent).exp2()) < 0.5 {
-        exponent -= 1;
-    } else if value.abs() * f64::from(-exponent).exp2() >= 1.0 {
-        exponent += 1;
-    }
+    // A subnormal is raised into the normal range to read its exponent from the bits.
+    let raised = value.abs() < f64::MIN_POSITIVE;
+    let bits = (if raised { value * 64f64.exp2() } else { value }).to_bits();
+    let exponent = (bits >> 52 & 0x7ff) as i32 - 1022 - if raised { 64 } else { 0 };
     (scale(x, -exponent), exponent)
 }
 
 /// `x * 2^exponent`, in two steps so that neither factor overflows.
 fn scale<N: Number>(x: N, exponent: i32) -> N {
-    let exponent = exponent.clamp(-600, 600);
+    let exponent = exponent.clamp(-2100, 2100);
     let (first, second) = (exponent / 2, exponent - exponent / 2);
     let factor = |x: f64| x * f64::from(first).exp2() * f64::from(second).exp2();
     N::with_error(factor(x.value()), factor(x.error()))

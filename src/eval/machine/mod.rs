@@ -32,6 +32,10 @@ pub struct Machine<'p, N> {
     quad: Vec<Lane<N>>,
     killed: [bool; 4],
     watch: Watch,
+    /// Arguments of `call_words`, kept for their memory.
+    words: Vec<N>,
+    /// Which globals have a buffer.
+    bound: Vec<bool>,
     /// Loop trips one call may make, all loops together.
     pub loop_limit: u64,
 }
@@ -50,7 +54,7 @@ impl<'p, N: Number> Machine<'p, N> {
             };
         }
         let watch = Watch::new(program);
-        let mut machine = Self { program, resources: Resources::default(), lane, quad: Vec::new(), killed: [false; 4], watch, loop_limit: LOOP_LIMIT };
+        let mut machine = Self { program, resources: Resources::default(), lane, quad: Vec::new(), killed: [false; 4], watch, words: Vec::new(), bound: vec![false; program.globals.len()], loop_limit: LOOP_LIMIT };
         machine.run(program.start)?;
         Ok(machine)
     }
@@ -67,8 +71,10 @@ impl<'p, N: Number> Machine<'p, N> {
     /// `eval-too-large` for a buffer that is.
     pub fn bind(&mut self, resources: Resources) -> Result<(), Error> {
         self.lane.memory.truncate(self.program.slots as usize);
-        for global in &self.program.globals {
+        for (index, global) in self.program.globals.iter().enumerate() {
+            self.bound[index] = false;
             let Some(bytes) = global.binding.and_then(|binding| resources.buffers.get(&binding)) else { continue };
+            self.bound[index] = bytes.len() >= global.bytes as usize;
             let mut slots = Vec::new();
             decode(&self.program.types, global.ty, bytes, &mut |kind, word| slots.push(slot_from_word::<N>(kind, word)));
             match global.role {
@@ -83,6 +89,17 @@ impl<'p, N: Number> Machine<'p, N> {
         self.quad.clear();
         self.resources = resources;
         Ok(())
+    }
+
+    /// Refuses a function one of whose buffers is missing.
+    fn check_buffers(&self, function: &Function) -> Result<(), Error> {
+        match function.buffers.iter().find(|index| !self.bound[**index as usize]) {
+            None => Ok(()),
+            Some(index) => {
+                let name = &self.program.globals[*index as usize].name;
+                Err(Error::new(codes::EVAL_UNBOUND, format!("no buffer of its size is given for `{name}`")))
+            }
+        }
     }
 
     /// Places a buffer that ends in a runtime-sized array behind the memory.
@@ -109,6 +126,7 @@ impl<'p, N: Number> Machine<'p, N> {
     pub fn call(&mut self, id: FunctionId, arguments: &[N]) -> Result<&[N], Error> {
         let program = self.program;
         let function = callable(program, id, arguments.len())?;
+        self.check_buffers(function)?;
         begin(program, &mut self.lane);
         place(&mut self.lane, function, arguments);
         self.run(function.entry)?;
@@ -121,10 +139,11 @@ impl<'p, N: Number> Machine<'p, N> {
     /// Those of [`Self::call`].
     pub fn call_words(&mut self, id: FunctionId, arguments: &[u32], result: &mut Vec<u32>) -> Result<(), Error> {
         let function = callable(self.program, id, arguments.len())?;
+        self.words.clear();
+        self.words.extend(function.arguments.iter().zip(arguments).map(|(kind, word)| slot_from_word::<N>(*kind, *word)));
+        self.check_buffers(function)?;
         begin(self.program, &mut self.lane);
-        for (index, (kind, word)) in function.arguments.iter().zip(arguments).enumerate() {
-            self.lane.memory[function.argument_slot as usize + index] = slot_from_word(*kind, *word);
-        }
+        place(&mut self.lane, function, &self.words);
         self.run(function.entry)?;
         result.clear();
         result.extend(function.result.iter().zip(outcome(&self.lane, function)).map(|(kind, slot)| word_from_slot(*kind, *slot)));
@@ -185,9 +204,6 @@ fn callable(program: &Program, id: FunctionId, given: usize) -> Result<&Function
     if given != wanted {
         return Err(Error::new(codes::EVAL_ARGUMENTS, format!("`{name}` takes {wanted} scalars and was given {given}")));
     }
-    if function.arguments.contains(&Kind::Pointer) {
-        return Err(Error::new(codes::EVAL_ARGUMENTS, format!("`{name}` has a pointer parameter and cannot be called from outside")));
-    }
     Ok(function)
 }
 
@@ -204,8 +220,16 @@ fn begin<N: Number>(program: &Program, lane: &mut Lane<N>) {
 }
 
 fn place<N: Number>(lane: &mut Lane<N>, function: &Function, arguments: &[N]) {
-    let first = function.argument_slot as usize;
-    lane.memory[first..first + arguments.len()].copy_from_slice(arguments);
+    let mut rest = arguments;
+    for parameter in &function.parameters {
+        let (value, others) = rest.split_at(parameter.n as usize);
+        let to = parameter.pointee.unwrap_or(parameter.slot) as usize;
+        lane.memory[to..to + value.len()].copy_from_slice(value);
+        if let Some(pointee) = parameter.pointee {
+            lane.memory[parameter.slot as usize] = N::from_word(pointee);
+        }
+        rest = others;
+    }
 }
 
 fn outcome<'l, N>(lane: &'l Lane<N>, function: &Function) -> &'l [N] {

@@ -23,6 +23,7 @@ impl<N: Number> Machine<'_, N> {
         let mut entry = None;
         for (lane, arguments) in lanes.iter_mut().zip(arguments) {
             let function = callable(program, id, arguments.len())?;
+            self.check_buffers(function)?;
             begin(program, lane);
             place(lane, function, arguments);
             (lane.pc, lane.trips, lane.killed) = (function.entry, 0, false);
