@@ -204,43 +204,185 @@ impl Operand {
 /// One step of the program. `n` counts components; results never overlap operands.
 #[derive(Debug, Clone, Copy)]
 pub enum Instruction {
-    Copy { to: Slot, from: Slot, n: u32 },
-    Fill { to: Slot, from: Slot, n: u32 },
-    Zero { to: Slot, n: u32 },
-    Float1 { op: Unary, n: u8, to: Slot, a: Operand },
-    Float2 { op: Binary, n: u8, to: Slot, a: Operand, b: Operand },
-    Float3 { op: Ternary, n: u8, to: Slot, a: Operand, b: Operand, c: Operand },
-    Compare { op: Compare, n: u8, to: Slot, a: Operand, b: Operand },
-    Word1 { op: Word1, n: u8, to: Slot, a: Operand },
-    Word2 { op: Word2, n: u8, to: Slot, a: Operand, b: Operand },
-    ExtractBits { signed: bool, n: u8, to: Slot, from: Operand, offset: Slot, count: Slot },
-    InsertBits { n: u8, to: Slot, from: Operand, new: Operand, offset: Slot, count: Slot },
-    Convert { op: Convert, n: u8, to: Slot, a: Operand },
-    Pack { op: Packing, to: Slot, from: Slot },
-    Select { n: u8, to: Slot, condition: Operand, accept: Operand, reject: Operand },
-    Reduce { all: bool, n: u8, to: Slot, a: Slot },
-    Geometry { op: Geometry, n: u8, to: Slot, a: Slot, b: Slot, c: Slot },
-    Product { op: Product, inner: u8, rows: u8, columns: u8, to: Slot, a: Slot, b: Slot },
-    Transpose { rows: u8, columns: u8, to: Slot, from: Slot },
+    Copy {
+        to: Slot,
+        from: Slot,
+        n: u32,
+    },
+    Fill {
+        to: Slot,
+        from: Slot,
+        n: u32,
+    },
+    Zero {
+        to: Slot,
+        n: u32,
+    },
+    Float1 {
+        op: Unary,
+        n: u8,
+        to: Slot,
+        a: Operand,
+    },
+    Float2 {
+        op: Binary,
+        n: u8,
+        to: Slot,
+        a: Operand,
+        b: Operand,
+    },
+    Float3 {
+        op: Ternary,
+        n: u8,
+        to: Slot,
+        a: Operand,
+        b: Operand,
+        c: Operand,
+    },
+    Compare {
+        op: Compare,
+        n: u8,
+        to: Slot,
+        a: Operand,
+        b: Operand,
+    },
+    Word1 {
+        op: Word1,
+        n: u8,
+        to: Slot,
+        a: Operand,
+    },
+    Word2 {
+        op: Word2,
+        n: u8,
+        to: Slot,
+        a: Operand,
+        b: Operand,
+    },
+    ExtractBits {
+        signed: bool,
+        n: u8,
+        to: Slot,
+        from: Operand,
+        offset: Slot,
+        count: Slot,
+    },
+    InsertBits {
+        n: u8,
+        to: Slot,
+        from: Operand,
+        new: Operand,
+        offset: Slot,
+        count: Slot,
+    },
+    Convert {
+        op: Convert,
+        n: u8,
+        to: Slot,
+        a: Operand,
+    },
+    Pack {
+        op: Packing,
+        to: Slot,
+        from: Slot,
+    },
+    Select {
+        n: u8,
+        to: Slot,
+        condition: Operand,
+        accept: Operand,
+        reject: Operand,
+    },
+    Reduce {
+        all: bool,
+        n: u8,
+        to: Slot,
+        a: Slot,
+    },
+    Geometry {
+        op: Geometry,
+        n: u8,
+        to: Slot,
+        a: Slot,
+        b: Slot,
+        c: Slot,
+    },
+    Product {
+        op: Product,
+        inner: u8,
+        rows: u8,
+        columns: u8,
+        to: Slot,
+        a: Slot,
+        b: Slot,
+    },
+    Transpose {
+        rows: u8,
+        columns: u8,
+        to: Slot,
+        from: Slot,
+    },
     /// `to = address(base) + min(index, count - 1) * size`: WGSL's clamped access.
-    Index { to: Slot, base: Slot, index: Slot, size: u32, count: Slot },
+    Index {
+        to: Slot,
+        base: Slot,
+        index: Slot,
+        size: u32,
+        count: Slot,
+    },
     /// A component of a value by index, clamped.
-    Pick { to: Slot, from: Slot, index: Slot, size: u32, count: u32 },
-    Load { to: Slot, pointer: Slot, offset: u32, n: u32 },
-    Store { pointer: Slot, offset: u32, from: Slot, n: u32 },
-    Jump { to: u32 },
-    JumpUnless { condition: Slot, to: u32 },
-    Switch { selector: Slot, table: u32 },
-    Call { to: u32 },
+    Pick {
+        to: Slot,
+        from: Slot,
+        index: Slot,
+        size: u32,
+        count: u32,
+    },
+    Load {
+        to: Slot,
+        pointer: Slot,
+        offset: u32,
+        n: u32,
+    },
+    Store {
+        pointer: Slot,
+        offset: u32,
+        from: Slot,
+        n: u32,
+    },
+    Jump {
+        to: u32,
+    },
+    JumpUnless {
+        condition: Slot,
+        to: u32,
+    },
+    Switch {
+        selector: Slot,
+        table: u32,
+    },
+    Call {
+        to: u32,
+    },
     Return,
     /// A loop begins another trip.
     Trip,
     /// A block is reached.
-    Mark { point: u32 },
+    Mark {
+        point: u32,
+    },
     Kill,
-    Derivative { axis: Axis, coarse: bool, n: u8, to: Slot, a: Operand },
+    Derivative {
+        axis: Axis,
+        coarse: bool,
+        n: u8,
+        to: Slot,
+        a: Operand,
+    },
     /// An access to a texture, by its index in `Program::images`.
-    Image { access: u32 },
+    Image {
+        access: u32,
+    },
 }
 
 impl Instruction {
@@ -282,7 +424,7 @@ pub enum Level {
 #[derive(Debug, Clone, Copy)]
 pub enum Ask {
     Sample { sampler: Slot, gather: Option<u8>, level: Level, offset: Option<Slot>, reference: Option<Slot>, clamp_to_edge: bool },
-    Load { level: Option<Slot>, sample: Option<Slot> },
+    Load { level: Option<Slot> },
     Size { level: Option<Slot> },
     Levels,
     Layers,

@@ -108,7 +108,11 @@ pub(super) enum Role {
     Buffer,
     /// A runtime-sized array lies behind the memory: slots holding its address and length, and
     /// the slots of one element.
-    Runtime { address: Slot, count: Slot, element: u32 },
+    Runtime {
+        address: Slot,
+        count: Slot,
+        element: u32,
+    },
     Image,
     Sampler,
 }

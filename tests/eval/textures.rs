@@ -83,10 +83,17 @@ const CASES: &[(&str, bool, bool, &[f64], &[f64])] = &[
 
 pub fn trials() -> Vec<Trial> {
     let cases = CASES.iter().map(|case| {
-        let name = format!("eval/textures/{}({:?}){}{}", case.0, case.3, if case.1 { " linear" } else { "" }, if case.2 { " repeat" } else { "" });
+        let name =
+            format!("eval/textures/{}({:?}){}{}", case.0, case.3, if case.1 { " linear" } else { "" }, if case.2 { " repeat" } else { "" });
         Trial::test(name, || check(case))
     });
-    cases.chain([Trial::test("eval/textures/words", words), Trial::test("eval/textures/quad", quad), Trial::test("eval/entry_points", entries)]).collect()
+    cases
+        .chain([
+            Trial::test("eval/textures/words", words),
+            Trial::test("eval/textures/quad", quad),
+            Trial::test("eval/entry_points", entries),
+        ])
+        .collect()
 }
 
 fn gray(values: &[f64]) -> Vec<[f64; 4]> {

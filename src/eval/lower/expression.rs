@@ -128,7 +128,13 @@ impl Body<'_, '_> {
         }
     }
 
-    fn select(&mut self, handle: Handle<Expression>, condition: Handle<Expression>, accept: Handle<Expression>, reject: Handle<Expression>) -> Result<Loc, Error> {
+    fn select(
+        &mut self,
+        handle: Handle<Expression>,
+        condition: Handle<Expression>,
+        accept: Handle<Expression>,
+        reject: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let whole = matches!(self.inner(condition), TypeInner::Scalar(_));
         let condition = self.operand(condition)?;
@@ -138,7 +144,13 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    fn derivative(&mut self, handle: Handle<Expression>, axis: DerivativeAxis, control: DerivativeControl, expr: Handle<Expression>) -> Result<Loc, Error> {
+    fn derivative(
+        &mut self,
+        handle: Handle<Expression>,
+        axis: DerivativeAxis,
+        control: DerivativeControl,
+        expr: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let a = self.operand(expr)?;
         let axis = match axis {

@@ -10,7 +10,8 @@ impl Body<'_, '_> {
     pub(super) fn image(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let words = self.kind(handle)? != Kind::Float;
-        let mut access = Access { image: 0, coordinate: 0, dimensions: 0, layer: None, ask: Ask::Levels, to, n: n as u8, words, depth: false };
+        let mut access =
+            Access { image: 0, coordinate: 0, dimensions: 0, layer: None, ask: Ask::Levels, to, n: n as u8, words, depth: false };
         match self.expressions[handle] {
             Expression::ImageSample { image, sampler, gather, coordinate, array_index, offset, level, depth_ref, clamp_to_edge } => {
                 self.coordinates(&mut access, image, Some(coordinate), array_index)?;
@@ -18,9 +19,9 @@ impl Body<'_, '_> {
                 let (level, gather) = (self.level(level)?, gather.map(|component| component as u8));
                 access.ask = Ask::Sample { sampler, gather, level, offset, reference, clamp_to_edge };
             }
-            Expression::ImageLoad { image, coordinate, array_index, sample, level } => {
+            Expression::ImageLoad { image, coordinate, array_index, level, .. } => {
                 self.coordinates(&mut access, image, Some(coordinate), array_index)?;
-                access.ask = Ask::Load { level: self.maybe(level)?, sample: self.maybe(sample)? };
+                access.ask = Ask::Load { level: self.maybe(level)? };
             }
             Expression::ImageQuery { image, query } => {
                 self.coordinates(&mut access, image, None, None)?;
@@ -34,7 +35,13 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    fn coordinates(&mut self, access: &mut Access, image: Handle<Expression>, coordinate: Option<Handle<Expression>>, layer: Option<Handle<Expression>>) -> Result<(), Error> {
+    fn coordinates(
+        &mut self,
+        access: &mut Access,
+        image: Handle<Expression>,
+        coordinate: Option<Handle<Expression>>,
+        layer: Option<Handle<Expression>>,
+    ) -> Result<(), Error> {
         let TypeInner::Image { class, .. } = *self.inner(image) else { return Err(Error::unsupported("arrays of textures")) };
         if matches!(class, ImageClass::Storage { .. } | ImageClass::External) {
             return Err(Error::unsupported("storage and external textures"));

@@ -18,7 +18,13 @@ enum OnFloats {
 }
 
 impl Body<'_, '_> {
-    pub(super) fn math(&mut self, handle: Handle<Expression>, fun: MathFunction, arg: Handle<Expression>, rest: [Argument; 3]) -> Result<Loc, Error> {
+    pub(super) fn math(
+        &mut self,
+        handle: Handle<Expression>,
+        fun: MathFunction,
+        arg: Handle<Expression>,
+        rest: [Argument; 3],
+    ) -> Result<Loc, Error> {
         if let Some(op) = packing(fun) {
             let from = self.dense(arg)?;
             let (to, _) = self.fresh(handle)?;
@@ -33,7 +39,13 @@ impl Body<'_, '_> {
         }
     }
 
-    fn on_floats(&mut self, handle: Handle<Expression>, fun: MathFunction, arg: Handle<Expression>, rest: [Argument; 3]) -> Result<Loc, Error> {
+    fn on_floats(
+        &mut self,
+        handle: Handle<Expression>,
+        fun: MathFunction,
+        arg: Handle<Expression>,
+        rest: [Argument; 3],
+    ) -> Result<Loc, Error> {
         match on_floats(fun) {
             Some(OnFloats::One(op)) => self.float1(handle, op, arg),
             Some(OnFloats::Two(op)) => self.float2(handle, op, arg, need(rest[0])?),
@@ -77,7 +89,14 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    fn on_words(&mut self, handle: Handle<Expression>, fun: MathFunction, signed: bool, arg: Handle<Expression>, rest: [Argument; 3]) -> Result<Loc, Error> {
+    fn on_words(
+        &mut self,
+        handle: Handle<Expression>,
+        fun: MathFunction,
+        signed: bool,
+        arg: Handle<Expression>,
+        rest: [Argument; 3],
+    ) -> Result<Loc, Error> {
         let (min, max) = if signed { (Word2::MinS, Word2::MaxS) } else { (Word2::MinU, Word2::MaxU) };
         match fun {
             MathFunction::Abs if !signed => self.loc(arg),
@@ -95,7 +114,14 @@ impl Body<'_, '_> {
         }
     }
 
-    fn clamp(&mut self, handle: Handle<Expression>, arg: Handle<Expression>, low: Handle<Expression>, high: Handle<Expression>, (min, max): (Word2, Word2)) -> Result<Loc, Error> {
+    fn clamp(
+        &mut self,
+        handle: Handle<Expression>,
+        arg: Handle<Expression>,
+        low: Handle<Expression>,
+        high: Handle<Expression>,
+        (min, max): (Word2, Word2),
+    ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let raised = self.build.alloc(n)?;
         let (a, low, high) = (self.spread(arg, n)?, self.spread(low, n)?, self.spread(high, n)?);
@@ -104,7 +130,14 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    fn bits(&mut self, handle: Handle<Expression>, fun: MathFunction, signed: bool, arg: Handle<Expression>, rest: [Argument; 3]) -> Result<Loc, Error> {
+    fn bits(
+        &mut self,
+        handle: Handle<Expression>,
+        fun: MathFunction,
+        signed: bool,
+        arg: Handle<Expression>,
+        rest: [Argument; 3],
+    ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let (from, n) = (self.operand(arg)?, n as u8);
         let (first, second) = (self.operand(need(rest[0])?)?, self.operand(need(rest[1])?)?.slot);

@@ -159,7 +159,15 @@ impl<'m> Build<'m> {
         let slot = if let Loc::Place(slot) = loc { slot } else { 0 };
         let binding = variable.binding.map(|binding| (binding.group, binding.binding));
         let bytes = inner.try_size(self.module.to_ctx()).unwrap_or(0);
-        self.program.globals.push(Global { name: variable.name.clone().unwrap_or_default(), binding, ty: variable.ty, slot, slots, bytes, role });
+        self.program.globals.push(Global {
+            name: variable.name.clone().unwrap_or_default(),
+            binding,
+            ty: variable.ty,
+            slot,
+            slots,
+            bytes,
+            role,
+        });
         Ok(loc)
     }
 

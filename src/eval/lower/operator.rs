@@ -41,12 +41,17 @@ impl Body<'_, '_> {
         }
     }
 
-    pub(super) fn binary(&mut self, handle: Handle<Expression>, op: BinaryOperator, left: Handle<Expression>, right: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn binary(
+        &mut self,
+        handle: Handle<Expression>,
+        op: BinaryOperator,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let kind = self.kind(left)?;
-        if op == BinaryOperator::Multiply && kind == Kind::Float {
-            if let Some(loc) = self.product(handle, left, right)? {
-                return Ok(loc);
-            }
+        let product = if op == BinaryOperator::Multiply { self.product(handle, left, right)? } else { None };
+        if let Some(loc) = product {
+            return Ok(loc);
         }
         if let (Kind::Float, Some(op)) = (kind, comparison(op)) {
             return self.compare(handle, op, left, right);
@@ -61,7 +66,14 @@ impl Body<'_, '_> {
         }
     }
 
-    fn ordered(&mut self, handle: Handle<Expression>, op: Word2, left: Handle<Expression>, right: Handle<Expression>, swapped: bool) -> Result<Loc, Error> {
+    fn ordered(
+        &mut self,
+        handle: Handle<Expression>,
+        op: Word2,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+        swapped: bool,
+    ) -> Result<Loc, Error> {
         if swapped { self.word2(handle, op, right, left) } else { self.word2(handle, op, left, right) }
     }
 
@@ -81,7 +93,13 @@ impl Body<'_, '_> {
         Ok(Some(Loc::dense(to, false)))
     }
 
-    fn compare(&mut self, handle: Handle<Expression>, op: Compare, left: Handle<Expression>, right: Handle<Expression>) -> Result<Loc, Error> {
+    fn compare(
+        &mut self,
+        handle: Handle<Expression>,
+        op: Compare,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let (a, b) = (self.spread(left, n)?, self.spread(right, n)?);
         self.emit(Instruction::Compare { op, n: n as u8, to, a, b });
@@ -94,7 +112,13 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    pub(super) fn float2(&mut self, handle: Handle<Expression>, op: Binary, a: Handle<Expression>, b: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn float2(
+        &mut self,
+        handle: Handle<Expression>,
+        op: Binary,
+        a: Handle<Expression>,
+        b: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let (a, b) = (self.spread(a, n)?, self.spread(b, n)?);
         self.emit(Instruction::Float2 { op, n: n as u8, to, a, b });
@@ -107,7 +131,13 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    pub(super) fn word2(&mut self, handle: Handle<Expression>, op: Word2, a: Handle<Expression>, b: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn word2(
+        &mut self,
+        handle: Handle<Expression>,
+        op: Word2,
+        a: Handle<Expression>,
+        b: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let (a, b) = (self.spread(a, n)?, self.spread(b, n)?);
         self.word2_at(op, n, to, a, b);
@@ -118,7 +148,12 @@ impl Body<'_, '_> {
         self.emit(Instruction::Word2 { op, n: n as u8, to, a, b });
     }
 
-    pub(super) fn relational(&mut self, handle: Handle<Expression>, fun: RelationalFunction, argument: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn relational(
+        &mut self,
+        handle: Handle<Expression>,
+        fun: RelationalFunction,
+        argument: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         match fun {
             RelationalFunction::IsNan => self.convert(handle, Convert::IsNan, argument),
             RelationalFunction::IsInf => self.convert(handle, Convert::IsInf, argument),
@@ -130,7 +165,13 @@ impl Body<'_, '_> {
         }
     }
 
-    pub(super) fn cast(&mut self, handle: Handle<Expression>, expr: Handle<Expression>, kind: ScalarKind, convert: Option<u8>) -> Result<Loc, Error> {
+    pub(super) fn cast(
+        &mut self,
+        handle: Handle<Expression>,
+        expr: Handle<Expression>,
+        kind: ScalarKind,
+        convert: Option<u8>,
+    ) -> Result<Loc, Error> {
         let from = self.kind(expr)?;
         if convert.is_some_and(|width| width != 4 && kind != ScalarKind::Bool) {
             return Err(Error::unsupported("conversions to scalars that are not 32 bits wide"));

@@ -186,7 +186,12 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    fn call(&mut self, function: Handle<Function>, arguments: &[Handle<Expression>], result: Option<Handle<Expression>>) -> Result<(), Error> {
+    fn call(
+        &mut self,
+        function: Handle<Function>,
+        arguments: &[Handle<Expression>],
+        result: Option<Handle<Expression>>,
+    ) -> Result<(), Error> {
         let callee = &self.build.program.functions[function.index()];
         let (result_slot, entry, n) = (callee.result_slot, callee.entry, callee.returned);
         let slots: Vec<u32> = callee.parameters.iter().map(|parameter| parameter.slot).collect();

@@ -102,7 +102,8 @@ fn whole<N: Number>(value: f64) -> N {
 
 /// Products of matrices; a column of `b` at a time.
 fn product<N: Number>(m: &mut [N], op: Product, [inner, rows, columns]: [u8; 3], to: u32, a: u32, b: u32) {
-    let (inner, rows, columns, to, a, b) = (usize::from(inner), usize::from(rows), usize::from(columns), to as usize, a as usize, b as usize);
+    let (inner, rows, columns, to, a, b) =
+        (usize::from(inner), usize::from(rows), usize::from(columns), to as usize, a as usize, b as usize);
     // Element k of row r of `a`; the vector on the left of a matrix is its only row.
     let stride = if op == Product::VectorMatrix { 1 } else { rows };
     for column in 0..columns {

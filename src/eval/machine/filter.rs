@@ -34,8 +34,11 @@ struct Tap {
     texel: [f64; 4],
 }
 
+/// An axis and its sign.
+type Signed = (usize, f64);
+
 /// Major axis, sign, and the axes and signs of s and t for each face: +x, -x, +y, -y, +z, -z.
-const FACES: [(usize, f64, (usize, f64), (usize, f64)); 6] = [
+const FACES: [(usize, f64, Signed, Signed); 6] = [
     (0, 1.0, (2, -1.0), (1, -1.0)),
     (0, -1.0, (2, 1.0), (1, -1.0)),
     (1, 1.0, (0, 1.0), (2, 1.0)),
@@ -53,8 +56,8 @@ pub(super) fn project(shape: Shape, coordinate: [f64; 3], error: [f64; 3], layer
     let major = if size[2] >= size[0] && size[2] >= size[1] { 2 } else { usize::from(size[1] >= size[0]) };
     let face = 2 * major + usize::from(coordinate[major] < 0.0);
     let (_, _, s, t) = FACES[face];
-    let along = |(axis, sign): (usize, f64)| 0.5 * (sign * coordinate[axis] / size[major] + 1.0);
-    let off = |(axis, _): (usize, f64)| 0.5 * (error[axis] + size[axis] / size[major] * error[major]) / size[major];
+    let along = |(axis, sign): Signed| 0.5 * (sign * coordinate[axis] / size[major] + 1.0);
+    let off = |(axis, _): Signed| 0.5 * (error[axis] + size[axis] / size[major] * error[major]) / size[major];
     Point { shape, at: [along(s), along(t), 0.0], error: [off(s), off(t), 0.0], layer, face }
 }
 
@@ -63,7 +66,7 @@ impl Point {
     pub fn slope(&self, direction: [f64; 3], step: [f64; 3]) -> [f64; 3] {
         let (major, sign, s, t) = FACES[self.face];
         let size = direction[major].abs();
-        let along = |(axis, side): (usize, f64)| 0.5 * side * (step[axis] * size - direction[axis] * step[major] * sign) / (size * size);
+        let along = |(axis, side): Signed| 0.5 * side * (step[axis] * size - direction[axis] * step[major] * sign) / (size * size);
         [along(s), along(t), 0.0]
     }
 }
@@ -79,7 +82,8 @@ pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> 
     let slack: f64 = (0..3).map(|axis| footprint.point.error[axis] * size(footprint, level)[axis] + SUBTEXEL).sum();
     std::array::from_fn(|i| {
         let value: f64 = taps.iter().map(|tap| tap.weight * tap.texel[i]).sum();
-        let (low, high) = taps.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), tap| (low.min(tap.texel[i]), high.max(tap.texel[i])));
+        let (low, high) =
+            taps.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), tap| (low.min(tap.texel[i]), high.max(tap.texel[i])));
         (value, if low == high { 0.0 } else { (high - low) * slack.min(1.0) + value.abs() * f64::from(f32::EPSILON) })
     })
 }
@@ -109,7 +113,8 @@ fn base<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
 
 fn linear<N>(footprint: &Footprint<N>, level: &Level) -> Vec<Tap> {
     let (size, base) = (size(footprint, level), base(footprint, level));
-    let share: [f64; 3] = std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 });
+    let share: [f64; 3] =
+        std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 });
     let corners = (0..8usize).map(|corner| [corner & 1, corner >> 1 & 1, corner >> 2]);
     let there = corners.filter(|corner| (0..3).all(|i| corner[i] == 0 || size[i] > 0.0));
     there

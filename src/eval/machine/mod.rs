@@ -54,7 +54,17 @@ impl<'p, N: Number> Machine<'p, N> {
             };
         }
         let watch = Watch::new(program);
-        let mut machine = Self { program, resources: Resources::default(), lane, quad: Vec::new(), killed: [false; 4], watch, words: Vec::new(), bound: vec![false; program.globals.len()], loop_limit: LOOP_LIMIT };
+        let mut machine = Self {
+            program,
+            resources: Resources::default(),
+            lane,
+            quad: Vec::new(),
+            killed: [false; 4],
+            watch,
+            words: Vec::new(),
+            bound: vec![false; program.globals.len()],
+            loop_limit: LOOP_LIMIT,
+        };
         machine.run(program.start)?;
         Ok(machine)
     }
@@ -154,12 +164,10 @@ impl<'p, N: Number> Machine<'p, N> {
     fn run(&mut self, entry: u32) -> Result<(), Error> {
         (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
         self.lane.calls.clear();
-        loop {
-            let env = lane::Env { program: self.program, resources: &self.resources, loop_limit: self.loop_limit, quad: false };
-            match lane::run(env, &mut self.lane, &mut self.watch)? {
-                Stop::Done => return Ok(()),
-                Stop::Quad => return Err(needs_quad(self.program, self.lane.pc)),
-            }
+        let env = lane::Env { program: self.program, resources: &self.resources, loop_limit: self.loop_limit, quad: false };
+        match lane::run(env, &mut self.lane, &mut self.watch)? {
+            Stop::Done => Ok(()),
+            Stop::Quad => Err(needs_quad(self.program, self.lane.pc)),
         }
     }
 

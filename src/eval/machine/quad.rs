@@ -32,7 +32,9 @@ impl<N: Number> Machine<'_, N> {
         }
         let outcomes = self.together(&mut lanes);
         self.killed = [0, 1, 2, 3].map(|index| lanes.get(index).is_some_and(|lane| lane.killed));
-        let results = std::array::from_fn(|index| entry.zip(lanes.get(index)).map_or(Vec::new(), |(function, lane)| outcome(lane, function).to_vec()));
+        let results = std::array::from_fn(|index| {
+            entry.zip(lanes.get(index)).map_or(Vec::new(), |(function, lane)| outcome(lane, function).to_vec())
+        });
         self.quad = lanes;
         outcomes.map(|()| results)
     }

@@ -19,10 +19,12 @@ type Notes<'w> = (u32, &'w mut Watch);
 /// Runs an access whose level follows from the neighbours, for those lanes that reached it.
 pub(super) fn quad<N: Number>(env: Env, index: u32, lanes: &mut [Lane<N>], group: &[usize], watch: &mut Watch) -> Result<(), Error> {
     let access = &env.program.images[index as usize];
-    let coordinates: [Option<[f64; 3]>; 4] = std::array::from_fn(|lane| group.contains(&lane).then(|| values(&lanes[lane].memory, access.coordinate, access.dimensions)));
+    let coordinates: [Option<[f64; 3]>; 4] =
+        std::array::from_fn(|lane| group.contains(&lane).then(|| values(&lanes[lane].memory, access.coordinate, access.dimensions)));
     for &lane in group {
-        let gradient = [Axis::X, Axis::Y].map(|axis| match pair(lane, axis, false) {
-            (low, high) => coordinates[low].zip(coordinates[high]).map_or([0.0; 3], |(low, high)| std::array::from_fn(|i| high[i] - low[i])),
+        let gradient = [Axis::X, Axis::Y].map(|axis| {
+            let (low, high) = pair(lane, axis, false);
+            coordinates[low].zip(coordinates[high]).map_or([0.0; 3], |(low, high)| std::array::from_fn(|i| high[i] - low[i]))
         });
         let pc = lanes[lane].pc;
         apply(env, access, &mut lanes[lane].memory, Some(gradient), (pc, watch)).map_err(|error| error.or_at(env.span(pc)))?;
@@ -44,7 +46,7 @@ fn apply<N: Number>(env: Env, access: &Access, m: &mut [N], gradient: Option<Gra
     };
     match access.ask {
         Ask::Sample { .. } => return sample(env, access, texture, m, gradient, notes),
-        Ask::Load { level, .. } => load(access, texture, m, level, notes),
+        Ask::Load { level } => load(access, texture, m, level, notes),
         Ask::Size { level } => {
             let size = size(level);
             put(m, access, size.map(|size| (f64::from(size), 0.0)));
@@ -88,12 +90,20 @@ fn load<N: Number>(access: &Access, texture: &Texture, m: &mut [N], level: Optio
     put(m, access, texel.unwrap_or_default().map(|value| (value, 0.0)));
 }
 
-fn sample<N: Number>(env: Env, access: &Access, texture: &Texture, m: &mut [N], gradient: Option<Gradient>, notes: Notes) -> Result<(), Error> {
+fn sample<N: Number>(
+    env: Env,
+    access: &Access,
+    texture: &Texture,
+    m: &mut [N],
+    gradient: Option<Gradient>,
+    notes: Notes,
+) -> Result<(), Error> {
     let Ask::Sample { sampler: slot, gather, level, offset, reference, clamp_to_edge } = access.ask else { return Ok(()) };
     let sampler = sampler(env, m[slot as usize].word())?;
     let sampler = if clamp_to_edge { Sampler { address: Default::default(), ..*sampler } } else { *sampler };
     let coordinate = values(m, access.coordinate, access.dimensions);
-    let errors: [f64; 3] = std::array::from_fn(|i| if i < usize::from(access.dimensions) { m[access.coordinate as usize + i].error() } else { 0.0 });
+    let errors: [f64; 3] =
+        std::array::from_fn(|i| if i < usize::from(access.dimensions) { m[access.coordinate as usize + i].error() } else { 0.0 });
     let layer = access.layer.map_or(0, |slot| (m[slot as usize].word() as i32).max(0) as u32);
     let point = project(texture.shape, coordinate, errors, layer);
     let shift: [i64; 3] = std::array::from_fn(|i| match offset {
@@ -143,7 +153,15 @@ fn detail(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> 
     longest[0].max(longest[1]).log2()
 }
 
-fn between_levels<N: Number>(sampler: &Sampler, texture: &Texture, point: Point, shift: [i64; 3], reference: Option<N>, level: f64, doubt: &mut bool) -> [(f64, f64); 4] {
+fn between_levels<N: Number>(
+    sampler: &Sampler,
+    texture: &Texture,
+    point: Point,
+    shift: [i64; 3],
+    reference: Option<N>,
+    level: f64,
+    doubt: &mut bool,
+) -> [(f64, f64); 4] {
     let last = (texture.levels.len() - 1) as f64;
     let level = if level.is_nan() { 0.0 } else { level.clamp(sampler.levels.0, sampler.levels.1.max(sampler.levels.0)) };
     let filter = if level <= 0.0 { sampler.mag } else { sampler.min };
@@ -153,7 +171,9 @@ fn between_levels<N: Number>(sampler: &Sampler, texture: &Texture, point: Point,
         return at((level + 0.5).floor().min(last));
     }
     let (fine, coarse, share) = (at(level.floor()), at(level.floor() + 1.0), level.fract());
-    std::array::from_fn(|i| (fine[i].0 * (1.0 - share) + coarse[i].0 * share, fine[i].1.max(coarse[i].1) + (fine[i].0 - coarse[i].0).abs() * 2f64.powi(-6)))
+    std::array::from_fn(|i| {
+        (fine[i].0 * (1.0 - share) + coarse[i].0 * share, fine[i].1.max(coarse[i].1) + (fine[i].0 - coarse[i].0).abs() * 2f64.powi(-6))
+    })
 }
 
 fn values<N: Number>(m: &[N], slot: u32, dimensions: u8) -> [f64; 3] {

@@ -14,7 +14,13 @@ pub(super) fn word1(op: Word1, x: u32) -> u32 {
         Word1::LeadingZeros => x.leading_zeros(),
         Word1::CountOnes => x.count_ones(),
         Word1::Reverse => x.reverse_bits(),
-        Word1::FirstTrailing => if x == 0 { u32::MAX } else { x.trailing_zeros() },
+        Word1::FirstTrailing => {
+            if x == 0 {
+                u32::MAX
+            } else {
+                x.trailing_zeros()
+            }
+        }
         Word1::FirstLeading => 31u32.wrapping_sub(x.leading_zeros()),
         // The highest bit that differs from the sign.
         Word1::FirstLeadingSigned => 31u32.wrapping_sub((x ^ ((x as i32) >> 31) as u32).leading_zeros()),

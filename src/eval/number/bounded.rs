@@ -75,7 +75,9 @@ impl Bounded {
             Unary::Acos | Unary::Asin => times(1.0 / root, x.error).min(2.0 * x.error.sqrt()) + 6.81e-5 + 4096.0 * ulp(value),
             Unary::Atan => times(1.0 / (1.0 + v * v), x.error) + 4096.0 * ulp(value),
             Unary::Asinh => times(1.0 / (v * v + 1.0).sqrt(), x.error) + (-20f64).exp2() + 4.0 * ulp(value),
-            Unary::Acosh => times(1.0 / (v * v - 1.0).max(0.0).sqrt(), x.error).min(2.0 * x.error.sqrt()) + (-20f64).exp2() + 4.0 * ulp(value),
+            Unary::Acosh => {
+                times(1.0 / (v * v - 1.0).max(0.0).sqrt(), x.error).min(2.0 * x.error.sqrt()) + (-20f64).exp2() + 4.0 * ulp(value)
+            }
             Unary::Atanh => times(1.0 / (1.0 - v * v).max(0.0), x.error) + (-20f64).exp2() + 4.0 * ulp(value),
             Unary::Exp => times(value, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
             Unary::Exp2 => times(value * std::f64::consts::LN_2, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
