@@ -1,6 +1,8 @@
 //! Weaves the modules that an entry point reaches into one text, with a map back to the authors'.
 
+pub mod glsl;
 mod source_map;
+pub mod wesl;
 
 pub use source_map::{Segment, SourceMap};
 

@@ -30,6 +30,13 @@ pub struct Program {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FunctionId(pub(super) u32);
 
+impl From<Handle<naga::Function>> for FunctionId {
+    /// The function of that handle in the module the program was lowered from.
+    fn from(handle: Handle<naga::Function>) -> Self {
+        Self(handle.index() as u32)
+    }
+}
+
 /// A function as the caller sees it.
 #[derive(Debug, Clone)]
 pub struct Function {

@@ -1,1 +1,4 @@
 //! From text to items, imports and conditions.
+
+pub mod wesl;
+pub mod glsl;

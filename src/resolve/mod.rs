@@ -1,5 +1,8 @@
 //! From parsed modules to a graph of items and what each refers to.
 
+pub mod wesl;
+pub mod glsl;
+
 use crate::source::Package;
 
 /// The packages a composition may read.

@@ -1,8 +1,10 @@
 //! Author's text: files, packages, and spans that always point into them.
 
 mod package;
+mod read;
 
 pub use package::{Disk, Embedded, Files, LIMITS, Limits, Memory, Package, ReadError};
+pub use read::read;
 
 /// One text an author wrote, as shown in diagnostics.
 #[derive(Debug, Clone)]

@@ -79,7 +79,8 @@ pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> 
         Filter::Nearest => nearest(footprint, level, doubt),
     };
     let taps: Vec<Tap> = taps.into_iter().map(|tap| footprint.compared(tap, doubt)).collect();
-    let slack: f64 = (0..3).map(|axis| footprint.point.error[axis] * size(footprint, level)[axis] + SUBTEXEL).sum();
+    let size = size(footprint, level);
+    let slack: f64 = (0..3).filter(|axis| size[*axis] > 0.0).map(|axis| footprint.point.error[axis] * size[axis] + SUBTEXEL).sum();
     std::array::from_fn(|i| {
         let value: f64 = taps.iter().map(|tap| tap.weight * tap.texel[i]).sum();
         let (low, high) =
@@ -93,7 +94,7 @@ pub(super) fn gathered<N: Number>(footprint: &Footprint<N>, component: usize, do
     let level = &footprint.texture.levels[footprint.level];
     let base = base(footprint, level);
     [[0, 1], [1, 1], [1, 0], [0, 0]].map(|[x, y]| {
-        let texel = footprint.texel(level, [base[0] + x, base[1] + y, base[2]]);
+        let texel = footprint.texel(level, [base[0].saturating_add(x), base[1].saturating_add(y), base[2]]);
         (footprint.compared(Tap { weight: 1.0, texel }, doubt).texel[component], 0.0)
     })
 }
@@ -120,7 +121,7 @@ fn linear<N>(footprint: &Footprint<N>, level: &Level) -> Vec<Tap> {
     there
         .map(|corner| {
             let weight = (0..3).map(|i| if corner[i] == 1 { share[i] } else { 1.0 - share[i] }).product();
-            Tap { weight, texel: footprint.texel(level, std::array::from_fn(|i| base[i] + corner[i] as i64)) }
+            Tap { weight, texel: footprint.texel(level, std::array::from_fn(|i| base[i].saturating_add(corner[i] as i64))) }
         })
         .filter(|tap: &Tap| tap.weight != 0.0)
         .collect()
@@ -149,7 +150,7 @@ impl<N: Number> Footprint<'_, N> {
 impl<N> Footprint<'_, N> {
     /// The texel at column and row (and slice), addressed as the sampler says.
     fn texel(&self, level: &Level, at: [i64; 3]) -> [f64; 4] {
-        let moved: [i64; 3] = std::array::from_fn(|i| at[i] + self.shift[i]);
+        let moved: [i64; 3] = std::array::from_fn(|i| at[i].saturating_add(self.shift[i]));
         let place = match self.point.shape {
             Shape::Cube => self.around(level, moved),
             Shape::D3 => [0, 1, 2].map(|i| wrap(self.sampler.address[i], moved[i], [level.width, level.height, level.layers][i])),

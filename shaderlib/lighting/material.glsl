@@ -1,0 +1,36 @@
+//! What a surface does with light, and how a fragment chooses among an array of materials.
+
+#ifndef LAMPLIGHT_LIGHTING_MATERIAL_GLSL
+#define LAMPLIGHT_LIGHTING_MATERIAL_GLSL
+
+/// A material, 64 bytes, the same in uniform (std140) and storage buffers.
+struct Material {
+    /// Linear colour the surface emits, at least 0.
+    vec3 emission;
+    /// Exponent of the Phong and Blinn-Phong highlights, at least 0.
+    float shininess;
+    /// Linear reflectance of ambient light, [0, 1].
+    vec3 ambient;
+    /// Perceptual roughness, [0, 1]: the `alpha` of GGX is its square.
+    float roughness;
+    /// Linear diffuse reflectance, [0, 1].
+    vec3 diffuse;
+    /// Wrap of diffuse light around the terminator, [0, 1].
+    float wrap;
+    /// Linear specular reflectance, [0, 1]: the `f0` of Fresnel's terms.
+    vec3 specular;
+    /// Oren-Nayar's standard deviation of the facets' slope, radians.
+    float sigma;
+};
+
+/// The index of the material on the visible side, in an array of front and back pairs.
+int material_index(int i, bool front) {
+    return 2 * i + (front ? 0 : 1);
+}
+
+/// The index of the material on the visible side, as the book prints it.
+int material_index_oglpg(int i, bool front) {
+    return front ? i : i + 1;
+}
+
+#endif

@@ -1,0 +1,188 @@
+//! Visibility from a depth map: hard, filtered and soft lookups. 1 is lit; a point outside the map is lit.
+//!
+//! The sampler compares `reference <= stored` (or its opposite for reversed depth) and filters linearly, clamped to
+//! the edge. Kernels are in texels. Subtract a bias from `at.depth` first: see `shadow::bias`.
+
+#ifndef LAMPLIGHT_SHADOW_COMPARE_GLSL
+#define LAMPLIGHT_SHADOW_COMPARE_GLSL
+
+#include "../filter/sampling.glsl"
+#include "../math/noise.glsl"
+#include "coord.glsl"
+
+/// One comparison with the map: 1 beyond its edge.
+float compare_tap(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth) {
+    float visible = textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(uv, depth), 0.0);
+    return is_on_map(uv) ? visible : 1.0;
+}
+
+/// One comparison: a hard shadow, softened by the sampler over one texel.
+float hard(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
+    if (!at.inside) {
+        return 1.0;
+    }
+    return compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv, at.depth);
+}
+
+/// The mean of a square grid of comparisons, two texels apart.
+float pcf_grid(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int reach) {
+    if (!at.inside) {
+        return 1.0;
+    }
+    vec2 stride = 2.0 / vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0));
+    float sum = 0.0;
+    for (int y = -reach; y <= reach; y++) {
+        for (int x = -reach; x <= reach; x++) {
+            sum += compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv + vec2(float(x), float(y)) * stride, at.depth);
+        }
+    }
+    float side = float(2 * reach + 1);
+    return sum / (side * side);
+}
+
+/// Nine comparisons at -2, 0 and 2 texels in each direction, averaged.
+float pcf_3x3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
+    return pcf_grid(LAMPLIGHT_DEPTH_ARG(map, smp), at, 1);
+}
+
+/// Twenty-five comparisons at -4, -2, 0, 2 and 4 texels in each direction, averaged.
+float pcf_5x5(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
+    return pcf_grid(LAMPLIGHT_DEPTH_ARG(map, smp), at, 2);
+}
+
+/// A tent of 3x3 texels (weights 1, 2, 1) in four bilinear comparisons.
+float pcf_castano_3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
+    if (!at.inside) {
+        return 1.0;
+    }
+    vec2 size = vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0));
+    vec2 shifted = at.uv * size + 0.5;
+    vec2 centre = floor(shifted) - 0.5;
+    vec2 f = fract(shifted);
+    // Each weight is that of two neighbouring texels; each place lies between them in the ratio of theirs.
+    vec2 w0 = 3.0 - 2.0 * f;
+    vec2 w1 = 1.0 + 2.0 * f;
+    vec2 p0 = (centre + (2.0 - f) / w0 - 1.0) / size;
+    vec2 p1 = (centre + f / w1 + 1.0) / size;
+    float a = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), p0, at.depth);
+    float b = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(p1.x, p0.y), at.depth);
+    float c = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(p0.x, p1.y), at.depth);
+    float d = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), p1, at.depth);
+    return (w0.y * (w0.x * a + w1.x * b) + w1.y * (w0.x * c + w1.x * d)) / 16.0;
+}
+
+/// One row of `pcf_castano_5`: three bilinear comparisons.
+float castano_row(LAMPLIGHT_DEPTH_MAP(map, smp), vec3 columns, float v, vec3 weights, float depth) {
+    float left = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.x, v), depth);
+    float middle = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.y, v), depth);
+    float right = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.z, v), depth);
+    return weights.x * left + weights.y * middle + weights.z * right;
+}
+
+/// A bell of 5x5 texels (weights 1, 3, 4, 3, 1) in nine bilinear comparisons.
+float pcf_castano_5(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
+    if (!at.inside) {
+        return 1.0;
+    }
+    vec2 size = vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0));
+    vec2 shifted = at.uv * size + 0.5;
+    vec2 centre = floor(shifted) - 0.5;
+    vec2 f = fract(shifted);
+    vec3 wx = vec3(4.0 - 3.0 * f.x, 7.0, 1.0 + 3.0 * f.x);
+    vec3 wy = vec3(4.0 - 3.0 * f.y, 7.0, 1.0 + 3.0 * f.y);
+    vec3 px = (centre.x + vec3(3.0 - 2.0 * f.x, 3.0 + f.x, f.x) / wx + vec3(-2.0, 0.0, 2.0)) / size.x;
+    vec3 py = (centre.y + vec3(3.0 - 2.0 * f.y, 3.0 + f.y, f.y) / wy + vec3(-2.0, 0.0, 2.0)) / size.y;
+    float top = castano_row(LAMPLIGHT_DEPTH_ARG(map, smp), px, py.x, wx, at.depth);
+    float middle = castano_row(LAMPLIGHT_DEPTH_ARG(map, smp), px, py.y, wx, at.depth);
+    float bottom = castano_row(LAMPLIGHT_DEPTH_ARG(map, smp), px, py.z, wx, at.depth);
+    return (wy.x * top + wy.y * middle + wy.z * bottom) / 144.0;
+}
+
+/// Sixteen comparisons at random places of a square around the point, averaged.
+float pcf_random16(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, float radius, vec2 pixel) {
+    if (!at.inside) {
+        return 1.0;
+    }
+    vec2 reach = radius / vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0));
+    uint state = pixel_seed(pixel);
+    float sum = 0.0;
+    for (int i = 0; i < 16; i++) {
+        uint across = hash_pcg(state);
+        uint down = hash_pcg(across);
+        state = down;
+        vec2 r = 2.0 * vec2(unit_float(across), unit_float(down)) - 1.0;
+        sum += compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv + r * reach, at.depth);
+    }
+    return sum / 16.0;
+}
+
+/// Sixteen comparisons at random places to one side of the point, as the recipe computes them.
+float pcf_random16_hpg(LAMPLIGHT_DEPTH_MAP(map, smp), vec4 sc, float min_w, vec2 pixel) {
+    ShadowUv at = project(sc, min_w);
+    if (!at.inside) {
+        return 1.0;
+    }
+    float sum = 0.0;
+    for (int i = 0; i < 16; i++) {
+        float across = 0.25 * random_hpg(vec4(pixel.x, pixel.y, pixel.x, float(i)));
+        float down = 0.25 * random_hpg(vec4(pixel.y, pixel.x, pixel.y, float(i)));
+        sum += compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv + vec2(across, down) / sc.w, at.depth);
+    }
+    return sum / 16.0;
+}
+
+/// Comparisons on a spiral disk around the point, averaged.
+float pcf_vogel(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int count, float radius, float phi) {
+    if (!at.inside) {
+        return 1.0;
+    }
+    int taps = max(count, 1);
+    vec2 reach = radius / vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0));
+    float sum = 0.0;
+    for (int i = 0; i < taps; i++) {
+        sum += compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv + vogel_disk(i, taps, phi) * reach, at.depth);
+    }
+    return sum / float(taps);
+}
+
+/// The mean depth of what is nearer to the light, on a disk around a place in the map.
+float mean_blocker(LAMPLIGHT_COLOR_MAP(depths, depths_smp), ShadowUv at, float radius, float phi) {
+    vec2 reach = radius / vec2(textureSize(LAMPLIGHT_COLOR_SAMPLER(depths, depths_smp), 0));
+    float sum = 0.0;
+    float found = 0.0;
+    for (int i = 0; i < 16; i++) {
+        float d = textureLod(LAMPLIGHT_COLOR_SAMPLER(depths, depths_smp), at.uv + vogel_disk(i, 16, phi) * reach, 0.0).x;
+        float nearer = d < at.depth ? 1.0 : 0.0;
+        sum += nearer * d;
+        found += nearer;
+    }
+    return found > 0.0 ? sum / max(found, 1.0) : at.depth;
+}
+
+/// A shadow that is sharp near its caster and soft far from it.
+float pcss(
+    LAMPLIGHT_DEPTH_MAP(map, smp),
+    LAMPLIGHT_COLOR_MAP(depths, depths_smp),
+    ShadowUv at,
+    float light_size,
+    float phi
+) {
+    if (!at.inside) {
+        return 1.0;
+    }
+    float widest = max(light_size, 1.0);
+    float blocker = mean_blocker(LAMPLIGHT_COLOR_ARG(depths, depths_smp), at, widest, phi);
+    if (!(blocker < at.depth)) {
+        return 1.0;
+    }
+    float penumbra = (at.depth - blocker) / max(blocker, 0.001) * widest;
+    return pcf_vogel(LAMPLIGHT_DEPTH_ARG(map, smp), at, 16, clamp(penumbra, 1.0, widest), phi);
+}
+
+/// One comparison with a cube map: the shadow of a point light.
+float cube_compare(LAMPLIGHT_DEPTH_CUBE(cube, smp), vec3 offset, float depth) {
+    float visible = textureGrad(LAMPLIGHT_CUBE_SAMPLER(cube, smp), vec4(offset, depth), vec3(0.0), vec3(0.0));
+    return depth >= 0.0 && depth <= 1.0 ? visible : 1.0;
+}
+
+#endif

@@ -1,0 +1,91 @@
+//! The white space and comments between two tokens.
+
+/// A piece of a gap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Piece<'t> {
+    /// White space and line continuations.
+    Space(&'t str),
+    /// One comment, `//` without its newline.
+    Comment(&'t str),
+}
+
+impl Piece<'_> {
+    /// How many lines a piece of white space ends.
+    pub fn newlines(self) -> usize {
+        match self {
+            Self::Space(text) => text.matches('\n').count() - text.matches("\\\n").count() - text.matches("\\\r\n").count(),
+            Self::Comment(_) => 0,
+        }
+    }
+}
+
+/// The pieces of a gap with their offsets, in order.
+pub fn pieces(gap: &str) -> impl Iterator<Item = (usize, Piece<'_>)> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let rest = gap.get(at..).filter(|rest| !rest.is_empty())?;
+        let start = at;
+        let piece = piece(rest);
+        at += match piece {
+            Piece::Space(text) | Piece::Comment(text) => text.len(),
+        };
+        Some((start, piece))
+    })
+}
+
+fn piece(rest: &str) -> Piece<'_> {
+    if rest.starts_with("//") {
+        return Piece::Comment(&rest[..line_comment(rest)]);
+    }
+    if let Some(inner) = rest.strip_prefix("/*") {
+        return Piece::Comment(&rest[..inner.find("*/").map_or(rest.len(), |end| end + 4)]);
+    }
+    // A `/` that begins no comment cannot stand in a gap; it is taken along all the same.
+    let end = rest[1..].find("//").into_iter().chain(rest[1..].find("/*")).min();
+    Piece::Space(&rest[..end.map_or(rest.len(), |end| end + 1)])
+}
+
+/// Bytes of a `//` comment, over line continuations.
+fn line_comment(rest: &str) -> usize {
+    let mut end = 0;
+    for line in rest.split_inclusive('\n') {
+        end += line.len();
+        let text = line.trim_end_matches(['\n', '\r']);
+        if !text.ends_with('\\') {
+            return end - (line.len() - text.len());
+        }
+    }
+    end
+}
+
+/// The part of the gap before an item that belongs to it: the comments that no blank line parts
+/// from it. `after_item` where an item ends just before the gap: the rest of that line is its.
+pub fn attached(gap: &str, after_item: bool) -> std::ops::Range<usize> {
+    let mut start = None;
+    let mut own_line = !after_item;
+    for (at, piece) in pieces(gap) {
+        match piece {
+            Piece::Space(_) if piece.newlines() > 1 => {
+                start = None;
+                own_line = true;
+            }
+            Piece::Space(_) => own_line |= piece.newlines() > 0,
+            Piece::Comment(_) if own_line => start = start.or(Some(at)),
+            Piece::Comment(_) => {}
+        }
+    }
+    start.unwrap_or(gap.len())..gap.len()
+}
+
+/// The comments of a gap that stand on the line of the token before it.
+pub fn trailing(gap: &str) -> std::ops::Range<usize> {
+    let mut end = 0;
+    for (at, piece) in pieces(gap) {
+        match piece {
+            Piece::Space(_) if piece.newlines() > 0 => break,
+            Piece::Space(_) => {}
+            Piece::Comment(text) => end = at + text.len(),
+        }
+    }
+    0..end
+}

@@ -1,0 +1,92 @@
+//! Composes GLSL: preprocesses, keeps what is reached, writes it down.
+
+mod condition;
+mod expand;
+mod gap;
+mod items;
+mod preprocess;
+mod reach;
+mod reads;
+mod table;
+mod token;
+mod write;
+
+use crate::compose::{Composed, Keep, Language, Options, Stage};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::Settings;
+use crate::resolve::glsl::Graph;
+use items::Items;
+use preprocess::{Preprocessed, preprocess};
+use token::{NO_SETTING, Tok};
+use write::Writer;
+
+/// One permutation of a GLSL file: `#version`, extensions and pragmas, then the items that are kept.
+///
+/// The settings are macros: `two_sided` is `TWO_SIDED` (1 or 0), `max_lights` is `MAX_LIGHTS`, and
+/// an enum axis `shadow` is `SHADOW`, with `SHADOW_NONE` and so on for the numbers of its values.
+/// Settings read are those that a condition evaluates and those whose value stands in the output.
+pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<Composed, Diagnostics> {
+    let stage = stage(graph, &options.keep)?;
+    let preprocessed = preprocess(graph, settings)?;
+    let items = items::split(&preprocessed.tokens, &graph.modules).map_err(|error| vec![error])?;
+    let kept = reach::reach(&preprocessed.tokens, &items, &preprocessed.spellings, &options.keep)?;
+    let writer = write(graph, &preprocessed, &items, &kept, &options.keep);
+    let (text, map) = (writer.text, writer.map);
+    let reads = reads(graph, preprocessed, &items, &kept)?;
+    Ok(Composed { language: Language::Glsl, stage: Some(stage), text, map, reads, warnings: Vec::new() })
+}
+
+/// File name endings.
+const STAGES: &[(&str, Stage)] = &[("vert", Stage::Vertex), ("frag", Stage::Fragment), ("comp", Stage::Compute)];
+
+fn stage(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
+    let name = graph.root.strip_suffix(".glsl").unwrap_or(&graph.root);
+    let ending = name.rsplit('.').next().unwrap_or_default();
+    match STAGES.iter().find(|(known, _)| *known == ending) {
+        Some((_, stage)) => Ok(*stage),
+        None if matches!(keep, Keep::Items(_)) => Ok(Stage::Fragment),
+        None => Err(vec![
+            Diagnostic::error(codes::UNKNOWN_STAGE, format!("the name `{}` does not say for which stage it is", graph.root))
+                .note("help: end it in `.vert.glsl`, `.frag.glsl` or `.comp.glsl`"),
+        ]),
+    }
+}
+
+fn write<'a>(graph: &'a Graph, preprocessed: &'a Preprocessed<'a, '_>, items: &Items, kept: &[bool], keep: &Keep) -> Writer<'a> {
+    let tokens: &[Tok] = &preprocessed.tokens;
+    let mut writer = Writer::new(&graph.modules, &preprocessed.spellings, tokens.len() * 8);
+    match preprocessed.version {
+        Some(line) => writer.line(line),
+        None => writer.made("#version 450\n"),
+    }
+    preprocessed.header.iter().for_each(|line| writer.line(*line));
+    for (item, _) in items.list.iter().zip(kept).filter(|(_, kept)| **kept) {
+        writer.made("\n");
+        writer.item(tokens, item);
+    }
+    let main = crate::parse::glsl::known::MAIN;
+    if matches!(keep, Keep::Items(_)) && !items.names.iter().any(|(name, item)| *name == main && kept[*item as usize]) {
+        writer.made("\nvoid main() {}\n");
+    }
+    writer
+}
+
+/// Those of the conditions, then those whose values stand in the kept items.
+fn reads(
+    graph: &Graph,
+    preprocessed: Preprocessed<'_, '_>,
+    items: &Items,
+    kept: &[bool],
+) -> Result<Vec<(String, crate::permute::Setting)>, Diagnostics> {
+    let Preprocessed { tokens, mut reads, .. } = preprocessed;
+    let mut errors = Vec::new();
+    for (item, _) in items.list.iter().zip(kept).filter(|(_, kept)| **kept) {
+        for token in tokens[item.tokens.clone()].iter().filter(|token| token.setting != NO_SETTING) {
+            if let Err((name, value)) = reads.read(token.setting) {
+                let message = format!("`{value}` is not a declared value of `{name}`");
+                errors.push(Diagnostic::error(codes::BAD_SETTING, message).at(token.span(&graph.modules), "asked for here"));
+            }
+        }
+    }
+    if errors.is_empty() { Ok(reads.finish()) } else { Err(errors) }
+}

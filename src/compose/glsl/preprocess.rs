@@ -1,0 +1,309 @@
+//! Runs the directives of the root file and of what it includes under some settings.
+
+use std::ops::Range;
+
+use super::condition::evaluate;
+use super::expand::{Expander, Fatal, Input, same_definition};
+use super::reads::Reads;
+use super::table::{Meaning, Spellings, Table};
+use super::token::Tok;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::parse::glsl::{Directive, Macro, Module, Part};
+use crate::permute::Settings;
+use crate::resolve::glsl::{Graph, Target};
+use crate::source::{LIMITS, Span};
+
+/// The active text of a composition, macros expanded.
+pub struct Preprocessed<'g, 's> {
+    /// In the order of inclusion.
+    pub tokens: Vec<Tok>,
+    /// The `#version` line; `None` where the author gave none.
+    pub version: Option<Span>,
+    /// `#extension` and `#pragma` lines, each once.
+    pub header: Vec<Span>,
+    pub reads: Reads<'s>,
+    pub spellings: Spellings<'g>,
+}
+
+/// Preprocesses the root of a graph; all errors that were found, at least one, otherwise.
+pub fn preprocess<'g, 's>(graph: &'g Graph, settings: &'s Settings) -> Result<Preprocessed<'g, 's>, Diagnostics> {
+    let (number, es) = language(&graph.modules[0]);
+    let mut reads = Reads::new(settings);
+    let mut table = Table::new(&graph.symbols, number, es);
+    reads.define(&mut table, settings);
+    let mut state = State {
+        graph,
+        expander: Expander::new(graph, table, reads, es),
+        open: vec![Open { module: 0, part: 0, line_shift: 0, file_number: 0, directive: None }],
+        once: vec![false; graph.modules.len()],
+        tokens: Vec::with_capacity(graph.modules.iter().map(|module| module.tokens.len()).sum::<usize>().min(LIMITS.tokens)),
+        version: None,
+        header: Vec::new(),
+    };
+    state.check_module(0);
+    state.run();
+    let State { expander, tokens, version, header, .. } = state;
+    let Expander { errors, reads, table, .. } = expander;
+    if errors.is_empty() { Ok(Preprocessed { tokens, version, header, reads, spellings: table.spellings }) } else { Err(errors) }
+}
+
+/// Version and profile of the root file; 450 where it names none.
+fn language(root: &Module) -> (u32, bool) {
+    match root.parts.first() {
+        Some(Part::Directive(Directive::Version { number, es, .. }, _)) => (*number, *es),
+        _ => (450, false),
+    }
+}
+
+struct State<'g, 's> {
+    graph: &'g Graph,
+    expander: Expander<'g, 's>,
+    /// The files being read, each included by the one before.
+    open: Vec<Open>,
+    once: Vec<bool>,
+    tokens: Vec<Tok>,
+    version: Option<Span>,
+    header: Vec<Span>,
+}
+
+#[derive(Clone, Copy)]
+struct Open {
+    module: usize,
+    /// The next part to read.
+    part: usize,
+    line_shift: i64,
+    file_number: i64,
+    /// The `#include` that opened it.
+    directive: Option<Span>,
+}
+
+impl<'g> State<'g, '_> {
+    fn run(&mut self) {
+        while let Some(open) = self.open.last_mut() {
+            let Some(part) = self.graph.modules[open.module].parts.get(open.part) else {
+                self.open.pop();
+                continue;
+            };
+            open.part += 1;
+            let open = *open;
+            (self.expander.line_shift, self.expander.file_number) = (open.line_shift, open.file_number);
+            let before = self.expander.errors.len();
+            let chain = self.open.len();
+            let result = self.part(open, part);
+            let fatal = result.is_err();
+            self.expander.errors.extend(result.err().map(|error| *error));
+            self.add_chain(before, chain);
+            if fatal {
+                return;
+            }
+        }
+    }
+
+    /// Adds to new errors how their file came to be included.
+    fn add_chain(&mut self, before: usize, chain: usize) {
+        for error in &mut self.expander.errors[before..] {
+            for pair in self.open[..chain.min(self.open.len())].windows(2).rev() {
+                if let Some(directive) = pair[1].directive {
+                    let line = self.graph.modules[pair[0].module].line(directive.start);
+                    error.notes.push(format!("included from {}:{line}", self.graph.paths[pair[0].module]));
+                }
+            }
+        }
+    }
+
+    fn part(&mut self, open: Open, part: &'g Part) -> Result<(), Fatal> {
+        match part {
+            Part::Text(text) => {
+                let input = Input::Source { module: open.module as u32, at: text.tokens.start, end: text.tokens.end };
+                self.expander.run(input, &mut self.tokens)
+            }
+            Part::Directive(directive, span) => self.directive(open, directive, *span),
+        }
+    }
+
+    fn directive(&mut self, open: Open, directive: &'g Directive, span: Span) -> Result<(), Fatal> {
+        match directive {
+            Directive::Include(index) => return self.include(open, *index, span),
+            Directive::Define(definition) => self.define(definition),
+            Directive::Undef(name) => self.expander.table.unset(*name),
+            Directive::If { .. } | Directive::Ifdef { .. } => return self.choose(open.module, open.part - 1),
+            // These are reached from the branch before, which was active.
+            Directive::Elif { end, .. } | Directive::Else { end } => self.jump(*end),
+            Directive::Endif | Directive::Empty => {}
+            Directive::Error(words) => self.author_error(*words, span),
+            Directive::Line(tokens) => return self.line(open, tokens.clone(), span),
+            Directive::Version { line, .. } => self.version(open, *line),
+            Directive::Extension { name, line } => {
+                let name = self.graph.symbols.text(*name);
+                // Includes are resolved, so the output needs neither of the extensions for them.
+                if name != "GL_GOOGLE_include_directive" && name != "GL_ARB_shading_language_include" {
+                    self.add_header(*line);
+                }
+            }
+            Directive::PragmaOnce => self.once[open.module] = true,
+            Directive::Pragma(line) => self.add_header(*line),
+            Directive::Invalid(error) => self.expander.errors.push((**error).clone()),
+        }
+        Ok(())
+    }
+
+    fn jump(&mut self, part: usize) {
+        if let Some(open) = self.open.last_mut() {
+            open.part = part;
+        }
+    }
+
+    /// Goes on in the first branch whose condition holds. None is taken where a condition is
+    /// wrong: what stands in the others would give errors that say nothing.
+    fn choose(&mut self, module: usize, mut index: usize) -> Result<(), Fatal> {
+        while let Some(Part::Directive(directive, span)) = self.graph.modules[module].parts.get(index) {
+            let (holds, next) = match directive {
+                Directive::If { condition, next } | Directive::Elif { condition, next, .. } => {
+                    (self.evaluate(module, condition.clone(), *span)?, *next)
+                }
+                Directive::Ifdef { name: Ok(name), negated, next } => (Ok(self.expander.table.has(*name) != *negated), *next),
+                Directive::Ifdef { name: Err(error), next, .. } => (Err(vec![(**error).clone()]), *next),
+                _ => break,
+            };
+            match holds {
+                Ok(true) => break,
+                Ok(false) => index = next,
+                Err(errors) => {
+                    self.expander.errors.extend(errors);
+                    self.skip_all(next);
+                    return Ok(());
+                }
+            }
+        }
+        self.jump(index + 1);
+        Ok(())
+    }
+
+    fn evaluate(&mut self, module: usize, condition: Range<u32>, span: Span) -> Result<Result<bool, Diagnostics>, Fatal> {
+        let mut tokens = Vec::new();
+        let before = self.expander.errors.len();
+        self.expander.in_condition = true;
+        self.expander.run(Input::Source { module: module as u32, at: condition.start, end: condition.end }, &mut tokens)?;
+        self.expander.in_condition = false;
+        if self.expander.errors.len() > before {
+            return Ok(Err(self.expander.errors.split_off(before)));
+        }
+        Ok(evaluate(&mut self.expander, &tokens, span).map_err(|error| vec![error]))
+    }
+
+    /// Goes on at the `#endif` of a conditional, one of whose later branches is `next`.
+    fn skip_all(&mut self, mut next: usize) {
+        let module = self.open.last().map_or(0, |open| open.module);
+        let branch = self.graph.modules[module].parts.get(next);
+        if let Some(Part::Directive(Directive::Elif { end, .. } | Directive::Else { end }, _)) = branch {
+            next = *end;
+        }
+        self.jump(next);
+    }
+
+    fn define(&mut self, definition: &'g Macro) {
+        let name = self.graph.symbols.text(definition.name);
+        let error = match self.expander.table.get(definition.name) {
+            None => None,
+            Some(Meaning::User { definition: earlier, .. }) if same_definition(earlier, definition) => return,
+            Some(Meaning::User { definition: earlier, .. }) => {
+                let error = Diagnostic::error(codes::MACRO_REDEFINED, format!("the macro `{name}` is defined twice, differently"));
+                Some(error.at(definition.name_span, "defined again here").at(earlier.name_span, "defined first here"))
+            }
+            Some(_) => {
+                let message = format!("the macro `{name}` is defined by the composition already");
+                let error = Diagnostic::error(codes::MACRO_REDEFINED, message).at(definition.name_span, "defined again here");
+                return self.expander.errors.push(error);
+            }
+        };
+        self.expander.errors.extend(error);
+        self.expander.table.set(definition.name, Meaning::User { definition, active: false });
+    }
+
+    fn author_error(&mut self, words: Span, directive: Span) {
+        let text = &self.graph.modules[self.open.last().map_or(0, |open| open.module)].text[words.range()];
+        self.expander.errors.push(Diagnostic::error(codes::ERROR_DIRECTIVE, text).at(directive, "refused here"));
+    }
+
+    fn version(&mut self, open: Open, line: Span) {
+        let error = Diagnostic::error(codes::MISPLACED_VERSION, "`#version` must be the first line of the root file");
+        match self.version {
+            Some(first) => self.expander.errors.push(error.at(line, "a second one").at(first, "the first one")),
+            // Its part was counted already.
+            None if open.module == 0 && open.part == 1 && self.open.len() == 1 => self.version = Some(line),
+            None => self.expander.errors.push(error.at(line, "not the first line")),
+        }
+    }
+
+    fn add_header(&mut self, line: Span) {
+        let text = |span: &Span| {
+            let module = self.graph.modules.iter().find(|module| module.source == span.source);
+            module.map_or("", |module| &module.text[span.range()])
+        };
+        if !self.header.iter().any(|known| text(known) == text(&line)) {
+            self.header.push(line);
+        }
+    }
+
+    /// `#line N` or `#line N FILE`, which say what `__LINE__` and `__FILE__` are from the next line on.
+    fn line(&mut self, open: Open, tokens: Range<u32>, span: Span) -> Result<(), Fatal> {
+        let mut expanded = Vec::new();
+        self.expander.run(Input::Source { module: open.module as u32, at: tokens.start, end: tokens.end }, &mut expanded)?;
+        let numbers: Option<Vec<i64>> =
+            expanded.iter().map(|token| self.expander.table.spellings.text(token.symbol).parse::<u32>().ok().map(i64::from)).collect();
+        let (Some([line, file @ ..]), Some(frame)) = (numbers.as_deref(), self.open.last_mut()) else {
+            let error = Diagnostic::error(codes::MALFORMED_DIRECTIVE, "`#line` needs a number");
+            self.expander.errors.push(error.at(span, "expected `#line NUMBER` or `#line NUMBER FILE`"));
+            return Ok(());
+        };
+        frame.line_shift = line - 1 - self.graph.modules[open.module].line(span.start) as i64;
+        frame.file_number = file.first().copied().unwrap_or(frame.file_number);
+        Ok(())
+    }
+
+    fn include(&mut self, open: Open, index: usize, span: Span) -> Result<(), Fatal> {
+        let module = match &self.graph.targets[open.module][index] {
+            Target::Module(module) => *module,
+            Target::Missing(error) => {
+                self.expander.errors.push((**error).clone());
+                return Ok(());
+            }
+        };
+        if self.once[module] {
+            return Ok(());
+        }
+        let place = self.graph.modules[open.module].includes[index].span;
+        if self.open.len() >= LIMITS.include_depth {
+            return Err(Box::new(self.too_deep(module, place)));
+        }
+        self.expander.spend(0, self.graph.modules[module].text.len() + 1, place)?;
+        self.open.push(Open { module, part: 0, line_shift: 0, file_number: open.file_number, directive: Some(span) });
+        self.check_module(module);
+        Ok(())
+    }
+
+    /// A file that is broken as a whole is not read any further; its errors are given once.
+    fn check_module(&mut self, module: usize) {
+        let errors = &self.graph.modules[module].errors;
+        if errors.is_empty() {
+            return;
+        }
+        let before = self.expander.errors.len();
+        self.expander.errors.extend(errors.iter().cloned());
+        self.add_chain(before, self.open.len());
+        self.once[module] = true;
+        self.open.pop();
+    }
+
+    fn too_deep(&self, module: usize, place: Span) -> Diagnostic {
+        let Some(start) = self.open.iter().rposition(|open| open.module == module) else {
+            let message = format!("includes nest deeper than {}", LIMITS.include_depth);
+            return Diagnostic::error(codes::INCLUDE_TOO_DEEP, message).at(place, "one too many");
+        };
+        let chain = self.open[start..].iter().map(|open| open.module).chain([module]);
+        let names: Vec<String> = chain.map(|module| format!("`{}`", self.graph.paths[module])).collect();
+        Diagnostic::error(codes::INCLUDE_CYCLE, format!("files include each other without end: {}", names.join(" -> ")))
+            .at(place, "closes the circle")
+            .note("help: give the file an include guard or `#pragma once`")
+    }
+}

@@ -1,0 +1,78 @@
+//! Settings as macros, and which of them a composition asked for.
+
+use super::table::{Meaning, Table};
+use crate::parse::glsl::Symbol;
+use crate::permute::{Setting, Settings};
+
+/// The settings by number, and the numbers of those that were read, in order.
+pub struct Reads<'s> {
+    entries: Vec<Entry<'s>>,
+    order: Vec<u16>,
+}
+
+struct Entry<'s> {
+    name: &'s str,
+    setting: &'s Setting,
+    /// `None` for a value that its axis does not declare.
+    value: Option<i64>,
+    symbol: Symbol,
+    read: bool,
+}
+
+impl<'s> Reads<'s> {
+    /// None read yet.
+    pub fn new(settings: &'s Settings) -> Self {
+        let entries = settings.values.iter().map(|(name, setting)| Entry {
+            name,
+            setting,
+            value: value(settings, name, setting),
+            symbol: Symbol(0),
+            read: false,
+        });
+        Self { entries: entries.collect(), order: Vec::new() }
+    }
+
+    /// Defines the macro of every setting, and those of the values of enum axes.
+    pub fn define(&mut self, table: &mut Table<'_>, settings: &Settings) {
+        for (axis, values) in &settings.enums {
+            let axis = axis.to_uppercase();
+            for (number, value) in values.iter().enumerate() {
+                table.number(&format!("{axis}_{}", value.to_uppercase()), number as i64);
+            }
+        }
+        for (index, entry) in self.entries.iter_mut().enumerate() {
+            entry.symbol = table.spellings.intern(&entry.value.unwrap_or_default().to_string());
+            let name = table.spellings.intern(&entry.name.to_uppercase());
+            table.set(name, Meaning::Setting(index as u16));
+        }
+    }
+
+    /// The spelling of a setting's value.
+    pub fn symbol(&self, setting: u16) -> Symbol {
+        self.entries[usize::from(setting)].symbol
+    }
+
+    /// The value of a setting, which counts as read; the declared name and value if it has none.
+    pub fn read(&mut self, setting: u16) -> Result<i64, (&'s str, &'s Setting)> {
+        let entry = &mut self.entries[usize::from(setting)];
+        if !entry.read {
+            entry.read = true;
+            self.order.push(setting);
+        }
+        entry.value.ok_or((entry.name, entry.setting))
+    }
+
+    /// The settings that were read, in order, with their values.
+    pub fn finish(self) -> Vec<(String, Setting)> {
+        let entries = &self.entries;
+        self.order.iter().map(|index| &entries[usize::from(*index)]).map(|entry| (entry.name.to_owned(), entry.setting.clone())).collect()
+    }
+}
+
+fn value(settings: &Settings, name: &str, setting: &Setting) -> Option<i64> {
+    match setting {
+        Setting::Bool(value) => Some(i64::from(*value)),
+        Setting::Int(value) => Some(*value),
+        Setting::Name(chosen) => settings.enums.get(name)?.iter().position(|value| value == chosen).map(|index| index as i64),
+    }
+}

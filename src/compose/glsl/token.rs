@@ -1,0 +1,62 @@
+//! Tokens after preprocessing.
+
+use crate::parse::glsl::{Kind, Module, Symbol, Token};
+use crate::source::Span;
+
+/// No token.
+pub const NONE: u32 = u32::MAX;
+
+/// No setting.
+pub const NO_SETTING: u16 = u16::MAX;
+
+/// A token of the result, or on its way there.
+#[derive(Debug, Clone, Copy)]
+pub struct Tok {
+    pub symbol: Symbol,
+    /// Bytes in the author's file: its own, or the use of the macro it came from.
+    pub start: u32,
+    pub end: u32,
+    /// Index of the module of those bytes.
+    pub module: u32,
+    /// The author's token whose leading space and comments precede this one; `NONE` inside expansions.
+    pub before: u32,
+    /// The author's token whose trailing comments follow this one.
+    pub after: u32,
+    /// The setting whose value this is.
+    pub setting: u16,
+    pub kind: Kind,
+    pub spaced: bool,
+    /// Not to be expanded any more.
+    pub painted: bool,
+    /// Made by a macro rather than copied.
+    pub expanded: bool,
+}
+
+impl Tok {
+    /// A copy of token `index` of a module.
+    pub fn copy(module: u32, index: u32, token: &Token) -> Self {
+        Self {
+            symbol: token.symbol,
+            start: token.start,
+            end: token.end,
+            module,
+            before: index,
+            after: index,
+            setting: NO_SETTING,
+            kind: token.kind,
+            spaced: token.spaced,
+            painted: false,
+            expanded: false,
+        }
+    }
+
+    /// The author's text behind it.
+    pub fn span(&self, modules: &[Module]) -> Span {
+        Span { source: modules[self.module as usize].source, start: self.start, end: self.end }
+    }
+
+    /// Whether it stands in the result just as its author wrote it.
+    pub fn is_plain(&self) -> bool {
+        !self.expanded && self.before != NONE && self.before == self.after
+    }
+}

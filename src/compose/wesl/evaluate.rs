@@ -1,0 +1,239 @@
+//! Conditions under one choice of settings, each at most once.
+
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::parse::wesl::{Comparison, ConditionId, Event, Expression, ExpressionId, Name, Operand};
+use crate::permute::{Setting, Settings};
+use crate::resolve::wesl::Graph;
+use crate::source::Span;
+
+/// What is known of a condition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    Unknown,
+    False,
+    True,
+    /// False since one before it in its chain is true.
+    Passed,
+}
+
+/// Answers conditions and records which settings they asked for.
+pub struct Evaluator<'a> {
+    graph: &'a Graph,
+    settings: &'a Settings,
+    states: Vec<State>,
+    /// In the order of asking.
+    pub reads: Vec<(String, Setting)>,
+    pub errors: Diagnostics,
+    unknown: Vec<Name>,
+}
+
+impl<'a> Evaluator<'a> {
+    pub fn new(graph: &'a Graph, settings: &'a Settings) -> Self {
+        let states = vec![State::Unknown; graph.totals.conditions as usize];
+        Self { graph, settings, states, reads: Vec::new(), errors: Vec::new(), unknown: Vec::new() }
+    }
+
+    /// Whether a condition of a node's module holds.
+    pub fn holds(&mut self, node: u32, condition: ConditionId) -> bool {
+        let here = &self.graph.nodes[node as usize];
+        let state = |this: &Self, id: u32| this.states[(here.bases.conditions + id) as usize];
+        let mut chain = Vec::new();
+        let mut next = Some(condition);
+        while let Some(id) = next.filter(|id| state(self, *id) == State::Unknown) {
+            chain.push(id);
+            next = here.module.conditions[id as usize].after;
+        }
+        for id in chain.into_iter().rev() {
+            let condition = &here.module.conditions[id as usize];
+            let before = condition.after.map(|before| state(self, before));
+            let answer = match (before, condition.expression) {
+                (Some(State::True | State::Passed), _) => State::Passed,
+                (_, Some(expression)) if !self.value(node, expression) => State::False,
+                _ => State::True,
+            };
+            self.states[(here.bases.conditions + id) as usize] = answer;
+        }
+        state(self, condition) == State::True
+    }
+
+    /// Whether all hold; asks no further than the first that does not.
+    pub fn all_hold(&mut self, node: u32, conditions: &[ConditionId]) -> bool {
+        conditions.iter().all(|condition| self.holds(node, *condition))
+    }
+
+    /// Visits the events of an item that count: uses of globals, cuts, and the nodes that go.
+    pub fn live(&mut self, node: u32, events: &[Event], mut visit: impl FnMut(&mut Self, Event)) {
+        let mut at = 0;
+        while let Some(event) = events.get(at) {
+            at += 1;
+            match *event {
+                Event::Node { condition, .. } if self.holds(node, condition) => {}
+                Event::Node { next, .. } => {
+                    visit(self, *event);
+                    at = next as usize;
+                }
+                Event::Use { guard, .. } if self.is_local(node, guard) => {}
+                _ => visit(self, *event),
+            }
+        }
+    }
+
+    /// Whether a conditional local declaration is there to explain a use.
+    fn is_local(&mut self, node: u32, mut guard: Option<u32>) -> bool {
+        let graph = self.graph;
+        while let Some(index) = guard {
+            let found = graph.nodes[node as usize].module.guards[index as usize];
+            if self.holds(node, found.condition) {
+                return true;
+            }
+            guard = found.next;
+        }
+        false
+    }
+
+    /// The value of a setting, recorded; an error at `span` if it has none.
+    pub fn setting(&mut self, name: Name, span: Span) -> Option<Setting> {
+        let text = self.graph.names.text(name);
+        let Some(value) = self.settings.values.get(text) else {
+            if !self.unknown.contains(&name) {
+                self.unknown.push(name);
+                let error = Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value")).at(span, "asked for here");
+                self.errors.push(error.suggest(text, self.settings.values.keys().map(String::as_str)));
+            }
+            return None;
+        };
+        if !self.reads.iter().any(|(read, _)| read == text) {
+            self.reads.push((text.to_owned(), value.clone()));
+        }
+        Some(value.clone())
+    }
+
+    fn span(&self, node: u32, range: &std::ops::Range<u32>) -> Span {
+        self.graph.nodes[node as usize].module.span(range.clone())
+    }
+
+    fn value(&mut self, node: u32, expression: ExpressionId) -> bool {
+        let graph = self.graph;
+        match &graph.nodes[node as usize].module.expressions[expression as usize] {
+            Expression::Literal(value) => *value,
+            Expression::Flag(name, range) => self.flag(*name, self.span(node, range)),
+            Expression::Not(operand) => !self.value(node, *operand),
+            Expression::All(operands) => operands.iter().all(|operand| self.value(node, *operand)),
+            Expression::Any(operands) => operands.iter().any(|operand| self.value(node, *operand)),
+            Expression::Compare { left, operator, right, range } => {
+                let outcome = self.compare(node, left, *operator, right, range);
+                outcome.unwrap_or_else(|error| {
+                    self.errors.push(error);
+                    false
+                })
+            }
+        }
+    }
+
+    fn flag(&mut self, name: Name, span: Span) -> bool {
+        match self.setting(name, span) {
+            Some(Setting::Bool(value)) => value,
+            Some(value) => {
+                let text = self.graph.names.text(name);
+                let error = Diagnostic::error(codes::WRONG_KIND, format!("`{text}` is not boolean")).at(span, format!("its value is `{value}`"));
+                self.errors.push(error.note(format!("help: compare it: `{text} == {value}`")));
+                false
+            }
+            None => false,
+        }
+    }
+
+    fn compare(
+        &mut self,
+        node: u32,
+        left: &Operand,
+        operator: Comparison,
+        right: &Operand,
+        range: &std::ops::Range<u32>,
+    ) -> Result<bool, Diagnostic> {
+        let is_enum = |name: &Name| self.settings.enums.contains_key(self.graph.names.text(*name));
+        match (left, right) {
+            (Operand::Name(axis, at), Operand::Name(value, value_at)) if is_enum(axis) => {
+                self.compare_enum(node, (*axis, at), operator, (*value, value_at))
+            }
+            (Operand::Name(value, value_at), Operand::Name(axis, at)) if is_enum(axis) => {
+                self.compare_enum(node, (*axis, at), operator, (*value, value_at))
+            }
+            (Operand::Name(axis, at), Operand::Integer(value, _)) => self.compare_integer(node, *axis, at, |axis| ordered(axis, operator, *value)),
+            (Operand::Integer(value, _), Operand::Name(axis, at)) => self.compare_integer(node, *axis, at, |axis| ordered(*value, operator, axis)),
+            (Operand::Name(axis, at), Operand::Name(..)) => Err(self.undeclared(*axis, self.span(node, at), "enum")),
+            (Operand::Integer(..), Operand::Integer(..)) => {
+                Err(Diagnostic::error(codes::WRONG_KIND, "a comparison without an axis").at(self.span(node, range), "always the same"))
+            }
+        }
+    }
+
+    fn compare_enum(
+        &mut self,
+        node: u32,
+        (axis, axis_at): (Name, &std::ops::Range<u32>),
+        operator: Comparison,
+        (value, value_at): (Name, &std::ops::Range<u32>),
+    ) -> Result<bool, Diagnostic> {
+        let (axis_text, text) = (self.graph.names.text(axis), self.graph.names.text(value));
+        let span = self.span(node, axis_at);
+        let known = self.settings.enums.get(axis_text).map_or(&[][..], Vec::as_slice);
+        if !known.iter().any(|known| known == text) {
+            return Err(Diagnostic::error(codes::UNKNOWN_VALUE, format!("the axis `{axis_text}` has no value `{text}`"))
+                .at(self.span(node, value_at), "not one of its values")
+                .note(format!("its values are {}", quoted(known)))
+                .suggest(text, known.iter().map(String::as_str)));
+        }
+        let Some(chosen) = self.setting(axis, span) else { return Ok(false) };
+        let equal = chosen.to_string() == text;
+        match operator {
+            Comparison::Equal => Ok(equal),
+            Comparison::NotEqual => Ok(!equal),
+            _ => Err(Diagnostic::error(codes::WRONG_KIND, format!("the values of `{axis_text}` have no order")).at(span, "an enum axis")),
+        }
+    }
+
+    fn compare_integer(
+        &mut self,
+        node: u32,
+        axis: Name,
+        at: &std::ops::Range<u32>,
+        answer: impl Fn(i64) -> bool,
+    ) -> Result<bool, Diagnostic> {
+        let span = self.span(node, at);
+        if !self.settings.integers.contains(self.graph.names.text(axis)) {
+            return Err(self.undeclared(axis, span, "integer"));
+        }
+        match self.setting(axis, span) {
+            Some(Setting::Int(value)) => Ok(answer(value)),
+            Some(value) => {
+                let message = format!("`{}` is not an integer", self.graph.names.text(axis));
+                Err(Diagnostic::error(codes::WRONG_KIND, message).at(span, format!("its value is `{value}`")))
+            }
+            None => Ok(false),
+        }
+    }
+
+    fn undeclared(&self, axis: Name, span: Span, kind: &str) -> Diagnostic {
+        let text = self.graph.names.text(axis);
+        let declared = self.settings.enums.keys().chain(&self.settings.integers).map(String::as_str);
+        Diagnostic::error(codes::WRONG_KIND, format!("`{text}` is compared but is not a declared {kind} axis"))
+            .at(span, "only declared axes can be compared")
+            .suggest(text, declared)
+    }
+}
+
+fn quoted(values: &[String]) -> String {
+    values.iter().map(|value| format!("`{value}`")).collect::<Vec<_>>().join(", ")
+}
+
+fn ordered(left: i64, operator: Comparison, right: i64) -> bool {
+    match operator {
+        Comparison::Equal => left == right,
+        Comparison::NotEqual => left != right,
+        Comparison::Less => left < right,
+        Comparison::LessEqual => left <= right,
+        Comparison::Greater => left > right,
+        Comparison::GreaterEqual => left >= right,
+    }
+}

@@ -1,0 +1,178 @@
+//! Names in the output: as declared where nothing speaks against it, else the qualified path.
+
+use super::reach::{Reached, Thing, name_of};
+use crate::compose::{Mangle, Options};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::parse::wesl::{ItemKind, Name};
+use crate::resolve::wesl::Graph;
+
+/// The new names of the things that do not keep theirs.
+pub struct Renames {
+    /// By thing: one more than an index of `texts`; 0 keeps the name.
+    indices: Vec<u32>,
+    texts: Vec<String>,
+}
+
+impl Renames {
+    /// The name of a thing in the output.
+    pub fn text<'a>(&'a self, graph: &'a Graph, reached: &Reached, thing: Thing) -> &'a str {
+        match self.indices[reached.index(thing)] {
+            0 => graph.names.text(name_of(graph, thing)),
+            index => &self.texts[index as usize - 1],
+        }
+    }
+}
+
+/// How firmly a thing holds to its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Hold {
+    /// Imported: gives it up for any other.
+    Loose,
+    /// Of the root module: gives it up only where keeping it would change what a use means.
+    Root,
+    /// An entry point or an override: the host knows it.
+    Fixed,
+}
+
+/// Chooses the names of all that is kept.
+pub fn choose(graph: &Graph, reached: &Reached, options: &Options, errors: &mut Diagnostics) -> Renames {
+    let things = kept(graph, reached);
+    let mut table = Table::new(graph, reached, &things);
+    let mut renames = Renames { indices: vec![0; reached.len()], texts: Vec::new() };
+    for thing in &things {
+        let name = name_of(graph, *thing);
+        let hold = hold(graph, *thing);
+        let taken = table.free[name.0 as usize] || reached.is_hidden(*thing);
+        if hold == Hold::Fixed || (hold == Hold::Root && !taken) {
+            let clash = table.firm[name.0 as usize].replace(*thing).filter(|_| !taken);
+            errors.extend(clash.map(|other| conflict(graph, *thing, other)));
+            errors.extend(taken.then(|| captured(graph, *thing)));
+            continue;
+        }
+        let mangled = options.mangle == Mangle::Underscore && hold == Hold::Loose;
+        if mangled || taken || table.claims[name.0 as usize] > 1 {
+            let text = table.unique(mangle(graph, *thing), &renames.texts);
+            renames.texts.push(text);
+            renames.indices[reached.index(*thing)] = renames.texts.len() as u32;
+        }
+    }
+    renames
+}
+
+/// Everything with a name, in the order of the output.
+fn kept(graph: &Graph, reached: &Reached) -> Vec<Thing> {
+    let constants = (0..graph.constants.len() as u32).map(Thing::Constant).filter(|thing| reached.has(*thing));
+    let mut things: Vec<Thing> = constants.collect();
+    for node in reached.nodes() {
+        let items = &graph.nodes[node as usize].module.items;
+        let named = reached.items(node, items.len()).filter(|item| items[*item as usize].kind != ItemKind::ConstAssert);
+        things.extend(named.map(|item| Thing::Item { node, item }));
+    }
+    things
+}
+
+fn hold(graph: &Graph, thing: Thing) -> Hold {
+    let Thing::Item { node, item } = thing else { return Hold::Loose };
+    let item = &graph.nodes[node as usize].module.items[item as usize];
+    match item.kind {
+        _ if item.entry => Hold::Fixed,
+        ItemKind::Override => Hold::Fixed,
+        _ if node == 0 => Hold::Root,
+        _ => Hold::Loose,
+    }
+}
+
+/// Which names are wanted, by name.
+struct Table<'a> {
+    graph: &'a Graph,
+    reached: &'a Reached,
+    claims: Vec<u32>,
+    /// Used for something predeclared.
+    free: Vec<bool>,
+    /// Who keeps it whatever comes.
+    firm: Vec<Option<Thing>>,
+}
+
+impl<'a> Table<'a> {
+    fn new(graph: &'a Graph, reached: &'a Reached, things: &[Thing]) -> Self {
+        let count = graph.names.len();
+        let mut table = Self { graph, reached, claims: vec![0; count], free: vec![false; count], firm: vec![None; count] };
+        for thing in things {
+            table.claims[name_of(graph, *thing).0 as usize] += 1;
+        }
+        let free = reached.nodes().flat_map(|node| {
+            let items = &graph.nodes[node as usize].module.items;
+            reached.items(node, items.len()).flat_map(|item| items[item as usize].free.iter())
+        });
+        free.chain(&reached.free).for_each(|name| table.free[name.0 as usize] = true);
+        table
+    }
+
+    /// The text, with a number behind it if something else has that name.
+    fn unique(&self, text: String, made: &[String]) -> String {
+        let mut candidate = text.clone();
+        let mut number = 2;
+        while made.contains(&candidate) || self.is_taken(&candidate) {
+            candidate = format!("{text}_{number}");
+            number += 1;
+        }
+        candidate
+    }
+
+    fn is_taken(&self, text: &str) -> bool {
+        self.graph.names.find(text).is_some_and(|name| {
+            self.claims[name.0 as usize] > 0 || self.free[name.0 as usize] || self.reached.nodes().any(|node| self.is_local(node, name))
+        })
+    }
+
+    fn is_local(&self, node: u32, name: Name) -> bool {
+        let items = &self.graph.nodes[node as usize].module.items;
+        self.reached.items(node, items.len()).any(|item| items[item as usize].locals.binary_search(&name).is_ok())
+    }
+}
+
+/// The underscore form of the specification: the path's parts joined by single underscores,
+/// those within a part doubled.
+fn mangle(graph: &Graph, thing: Thing) -> String {
+    let name = graph.names.text(name_of(graph, thing));
+    let label = match thing {
+        Thing::Item { node, .. } => graph.nodes[node as usize].label.as_str(),
+        Thing::Constant(_) => "constants",
+    };
+    let mut text = String::with_capacity(label.len() + name.len() + 4);
+    for part in label.split("::").chain([name]) {
+        if !text.is_empty() {
+            text.push('_');
+        }
+        text.extend(part.chars().flat_map(escaped));
+    }
+    text
+}
+
+/// A character of a part; those no identifier has (in file names) become underscores.
+fn escaped(letter: char) -> impl Iterator<Item = char> {
+    let allowed = unicode_ident::is_xid_continue(letter) && letter != '_';
+    [if allowed { letter } else { '_' }, '_'].into_iter().take(if allowed { 1 } else { 2 })
+}
+
+fn conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
+    let name = graph.names.text(name_of(graph, thing));
+    let same_module = matches!((thing, other), (Thing::Item { node: left, .. }, Thing::Item { node: right, .. }) if left == right);
+    let (code, message) = match same_module {
+        true => (codes::DUPLICATE_ITEM, format!("`{name}` is declared twice")),
+        false => (codes::NAME_CONFLICT, format!("two things must both be named `{name}`")),
+    };
+    declared(graph, other, declared(graph, thing, Diagnostic::error(code, message), "this one"), "and this one")
+}
+
+fn captured(graph: &Graph, thing: Thing) -> Diagnostic {
+    let name = graph.names.text(name_of(graph, thing));
+    let message = format!("`{name}` must keep its name, but something else that is kept means another thing by it");
+    declared(graph, thing, Diagnostic::error(codes::NAME_CONFLICT, message), "an entry point or an override")
+}
+
+fn declared(graph: &Graph, thing: Thing, error: Diagnostic, label: &str) -> Diagnostic {
+    let Thing::Item { node, item } = thing else { return error };
+    let module = &graph.nodes[node as usize].module;
+    error.at(module.span(module.items[item as usize].name_range.clone()), label)
+}

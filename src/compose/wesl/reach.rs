@@ -1,0 +1,322 @@
+//! What a permutation keeps: from the roots along every live use.
+
+use super::evaluate::Evaluator;
+use crate::compose::{Keep, Options};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::parse::wesl::{Event, ItemKind, Name, Reference};
+use crate::resolve::wesl::{Graph, Target};
+use crate::source::Span;
+
+/// An item, or a number of the virtual module `constants`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Thing {
+    Item { node: u32, item: u32 },
+    Constant(u32),
+}
+
+/// What a reference means under the settings.
+#[derive(Debug, Clone, Copy)]
+pub enum Meaning {
+    Unknown,
+    /// Something predeclared, or an error that has been reported.
+    Free,
+    Thing(Thing),
+}
+
+/// A live use of something by a declaration that is not a function.
+#[derive(Debug, Clone, Copy)]
+pub struct Dependency {
+    pub user: Thing,
+    pub used: Thing,
+    pub span: Span,
+}
+
+/// What is kept.
+pub struct Reached {
+    /// By item over all nodes, then by constant.
+    things: Vec<bool>,
+    /// Those that a local of the same name would hide at a place of use.
+    hidden: Vec<bool>,
+    nodes: Vec<bool>,
+    /// By binding over all nodes.
+    meanings: Vec<Meaning>,
+    order: Vec<u32>,
+    items: u32,
+    bases: Vec<u32>,
+    /// By constant: its value as text.
+    pub constants: Vec<Option<String>>,
+    pub dependencies: Vec<Dependency>,
+    /// Predeclared names that are used although the module has a disabled item of that name.
+    pub free: Vec<Name>,
+}
+
+impl Reached {
+    /// Where a thing is in tables over all things.
+    pub fn index(&self, thing: Thing) -> usize {
+        match thing {
+            Thing::Item { node, item } => (self.bases[node as usize] + item) as usize,
+            Thing::Constant(index) => (self.items + index) as usize,
+        }
+    }
+
+    pub fn has(&self, thing: Thing) -> bool {
+        self.things[self.index(thing)]
+    }
+
+    pub fn is_hidden(&self, thing: Thing) -> bool {
+        self.hidden[self.index(thing)]
+    }
+
+    pub fn len(&self) -> usize {
+        self.things.len()
+    }
+
+    /// The nodes with something kept, in the order of the output.
+    pub fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.order.iter().copied().filter(|node| self.nodes[*node as usize])
+    }
+
+    /// The kept items of a node, in source order.
+    pub fn items(&self, node: u32, count: usize) -> impl Iterator<Item = u32> {
+        (0..count as u32).filter(move |item| self.has(Thing::Item { node, item: *item }))
+    }
+
+    /// What a reference of a node means.
+    pub fn meaning(&self, graph: &Graph, node: u32, reference: u32) -> Meaning {
+        self.meanings[(graph.nodes[node as usize].bases.bindings + reference) as usize]
+    }
+}
+
+/// Finds what is kept; errors go to the evaluator's.
+pub fn reach(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Options) -> Reached {
+    let things = graph.totals.items as usize + graph.constants.len();
+    let reached = Reached {
+        things: vec![false; things],
+        hidden: vec![false; things],
+        nodes: vec![false; graph.nodes.len()],
+        meanings: vec![Meaning::Unknown; graph.totals.bindings as usize],
+        order: graph.order.clone(),
+        items: graph.totals.items,
+        bases: graph.nodes.iter().map(|node| node.bases.items).collect(),
+        constants: vec![None; graph.constants.len()],
+        dependencies: Vec::new(),
+        free: Vec::new(),
+    };
+    let mut walk = Walk { graph, evaluator, all: options.keep == Keep::All, reached, queue: Vec::new() };
+    walk.node(0);
+    match &options.keep {
+        Keep::EntryPoints => walk.entry_points(),
+        Keep::Items(names) => names.iter().for_each(|name| walk.named(name)),
+        Keep::All => {}
+    }
+    while let Some((node, item)) = walk.queue.pop() {
+        walk.follow(node, item);
+    }
+    walk.reached
+}
+
+struct Walk<'a, 'b, 'c> {
+    graph: &'a Graph,
+    evaluator: &'c mut Evaluator<'b>,
+    all: bool,
+    reached: Reached,
+    queue: Vec<(u32, u32)>,
+}
+
+impl Walk<'_, '_, '_> {
+    fn entry_points(&mut self) {
+        let items = &self.graph.nodes[0].module.items;
+        let mut any = false;
+        for (index, _) in items.iter().enumerate().filter(|(_, item)| item.entry) {
+            any |= self.item_if(0, index as u32);
+        }
+        if !any {
+            for index in 0..items.len() as u32 {
+                self.item_if(0, index);
+            }
+        }
+    }
+
+    fn named(&mut self, name: &str) {
+        let set = self.graph.names.find(name).and_then(|name| self.graph.nodes[0].sets.get(&name));
+        let kept = set.is_some_and(|set| set.iter().fold(false, |any, item| self.item_if(0, *item) | any));
+        if !kept {
+            let root = &self.graph.nodes[0];
+            let known = root.module.items.iter().map(|item| self.graph.names.text(item.name));
+            let message = format!("`{}` has no item `{name}`{}", root.label, if set.is_some() { " in this permutation" } else { "" });
+            let code = if set.is_some() { codes::DISABLED_ITEM } else { codes::MISSING_ITEM };
+            self.evaluator.errors.push(Diagnostic::error(code, message).suggest(name, known));
+        }
+    }
+
+    /// Keeps an item if its condition holds; says whether.
+    fn item_if(&mut self, node: u32, item: u32) -> bool {
+        let condition = self.graph.nodes[node as usize].module.items[item as usize].condition;
+        let holds = condition.is_none_or(|condition| self.evaluator.holds(node, condition));
+        if holds {
+            self.keep(Thing::Item { node, item });
+        }
+        holds
+    }
+
+    fn keep(&mut self, thing: Thing) {
+        let index = self.reached.index(thing);
+        if std::mem::replace(&mut self.reached.things[index], true) {
+            return;
+        }
+        match thing {
+            Thing::Item { node, item } => {
+                self.queue.push((node, item));
+                self.node(node);
+            }
+            Thing::Constant(index) => self.constant(index),
+        }
+    }
+
+    fn constant(&mut self, index: u32) {
+        let constant = &self.graph.constants[index as usize];
+        let Some(value) = self.evaluator.setting(constant.name, constant.span) else { return };
+        if let crate::permute::Setting::Name(value) = &value {
+            let message = format!("`{}` is an enum axis and has no constant", self.graph.names.text(constant.name));
+            let error = Diagnostic::error(codes::WRONG_KIND, message).at(constant.span, format!("its value is `{value}`"));
+            self.evaluator.errors.push(error.note("help: choose code with `@if(axis == value)`"));
+        }
+        self.reached.constants[index as usize] = Some(value.to_string());
+    }
+
+    /// The first time something of a module is kept: its `const_assert`s come, and its errors count.
+    fn node(&mut self, node: u32) {
+        if std::mem::replace(&mut self.reached.nodes[node as usize], true) {
+            return;
+        }
+        let graph = self.graph;
+        let here = &graph.nodes[node as usize];
+        self.evaluator.errors.extend(here.module.errors.iter().cloned());
+        for (conditions, failure) in &here.broken_imports {
+            if self.evaluator.all_hold(node, conditions) {
+                self.evaluator.errors.push(graph.failures[*failure as usize].clone());
+            }
+        }
+        for (index, item) in here.module.items.iter().enumerate() {
+            if self.all || item.kind == ItemKind::ConstAssert {
+                self.item_if(node, index as u32);
+            }
+        }
+    }
+
+    fn follow(&mut self, node: u32, index: u32) {
+        let graph = self.graph;
+        let module = &graph.nodes[node as usize].module;
+        let item = &module.items[index as usize];
+        let user = Thing::Item { node, item: index };
+        let mut uses = Vec::new();
+        self.evaluator.live(node, &item.events, |_, event| {
+            if let Event::Use { reference, start, end, .. } = event {
+                uses.push((reference, start..end));
+            }
+        });
+        for (reference, range) in uses {
+            let Meaning::Thing(used) = self.meaning(node, reference, module.span(range.clone())) else { continue };
+            self.keep(used);
+            if item.kind != ItemKind::Function {
+                self.reached.dependencies.push(Dependency { user, used, span: module.span(range.clone()) });
+            }
+            let name = name_of(graph, used);
+            let written = &module.text[range.start as usize..range.end as usize];
+            if item.locals.binary_search(&name).is_ok() && graph.names.text(name) != written {
+                let index = self.reached.index(used);
+                self.reached.hidden[index] = true;
+            }
+        }
+    }
+
+    fn meaning(&mut self, node: u32, reference: u32, span: Span) -> Meaning {
+        let index = (self.graph.nodes[node as usize].bases.bindings + reference) as usize;
+        if let Meaning::Unknown = self.reached.meanings[index] {
+            self.reached.meanings[index] = self.find(node, reference, span);
+        }
+        self.reached.meanings[index]
+    }
+
+    fn find(&mut self, node: u32, reference: u32, span: Span) -> Meaning {
+        let graph = self.graph;
+        let mut disabled = Vec::new();
+        for candidate in &graph.nodes[node as usize].bindings[reference as usize] {
+            if !self.evaluator.all_hold(node, &candidate.conditions) {
+                continue;
+            }
+            match candidate.target {
+                Target::Constant(index) => return Meaning::Thing(Thing::Constant(index)),
+                Target::Failed(index) => {
+                    self.evaluator.errors.push(graph.failures[index as usize].clone());
+                    return Meaning::Free;
+                }
+                Target::Module => {
+                    let error = Diagnostic::error(codes::NOT_AN_ITEM, "a module is not a value, a function or a type").at(span, "a module");
+                    self.evaluator.errors.push(error.note("help: name one of its items: `module::item`"));
+                    return Meaning::Free;
+                }
+                Target::Items { node: other, name } => match self.chosen(other, name) {
+                    Some(item) => return Meaning::Thing(Thing::Item { node: other, item }),
+                    None => disabled.push((other, name)),
+                },
+            }
+        }
+        self.nothing(node, reference, span, &disabled)
+    }
+
+    /// The item of a name whose condition holds.
+    fn chosen(&mut self, node: u32, name: Name) -> Option<u32> {
+        let here = &self.graph.nodes[node as usize];
+        let mut chosen = None;
+        for index in here.sets.get(&name).into_iter().flatten() {
+            let item = &here.module.items[*index as usize];
+            if !item.condition.is_none_or(|condition| self.evaluator.holds(node, condition)) {
+                continue;
+            }
+            if let Some(first) = chosen {
+                let message = format!("`{}` is declared twice in `{}`", self.graph.names.text(name), here.label);
+                let first: &crate::parse::wesl::Item = &here.module.items[first as usize];
+                self.evaluator.errors.push(
+                    Diagnostic::error(codes::DUPLICATE_ITEM, message)
+                        .at(here.module.span(item.name_range.clone()), "declared again")
+                        .at(here.module.span(first.name_range.clone()), "declared first"),
+                );
+                break;
+            }
+            chosen = Some(*index);
+        }
+        chosen
+    }
+
+    /// No candidate is left: the name is predeclared, or the use is an error.
+    fn nothing(&mut self, node: u32, reference: u32, span: Span, disabled: &[(u32, Name)]) -> Meaning {
+        let graph = self.graph;
+        let text = match &graph.nodes[node as usize].module.references[reference as usize] {
+            Reference::Name(name) if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&graph.names.text(*name)) => {
+                self.reached.free.push(*name);
+                return Meaning::Free;
+            }
+            Reference::Name(name) => graph.names.text(*name),
+            Reference::Path(path) => path.segments.last().map_or("", |name| graph.names.text(*name)),
+        };
+        let message = format!("`{text}` exists but is disabled by its condition");
+        let mut error = Diagnostic::error(codes::DISABLED_ITEM, message).at(span, "used here");
+        for (other, name) in disabled {
+            let module = &graph.nodes[*other as usize].module;
+            for item in graph.nodes[*other as usize].sets.get(name).into_iter().flatten() {
+                error = error.at(module.span(module.items[*item as usize].name_range.clone()), "not in this permutation");
+            }
+        }
+        self.evaluator.errors.push(error);
+        Meaning::Free
+    }
+}
+
+/// The declared name of a thing.
+pub fn name_of(graph: &Graph, thing: Thing) -> Name {
+    match thing {
+        Thing::Item { node, item } => graph.nodes[node as usize].module.items[item as usize].name,
+        Thing::Constant(index) => graph.constants[index as usize].name,
+    }
+}

@@ -1,0 +1,183 @@
+//! The output: directives, numbers, imported modules by path, the root module.
+
+use std::ops::Range;
+
+use super::evaluate::Evaluator;
+use super::naming::Renames;
+use super::reach::{Meaning, Reached, Thing};
+use crate::compose::{Segment, SourceMap};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::parse::wesl::{Directive, Event, Module, Name};
+use crate::resolve::wesl::Graph;
+use crate::source::{LIMITS, Span};
+
+/// Writes what is kept, with the map back.
+pub fn write(graph: &Graph, reached: &Reached, names: &Renames, evaluator: &mut Evaluator<'_>) -> (String, SourceMap) {
+    let mut writer = Writer { graph, reached, names, text: String::with_capacity(16 << 10), map: SourceMap::default(), copied: None };
+    writer.directives(evaluator);
+    writer.constants();
+    for node in reached.nodes() {
+        writer.module(node, evaluator);
+    }
+    if writer.text.len() > LIMITS.expansion_bytes {
+        let message = format!("the composed text has more than {} bytes", LIMITS.expansion_bytes);
+        evaluator.errors.push(Diagnostic::error(codes::OUTPUT_TOO_LARGE, message));
+    }
+    (writer.text, writer.map)
+}
+
+struct Writer<'a> {
+    graph: &'a Graph,
+    reached: &'a Reached,
+    names: &'a Renames,
+    text: String,
+    map: SourceMap,
+    /// Where the last copied text ended, while nothing else followed it.
+    copied: Option<Span>,
+}
+
+impl Writer<'_> {
+    /// Text of our own.
+    fn own(&mut self, text: &str) {
+        if self.copied.take().is_some() || self.text.is_empty() {
+            self.map.push(Segment { start: self.text.len() as u32, span: None, verbatim: false });
+        }
+        self.text.push_str(text);
+    }
+
+    fn copy(&mut self, module: &Module, range: Range<u32>) {
+        if range.start >= range.end || self.text.len() > LIMITS.expansion_bytes {
+            return;
+        }
+        let span = module.span(range);
+        if self.copied.is_none_or(|last| last.source != span.source || last.end != span.start) {
+            self.map.push(Segment { start: self.text.len() as u32, span: Some(span), verbatim: true });
+        }
+        self.copied = Some(span);
+        self.text.push_str(&module.text[span.range()]);
+    }
+
+    fn rename(&mut self, span: Span, name: &str) {
+        self.map.push(Segment { start: self.text.len() as u32, span: Some(span), verbatim: false });
+        self.copied = Some(Span { start: u32::MAX, end: u32::MAX, ..span });
+        self.text.push_str(name);
+    }
+
+    /// A blank line, unless at the start.
+    fn gap(&mut self) {
+        if !self.text.is_empty() {
+            self.own("\n");
+        }
+    }
+
+    fn directives(&mut self, evaluator: &mut Evaluator<'_>) {
+        let mut seen: Vec<(Name, Vec<Name>)> = Vec::new();
+        let graph = self.graph;
+        let nodes: Vec<u32> = std::iter::once(0).chain(self.reached.nodes().filter(|node| *node != 0)).collect();
+        for node in nodes {
+            let module = &graph.nodes[node as usize].module;
+            for directive in &module.directives {
+                let holds = directive.condition.is_none_or(|condition| evaluator.holds(node, condition));
+                if holds && is_new(&mut seen, directive) {
+                    self.copy(module, directive.range.clone());
+                    self.own("\n");
+                }
+            }
+        }
+    }
+
+    fn constants(&mut self) {
+        let graph = self.graph;
+        let mut kept: Vec<(&str, u32)> = (0..graph.constants.len() as u32)
+            .filter(|index| self.reached.has(Thing::Constant(*index)))
+            .map(|index| (graph.names.text(graph.constants[index as usize].name), index))
+            .collect();
+        kept.sort_unstable();
+        if !kept.is_empty() {
+            self.gap();
+            self.own("// constants\n\n");
+        }
+        for (_, index) in kept {
+            let name = self.names.text(graph, self.reached, Thing::Constant(index));
+            let value = self.reached.constants[index as usize].as_deref().unwrap_or("0");
+            let line = format!("const {name} = {value};\n");
+            self.own(&line);
+        }
+    }
+
+    fn module(&mut self, node: u32, evaluator: &mut Evaluator<'_>) {
+        let here = &self.graph.nodes[node as usize];
+        let items: Vec<u32> = self.reached.items(node, here.module.items.len()).collect();
+        if items.is_empty() {
+            return;
+        }
+        // The root module needs no banner where it stands alone.
+        if node != 0 || !self.text.is_empty() {
+            self.gap();
+            self.own("// ");
+            self.own(&here.label);
+            self.own("\n\n");
+        }
+        let mut last: Option<u32> = None;
+        for index in items {
+            if last.is_some_and(|last| !adjacent(&here.module, last, index)) {
+                self.own("\n");
+            }
+            self.item(node, index, evaluator);
+            self.own("\n");
+            last = Some(index);
+        }
+    }
+
+    fn item(&mut self, node: u32, index: u32, evaluator: &mut Evaluator<'_>) {
+        let graph = self.graph;
+        let module = &graph.nodes[node as usize].module;
+        let item = &module.items[index as usize];
+        let mut at = item.range.start;
+        evaluator.live(node, &item.events, |_, event| match event {
+            Event::Cut { start, end } | Event::Node { start, end, .. } => {
+                self.copy(module, at..start);
+                at = at.max(end);
+            }
+            Event::Definition { start, end } => self.name(module, Thing::Item { node, item: index }, &mut at, start..end),
+            Event::Use { reference, start, end, .. } => {
+                if let Meaning::Thing(thing) = self.reached.meaning(graph, node, reference) {
+                    self.name(module, thing, &mut at, start..end);
+                }
+            }
+        });
+        self.copy(module, at..item.range.end);
+    }
+
+    /// A name: part of the text around it, if it is written as it was.
+    fn name(&mut self, module: &Module, thing: Thing, at: &mut u32, range: Range<u32>) {
+        let names = self.names;
+        let name = names.text(self.graph, self.reached, thing);
+        if &module.text[range.start as usize..range.end as usize] != name {
+            self.copy(module, *at..range.start);
+            self.rename(module.span(range.clone()), name);
+            *at = range.end;
+        }
+    }
+}
+
+/// Whether a directive says something no earlier one does.
+fn is_new(seen: &mut Vec<(Name, Vec<Name>)>, directive: &Directive) -> bool {
+    let known = match directive.keyword {
+        Name::DIAGNOSTIC => seen.iter().any(|(keyword, names)| *keyword == directive.keyword && *names == directive.names),
+        keyword => {
+            let enabled = |name: &Name| seen.iter().any(|(known, names)| *known == keyword && names.contains(name));
+            directive.names.iter().all(enabled)
+        }
+    };
+    if !known {
+        seen.push((directive.keyword, directive.names.clone()));
+    }
+    !known
+}
+
+/// Whether two items follow each other without a blank line in the author's text.
+fn adjacent(module: &Module, last: u32, next: u32) -> bool {
+    let (end, start) = (module.items[last as usize].range.end, module.items[next as usize].range.start);
+    last + 1 == next && module.text[end as usize..start as usize].matches('\n').count() <= 1
+}

@@ -1,0 +1,201 @@
+//! Text to tokens, once for each file.
+
+use super::symbols::{Symbol, Symbols};
+
+/// What a token is, as far as the preprocessor cares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    Identifier,
+    Number,
+    Punctuation,
+    /// A character that no GLSL token begins with.
+    Other,
+}
+
+/// One token and what stands before it.
+#[derive(Debug, Clone, Copy)]
+pub struct Token {
+    /// Spelling, without line continuations.
+    pub symbol: Symbol,
+    /// First byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+    /// Class.
+    pub kind: Kind,
+    /// White space or a comment stands before it.
+    pub spaced: bool,
+    /// It is the first of its logical line.
+    pub first_of_line: bool,
+    /// It can be copied together with what stands before it: neither has line continuations,
+    /// carriage returns, trailing white space or runs of blank lines, and no directive is between.
+    pub clean: bool,
+}
+
+impl Token {
+    /// The bytes it covers.
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+/// Where tokenising failed.
+#[derive(Debug)]
+pub enum LexError {
+    /// A `/*` at this byte without its `*/`.
+    OpenComment(usize),
+    /// More tokens than the limit; the byte of the first one too many.
+    TooMany(usize),
+}
+
+/// All tokens of a text, at most `limit`.
+pub fn tokenize(text: &str, symbols: &mut Symbols, limit: usize) -> Result<Vec<Token>, LexError> {
+    let mut tokens = Vec::with_capacity(text.len() / 4);
+    let mut at = 0;
+    loop {
+        let gap = skip_gap(text.as_bytes(), at)?;
+        let start = gap.end;
+        if start >= text.len() {
+            return Ok(tokens);
+        }
+        if tokens.len() == limit {
+            return Err(LexError::TooMany(start));
+        }
+        let (kind, end) = scan(text, start);
+        let spelling = &text[start..end];
+        let spliced = spelling.contains('\\') && spelling.len() > 1;
+        let symbol = if spliced { symbols.intern(&without_splices(spelling)) } else { symbols.intern(spelling) };
+        tokens.push(Token {
+            symbol,
+            start: start as u32,
+            end: end as u32,
+            kind,
+            spaced: start > at,
+            first_of_line: gap.newline || tokens.is_empty(),
+            clean: !spliced && is_clean(&text[at..start]),
+        });
+        at = end;
+    }
+}
+
+/// The byte after the logical line that `at`, outside of tokens, stands on.
+pub fn line_end(text: &str, mut at: usize) -> usize {
+    let bytes = text.as_bytes();
+    while at < bytes.len() {
+        at = match bytes[at] {
+            b'\n' => return at + 1,
+            b'\\' => at + splice(bytes, at).max(1),
+            b'/' if bytes.get(at + 1) == Some(&b'/') => line_comment_end(bytes, at),
+            b'/' if bytes.get(at + 1) == Some(&b'*') => block_comment_end(bytes, at).unwrap_or(bytes.len()),
+            _ => at + 1,
+        };
+    }
+    at
+}
+
+struct Gap {
+    end: usize,
+    newline: bool,
+}
+
+fn skip_gap(bytes: &[u8], mut at: usize) -> Result<Gap, LexError> {
+    let mut newline = false;
+    loop {
+        at = match bytes.get(at) {
+            Some(b'\n') => {
+                newline = true;
+                at + 1
+            }
+            Some(b' ' | b'\t' | b'\r' | 0x0b | 0x0c) => at + 1,
+            Some(b'/') if bytes.get(at + 1) == Some(&b'/') => line_comment_end(bytes, at),
+            Some(b'/') if bytes.get(at + 1) == Some(&b'*') => block_comment_end(bytes, at).ok_or(LexError::OpenComment(at))?,
+            Some(b'\\') if splice(bytes, at) > 0 => at + splice(bytes, at),
+            _ => return Ok(Gap { end: at, newline }),
+        };
+    }
+}
+
+/// Length of a line continuation at this byte, else 0.
+fn splice(bytes: &[u8], at: usize) -> usize {
+    match bytes.get(at..) {
+        Some([b'\\', b'\r', b'\n', ..]) => 3,
+        Some([b'\\', b'\n', ..]) => 2,
+        _ => 0,
+    }
+}
+
+fn line_comment_end(bytes: &[u8], mut at: usize) -> usize {
+    while at < bytes.len() && bytes[at] != b'\n' {
+        at += splice(bytes, at).max(1);
+    }
+    at
+}
+
+fn block_comment_end(bytes: &[u8], at: usize) -> Option<usize> {
+    bytes[at + 2..].windows(2).position(|pair| pair == b"*/").map(|offset| at + 2 + offset + 2)
+}
+
+fn is_clean(gap: &str) -> bool {
+    gap.len() <= 1 || !["\r", "\\\n", "\n\n\n", " \n", "\t\n"].iter().any(|flaw| gap.contains(flaw))
+}
+
+fn without_splices(spelling: &str) -> String {
+    spelling.replace("\\\r\n", "").replace("\\\n", "")
+}
+
+fn scan(text: &str, start: usize) -> (Kind, usize) {
+    let bytes = text.as_bytes();
+    match bytes[start] {
+        b'a'..=b'z' | b'A'..=b'Z' | b'_' => (Kind::Identifier, word_end(bytes, start)),
+        b'0'..=b'9' => (Kind::Number, number_end(bytes, start)),
+        b'.' if bytes.get(start + 1).is_some_and(u8::is_ascii_digit) => (Kind::Number, number_end(bytes, start)),
+        _ => match punctuation(&bytes[start..]) {
+            0 => (Kind::Other, start + text[start..].chars().next().map_or(1, char::len_utf8)),
+            length => (Kind::Punctuation, start + length),
+        },
+    }
+}
+
+fn word_end(bytes: &[u8], mut at: usize) -> usize {
+    loop {
+        match bytes.get(at) {
+            Some(byte) if byte.is_ascii_alphanumeric() || *byte == b'_' => at += 1,
+            Some(b'\\') if splice(bytes, at) > 0 => at += splice(bytes, at),
+            _ => return at,
+        }
+    }
+}
+
+fn number_end(bytes: &[u8], start: usize) -> usize {
+    let hexadecimal = bytes[start] == b'0' && matches!(bytes.get(start + 1), Some(b'x' | b'X'));
+    let mut at = start;
+    loop {
+        at = word_end(bytes, at);
+        let exponent = !hexadecimal && at > start && matches!(bytes[at - 1], b'e' | b'E');
+        match bytes.get(at) {
+            Some(b'.') => at += 1,
+            Some(b'+' | b'-') if exponent => at += 1,
+            _ => return at,
+        }
+    }
+}
+
+const PUNCTUATION: &[&str] = &[
+    "<<=", ">>=", "##", "<=", ">=", "==", "!=", "&&", "||", "^^", "++", "--", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<", ">>",
+];
+
+fn punctuation(rest: &[u8]) -> usize {
+    if let Some(long) = PUNCTUATION.iter().find(|text| rest.starts_with(text.as_bytes())) {
+        return long.len();
+    }
+    usize::from(b"#()[]{}<>,;:?.+-*/%!~&|^=".contains(&rest[0]))
+}
+
+/// The class of a spelling if it is exactly one token.
+pub fn single_token(text: &str) -> Option<Kind> {
+    if text.is_empty() {
+        return None;
+    }
+    let (kind, end) = scan(text, 0);
+    (end == text.len() && kind != Kind::Other).then_some(kind)
+}

@@ -1,0 +1,182 @@
+//! GLSL files as the preprocessor sees them: runs of text between directives.
+//!
+//! A file is tokenised once, whatever is active in it later.
+
+mod directive;
+mod lexer;
+mod symbols;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+pub use lexer::{Kind, Token, single_token};
+pub use symbols::{Symbol, Symbols, known};
+
+use crate::diagnostic::{Diagnostic, codes};
+use crate::source::{LIMITS, SourceId, SourceSet, Span};
+
+/// A tokenised file.
+#[derive(Debug)]
+pub struct Module {
+    /// The file.
+    pub source: SourceId,
+    /// Its text.
+    pub text: Arc<str>,
+    /// All tokens, those of directives too.
+    pub tokens: Vec<Token>,
+    /// The file in order.
+    pub parts: Vec<Part>,
+    /// Every `#include`, active or not.
+    pub includes: Vec<Include>,
+    /// What is wrong with the file as a whole, whichever parts are active.
+    pub errors: Vec<Diagnostic>,
+    line_starts: Vec<u32>,
+}
+
+/// Whole lines of a file.
+#[derive(Debug)]
+pub enum Part {
+    Text(Text),
+    Directive(Directive, Span),
+}
+
+/// Text between directives.
+#[derive(Debug)]
+pub struct Text {
+    /// Indices of its tokens.
+    pub tokens: Range<u32>,
+    /// Its bytes, comments and white space at both ends included.
+    pub bytes: Range<u32>,
+}
+
+/// A line that begins with `#`. Numbers named `next` and `end` are indices of parts: the branch
+/// that follows, and the `#endif`.
+#[derive(Debug)]
+pub enum Directive {
+    /// Index into [`Module::includes`].
+    Include(usize),
+    Define(Macro),
+    Undef(Symbol),
+    If { condition: Range<u32>, next: usize },
+    Ifdef { name: Result<Symbol, Box<Diagnostic>>, negated: bool, next: usize },
+    Elif { condition: Range<u32>, next: usize, end: usize },
+    Else { end: usize },
+    Endif,
+    /// The author's words.
+    Error(Span),
+    /// Tokens after `#line`.
+    Line(Range<u32>),
+    Version { number: u32, es: bool, line: Span },
+    Extension { name: Symbol, line: Span },
+    PragmaOnce,
+    Pragma(Span),
+    /// A `#` alone.
+    Empty,
+    /// Wrong in itself; an error only where it is active.
+    Invalid(Box<Diagnostic>),
+}
+
+/// An `#include`.
+#[derive(Debug)]
+pub struct Include {
+    /// As written between the quotes or angles.
+    pub path: String,
+    /// `<path>` rather than `"path"`.
+    pub angled: bool,
+    /// The path with its quotes.
+    pub span: Span,
+}
+
+/// A `#define`.
+#[derive(Debug)]
+pub struct Macro {
+    pub name: Symbol,
+    pub name_span: Span,
+    /// How many parameters; `None` for an object-like macro.
+    pub parameters: Option<usize>,
+    pub body: Vec<BodyToken>,
+}
+
+/// A token of a macro's replacement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BodyToken {
+    pub symbol: Symbol,
+    pub kind: Kind,
+    pub spaced: bool,
+    /// The parameter it names.
+    pub parameter: Option<u16>,
+    /// A `##` joins it to the next.
+    pub pasted: bool,
+}
+
+impl Module {
+    /// Line, from 1, of a byte.
+    pub fn line(&self, byte: u32) -> usize {
+        self.line_starts.partition_point(|start| *start <= byte)
+    }
+
+    /// The part of text that holds a token.
+    pub fn text_part(&self, token: u32) -> Option<&Text> {
+        let after = self.parts.partition_point(|part| match part {
+            Part::Text(text) => text.bytes.start <= self.tokens[token as usize].start,
+            Part::Directive(_, span) => span.start <= self.tokens[token as usize].start,
+        });
+        match self.parts.get(after.checked_sub(1)?) {
+            Some(Part::Text(text)) => Some(text),
+            _ => None,
+        }
+    }
+}
+
+/// Tokenises a file and reads its directives.
+pub fn parse(sources: &SourceSet, source: SourceId, symbols: &mut Symbols) -> Module {
+    let text = sources.get(source).text.clone();
+    let mut errors = Vec::new();
+    let tokens = lexer::tokenize(&text, symbols, LIMITS.tokens).unwrap_or_else(|error| {
+        errors.push(lex_error(source, &text, error));
+        Vec::new()
+    });
+    let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at as u32 + 1)).collect();
+    let mut module = Module { source, text, tokens, parts: Vec::new(), includes: Vec::new(), errors, line_starts };
+    split(&mut module, symbols);
+    directive::link(&mut module);
+    module
+}
+
+fn lex_error(source: SourceId, text: &str, error: lexer::LexError) -> Diagnostic {
+    match error {
+        lexer::LexError::OpenComment(at) => Diagnostic::error(codes::UNTERMINATED_COMMENT, "a comment is never closed")
+            .at(Span::new(source, at..at + 2), "opened here, without a `*/` after it"),
+        lexer::LexError::TooMany(at) => {
+            let end = at + text[at..].chars().next().map_or(0, char::len_utf8);
+            Diagnostic::error(codes::TOO_MANY_TOKENS, format!("a file has more than {} tokens", LIMITS.tokens))
+                .at(Span::new(source, at..end), "the first one too many")
+        }
+    }
+}
+
+/// Cuts the tokens into text and directives.
+fn split(module: &mut Module, symbols: &Symbols) {
+    let (mut token, mut byte) = (0, 0);
+    while token < module.tokens.len() {
+        let hash = token + module.tokens[token..].iter().position(|token| token.first_of_line && token.symbol == known::HASH).unwrap_or(module.tokens.len() - token);
+        let start = module.tokens.get(hash).map_or(module.text.len(), |token| token.start as usize);
+        push_text(module, token..hash, byte..start);
+        if hash == module.tokens.len() {
+            return;
+        }
+        let end = hash + 1 + module.tokens[hash + 1..].iter().position(|token| token.first_of_line).unwrap_or(module.tokens.len() - hash - 1);
+        directive::push(module, hash, end, symbols);
+        byte = lexer::line_end(&module.text, module.tokens[end - 1].end as usize);
+        token = end;
+    }
+}
+
+fn push_text(module: &mut Module, tokens: Range<usize>, bytes: Range<usize>) {
+    if tokens.is_empty() {
+        return;
+    }
+    module.tokens[tokens.start].clean = false;
+    let bytes = bytes.start as u32..bytes.end as u32;
+    module.parts.push(Part::Text(Text { tokens: tokens.start as u32..tokens.end as u32, bytes }));
+}

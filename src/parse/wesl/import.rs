@@ -1,0 +1,99 @@
+//! `import` statements, flattened to one entry for each name.
+
+use super::cursor::Tokens;
+use super::module::{ConditionId, Import, Module, Origin, Path};
+use super::name::Name;
+use super::token::Kind;
+use crate::diagnostic::Diagnostic;
+
+/// Reads the statement whose `import` is at `at`; returns the index past its semicolon.
+pub fn import(module: &mut Module, tokens: Tokens<'_>, at: usize, condition: Option<ConditionId>) -> Result<usize, Diagnostic> {
+    let first = at + 1;
+    let (origin, after) = origin(tokens, first)?;
+    let path = Path { origin, segments: Vec::new(), range: tokens.range(first, first) };
+    let mut reader = Reader { module, tokens, condition, at: after };
+    match reader.tokens.is(after, b'{') {
+        true => reader.collection(&path, first)?,
+        false => reader.path(path, first)?,
+    }
+    let end = reader.at;
+    tokens.expect(end, b';', "`;` after the import")
+}
+
+/// `package ::`, `super ::` repeated, or nothing; and the index behind.
+pub fn origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnostic> {
+    let word = tokens.word(at);
+    let mut end = at;
+    let mut ups = 0;
+    while (word == Some(Name::PACKAGE) && end == at) || (word == Some(Name::SUPER) && tokens.is_word(end, Name::SUPER)) {
+        if tokens.kind(end + 1) != Some(Kind::Path) {
+            return Err(tokens.expected(end + 1, "`::`"));
+        }
+        end += 2;
+        ups += 1;
+    }
+    let origin = match word {
+        Some(Name::PACKAGE) => Origin::Package,
+        Some(Name::SUPER) => Origin::Super(ups),
+        _ => Origin::Scope,
+    };
+    Ok((origin, end))
+}
+
+struct Reader<'a, 'b> {
+    module: &'a mut Module,
+    tokens: Tokens<'b>,
+    condition: Option<ConditionId>,
+    at: usize,
+}
+
+impl Reader<'_, '_> {
+    /// `a::b::c`, `a::b as c` or `a::{...}`; nesting is bounded by the brackets'.
+    fn path(&mut self, mut path: Path, first: usize) -> Result<(), Diagnostic> {
+        loop {
+            path.segments.push(self.tokens.identifier(self.at, "a name")?);
+            self.at += 1;
+            if self.tokens.kind(self.at) != Some(Kind::Path) {
+                break;
+            }
+            self.at += 1;
+            if self.tokens.is(self.at, b'{') {
+                return self.collection(&path, first);
+            }
+        }
+        let last = self.at - 1;
+        // In a collection the path's place is that of its last part: the rest is shared.
+        path.range = if self.module_is_flat(first, last) { self.tokens.range(first, last + 1) } else { self.tokens.range(last, last + 1) };
+        let mut alias_at = last;
+        if self.tokens.is_word(self.at, Name::AS) {
+            alias_at = self.at + 1;
+            self.at += 2;
+        }
+        let alias = self.tokens.identifier(alias_at, "a name after `as`")?;
+        let alias_range = self.tokens.range(alias_at, alias_at + 1);
+        self.module.imports.push(Import { condition: self.condition, path, alias, alias_range });
+        Ok(())
+    }
+
+    fn module_is_flat(&self, first: usize, last: usize) -> bool {
+        (first..=last).all(|at| !self.tokens.is(at, b'{') && !self.tokens.is(at, b','))
+    }
+
+    /// `{ path, path, }`, with at least one.
+    fn collection(&mut self, prefix: &Path, first: usize) -> Result<(), Diagnostic> {
+        let close = self.tokens.partner(self.at);
+        self.at += 1;
+        loop {
+            self.path(prefix.clone(), first)?;
+            if self.tokens.is(self.at, b',') {
+                self.at += 1;
+            } else if self.at != close {
+                return Err(self.tokens.expected(self.at, "`,` or `}`"));
+            }
+            if self.at == close {
+                self.at += 1;
+                return Ok(());
+            }
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! WESL text to a [`Module`]: one pass over the characters, one over the tokens.
+//!
+//! There is no syntax tree: composing needs items, scopes and conditions, and naga parses the
+//! composed text anyway.
+
+mod body;
+mod condition;
+mod cursor;
+mod import;
+mod item;
+mod module;
+mod name;
+mod scope;
+mod statement;
+mod token;
+mod trivia;
+
+pub use module::{
+    Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import, Item, ItemKind, Module, Operand, Origin,
+    Path, Reference,
+};
+pub use name::{Name, Names};
+
+use std::sync::Arc;
+
+use crate::source::SourceId;
+
+/// Parses a file. What is wrong with it is in [`Module::errors`]; the rest is as good as it gets.
+pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
+    let mut module = Module {
+        source,
+        text: Arc::clone(&text),
+        directives: Vec::new(),
+        imports: Vec::new(),
+        items: Vec::new(),
+        conditions: Vec::new(),
+        expressions: Vec::new(),
+        references: Vec::new(),
+        guards: Vec::new(),
+        errors: Vec::new(),
+    };
+    match token::tokenise(&text, source, names) {
+        Ok(tokens) => {
+            let found = item::split(&mut module, &tokens, names);
+            body::scan(&mut module, &tokens, names, found);
+        }
+        Err(error) => module.errors.push(error),
+    }
+    module
+}

@@ -1,0 +1,177 @@
+//! One WESL file, split into items, with every identifier that could mean another item marked.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::name::Name;
+use crate::diagnostic::Diagnostic;
+use crate::source::{SourceId, Span};
+
+/// A parsed file. Indices are into its own tables.
+#[derive(Debug)]
+pub struct Module {
+    pub source: SourceId,
+    pub text: Arc<str>,
+    pub directives: Vec<Directive>,
+    pub imports: Vec<Import>,
+    pub items: Vec<Item>,
+    pub conditions: Vec<Condition>,
+    pub expressions: Vec<Expression>,
+    pub references: Vec<Reference>,
+    pub guards: Vec<Guard>,
+    /// What kept parts of the file from being understood.
+    pub errors: Vec<Diagnostic>,
+}
+
+impl Module {
+    /// A place in this file.
+    pub fn span(&self, range: Range<u32>) -> Span {
+        Span { source: self.source, start: range.start, end: range.end }
+    }
+}
+
+/// Index into [`Module::conditions`].
+pub type ConditionId = u32;
+
+/// `@if`, `@elif` or `@else` of one node.
+#[derive(Debug, Clone)]
+pub struct Condition {
+    /// `None` for `@else`.
+    pub expression: Option<ExpressionId>,
+    /// The `@if` or `@elif` of the sibling before, for `@elif` and `@else`.
+    pub after: Option<ConditionId>,
+}
+
+/// Index into [`Module::expressions`].
+pub type ExpressionId = u32;
+
+/// A translate-time expression. Chains of one operator are flat, so depth is bounded by brackets.
+#[derive(Debug, Clone)]
+pub enum Expression {
+    Literal(bool),
+    Flag(Name, Range<u32>),
+    Not(ExpressionId),
+    All(Vec<ExpressionId>),
+    Any(Vec<ExpressionId>),
+    Compare { left: Operand, operator: Comparison, right: Operand, range: Range<u32> },
+}
+
+/// A side of a comparison.
+#[derive(Debug, Clone)]
+pub enum Operand {
+    Name(Name, Range<u32>),
+    Integer(i64, Range<u32>),
+}
+
+/// An operator of a comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Comparison {
+    Equal,
+    NotEqual,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+}
+
+/// `enable`, `requires` or `diagnostic`.
+#[derive(Debug)]
+pub struct Directive {
+    pub keyword: Name,
+    pub condition: Option<ConditionId>,
+    /// From the keyword to the semicolon.
+    pub range: Range<u32>,
+    /// Names of an `enable` or `requires`; the words of a `diagnostic`.
+    pub names: Vec<Name>,
+}
+
+/// One name an `import` statement brings into scope.
+#[derive(Debug)]
+pub struct Import {
+    pub condition: Option<ConditionId>,
+    pub path: Path,
+    /// The name in scope.
+    pub alias: Name,
+    pub alias_range: Range<u32>,
+}
+
+/// `package::a::b`, `super::super::c` or `d::e`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Path {
+    pub origin: Origin,
+    pub segments: Vec<Name>,
+    pub range: Range<u32>,
+}
+
+/// Where a path starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Origin {
+    /// The importing module's package.
+    Package,
+    /// So many modules up.
+    Super(u32),
+    /// A name in scope, or else a package.
+    Scope,
+}
+
+/// What kind of global declaration an item is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ItemKind {
+    Function,
+    Struct,
+    Const,
+    Override,
+    Var,
+    Alias,
+    ConstAssert,
+}
+
+/// A global declaration.
+#[derive(Debug)]
+pub struct Item {
+    pub kind: ItemKind,
+    /// [`Name::UNDERSCORE`] for a `const_assert`.
+    pub name: Name,
+    pub name_range: Range<u32>,
+    /// What is copied: the comments above, attributes, the declaration, a comment behind it.
+    pub range: Range<u32>,
+    pub condition: Option<ConditionId>,
+    /// Has `@vertex`, `@fragment` or `@compute`.
+    pub entry: bool,
+    /// Sorted by place; nodes contain the events up to their `next`.
+    pub events: Vec<Event>,
+    /// Names of parameters and local declarations, sorted.
+    pub locals: Vec<Name>,
+    /// Identifiers that neither a local nor the module's scope explains, sorted.
+    pub free: Vec<Name>,
+}
+
+/// Something about a place of an item that composing must heed.
+#[derive(Debug, Clone, Copy)]
+pub enum Event {
+    /// Text that never reaches the output: a translate-time attribute.
+    Cut { start: u32, end: u32 },
+    /// A conditional node. If the condition is false, `start..end` goes and event `next` follows.
+    Node { condition: ConditionId, start: u32, end: u32, next: u32 },
+    /// The declared name.
+    Definition { start: u32, end: u32 },
+    /// A use of something global, unless one of the guards holds.
+    Use { reference: u32, guard: Option<u32>, start: u32, end: u32 },
+}
+
+/// What a use names.
+#[derive(Debug, Clone)]
+pub enum Reference {
+    /// An item of the module or an imported name.
+    Name(Name),
+    /// A path written in place.
+    Path(Path),
+}
+
+/// A conditional local declaration: while its condition holds, the name means the local.
+#[derive(Debug, Clone, Copy)]
+pub struct Guard {
+    pub condition: ConditionId,
+    /// The next one outwards.
+    pub next: Option<u32>,
+}

@@ -1,0 +1,129 @@
+//! Identifiers as numbers, so that comparing and indexing by them costs nothing.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+use std::sync::Arc;
+
+/// An interned identifier.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Name(pub u32);
+
+/// Keywords of WGSL and the words WESL gives a meaning, interned first and in this order.
+const WORDS: &[&str] = &[
+    "_", "alias", "break", "case", "const", "const_assert", "continue", "continuing", "default", "diagnostic", "discard", "else",
+    "enable", "false", "fn", "for", "if", "let", "loop", "override", "requires", "return", "struct", "switch", "true", "var", "while",
+    "import", "package", "super", "as", "elif", "constants",
+];
+
+macro_rules! words {
+    ($($constant:ident = $text:literal),* $(,)?) => {
+        impl Name { $(#[doc = concat!("`", $text, "`.")] pub const $constant: Name = Name(position($text));)* }
+    };
+}
+
+words! {
+    UNDERSCORE = "_", ALIAS = "alias", CASE = "case", CONST = "const", CONST_ASSERT = "const_assert", CONTINUING = "continuing",
+    DEFAULT = "default", DIAGNOSTIC = "diagnostic", ELSE = "else", ENABLE = "enable", FALSE = "false", FN = "fn", FOR = "for",
+    IF = "if", LET = "let", LOOP = "loop", OVERRIDE = "override", REQUIRES = "requires", STRUCT = "struct", SWITCH = "switch",
+    TRUE = "true", VAR = "var", WHILE = "while", IMPORT = "import", PACKAGE = "package", SUPER = "super", AS = "as", ELIF = "elif",
+    CONSTANTS = "constants",
+}
+
+const fn position(word: &str) -> u32 {
+    let mut index = 0;
+    while index < WORDS.len() {
+        if same(WORDS[index].as_bytes(), word.as_bytes()) {
+            return index as u32;
+        }
+        index += 1;
+    }
+    u32::MAX
+}
+
+const fn same(left: &[u8], right: &[u8]) -> bool {
+    let mut index = 0;
+    while index < left.len() && index < right.len() && left[index] == right[index] {
+        index += 1;
+    }
+    index == left.len() && index == right.len()
+}
+
+impl Name {
+    /// Whether WGSL forbids the word as an identifier; `import`, `package` and `super` with it.
+    pub fn is_keyword(self) -> bool {
+        self.0 <= Self::SUPER.0
+    }
+}
+
+/// The identifiers of a graph.
+#[derive(Debug, Clone)]
+pub struct Names {
+    texts: Vec<Arc<str>>,
+    numbers: HashMap<Arc<str>, Name, BuildHasherDefault<Fnv>>,
+}
+
+impl Default for Names {
+    fn default() -> Self {
+        let mut names = Self { texts: Vec::new(), numbers: HashMap::default() };
+        for word in WORDS {
+            names.intern(word);
+        }
+        names
+    }
+}
+
+impl Names {
+    /// The number of an identifier, a new one at first sight.
+    pub fn intern(&mut self, text: &str) -> Name {
+        if let Some(name) = self.numbers.get(text) {
+            return *name;
+        }
+        let name = Name(self.texts.len() as u32);
+        let text: Arc<str> = text.into();
+        self.texts.push(Arc::clone(&text));
+        self.numbers.insert(text, name);
+        name
+    }
+
+    /// The number of an identifier that occurs somewhere.
+    pub fn find(&self, text: &str) -> Option<Name> {
+        self.numbers.get(text).copied()
+    }
+
+    /// The identifier behind a number of this table.
+    pub fn text(&self, name: Name) -> &str {
+        &self.texts[name.0 as usize]
+    }
+
+    /// How many there are; every number is below.
+    pub fn len(&self) -> usize {
+        self.texts.len()
+    }
+
+    /// Never: the keywords are there from the start.
+    pub fn is_empty(&self) -> bool {
+        self.texts.is_empty()
+    }
+}
+
+/// FNV-1a: identifiers are short, and limits bound what a hostile file can do with collisions.
+#[derive(Debug)]
+pub struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hasher for Fnv {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Words, numbers, punctuation; every bracket knows its partner.
+
+use super::name::{Name, Names};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::source::{LIMITS, SourceId, Span};
+
+/// What a token is. `<` and `>` always stand alone: `>>` and `>=` are two tokens, so that the
+/// end of a template list needs no second look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    Word(Name),
+    Number,
+    /// `::`
+    Path,
+    /// `->`
+    Arrow,
+    /// Any other character of WGSL's punctuation.
+    Mark(u8),
+}
+
+/// A token and its bytes.
+#[derive(Debug, Clone, Copy)]
+pub struct Token {
+    pub kind: Kind,
+    pub start: u32,
+    pub end: u32,
+    /// Index of the matching bracket; its own for anything else.
+    pub partner: u32,
+}
+
+/// Splits a text into tokens. The error is the first thing that cannot be one.
+pub fn tokenise(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<Token>, Diagnostic> {
+    let mut scanner = Scanner { text, bytes: text.as_bytes(), at: 0, source };
+    let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4);
+    let mut open: Vec<u32> = Vec::new();
+    if text.starts_with('\u{feff}') {
+        scanner.at = '\u{feff}'.len_utf8();
+    }
+    while scanner.skip_blank()? {
+        let start = scanner.at;
+        let kind = scanner.token(names)?;
+        let index = tokens.len() as u32;
+        tokens.push(Token { kind, start: start as u32, end: scanner.at as u32, partner: index });
+        if tokens.len() > LIMITS.tokens {
+            return Err(Diagnostic::error(codes::TOO_MANY_TOKENS, format!("more than {} tokens in one file", LIMITS.tokens))
+                .at(scanner.span(start), "the first one too many"));
+        }
+        match kind {
+            Kind::Mark(b'(' | b'[' | b'{') => push(&mut open, index, scanner.span(start))?,
+            Kind::Mark(mark @ (b')' | b']' | b'}')) => close(&mut tokens, &mut open, mark, &scanner, start)?,
+            _ => {}
+        }
+    }
+    match open.last() {
+        Some(index) => Err(unclosed(&tokens[*index as usize], source)),
+        None => Ok(tokens),
+    }
+}
+
+fn push(open: &mut Vec<u32>, index: u32, span: Span) -> Result<(), Diagnostic> {
+    open.push(index);
+    if open.len() <= LIMITS.nesting {
+        return Ok(());
+    }
+    Err(Diagnostic::error(codes::TOO_DEEPLY_NESTED, format!("brackets nest more than {} deep", LIMITS.nesting)).at(span, "here"))
+}
+
+fn close(tokens: &mut [Token], open: &mut Vec<u32>, mark: u8, scanner: &Scanner<'_>, start: usize) -> Result<(), Diagnostic> {
+    let index = tokens.len() - 1;
+    let Some(opener) = open.pop() else {
+        return Err(Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{}` closes nothing", mark as char))
+            .at(scanner.span(start), "no open bracket before this"));
+    };
+    let expected = match tokens[opener as usize].kind {
+        Kind::Mark(b'(') => b')',
+        Kind::Mark(b'[') => b']',
+        _ => b'}',
+    };
+    if mark != expected {
+        return Err(Diagnostic::error(codes::UNBALANCED_BRACKET, format!("expected `{}`, found `{}`", expected as char, mark as char))
+            .at(scanner.span(start), format!("`{}` was expected here", expected as char))
+            .at(span_of(&tokens[opener as usize], scanner.source), "to close this"));
+    }
+    tokens[index].partner = opener;
+    tokens[opener as usize].partner = index as u32;
+    Ok(())
+}
+
+fn unclosed(token: &Token, source: SourceId) -> Diagnostic {
+    let mark = if let Kind::Mark(mark) = token.kind { mark as char } else { '{' };
+    Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{mark}` is never closed")).at(span_of(token, source), "opened here")
+}
+
+fn span_of(token: &Token, source: SourceId) -> Span {
+    Span { source, start: token.start, end: token.end }
+}
+
+struct Scanner<'a> {
+    text: &'a str,
+    bytes: &'a [u8],
+    at: usize,
+    source: SourceId,
+}
+
+impl Scanner<'_> {
+    fn span(&self, start: usize) -> Span {
+        Span::new(self.source, start..self.at)
+    }
+
+    fn peek(&self, ahead: usize) -> u8 {
+        self.bytes.get(self.at + ahead).copied().unwrap_or(0)
+    }
+
+    /// Goes to the next token; false at the end of the text.
+    fn skip_blank(&mut self) -> Result<bool, Diagnostic> {
+        while self.at < self.bytes.len() {
+            match self.bytes[self.at] {
+                b' ' | b'\t'..=b'\r' => self.at += 1,
+                b'/' if self.peek(1) == b'/' => self.line_comment(),
+                b'/' if self.peek(1) == b'*' => self.block_comment()?,
+                0x80.. => match self.character() {
+                    Some(blank) if is_blank(blank) => self.at += blank.len_utf8(),
+                    _ => return Ok(true),
+                },
+                _ => return Ok(true),
+            }
+        }
+        Ok(false)
+    }
+
+    fn character(&self) -> Option<char> {
+        self.text[self.at..].chars().next()
+    }
+
+    fn line_comment(&mut self) {
+        let rest = &self.text[self.at..];
+        self.at += rest.find(is_line_break).unwrap_or(rest.len());
+    }
+
+    fn block_comment(&mut self) -> Result<(), Diagnostic> {
+        let start = self.at;
+        let mut depth = 0usize;
+        while self.at < self.bytes.len() {
+            match (self.bytes[self.at], self.peek(1)) {
+                (b'/', b'*') => (depth, self.at) = (depth + 1, self.at + 2),
+                (b'*', b'/') => (depth, self.at) = (depth - 1, self.at + 2),
+                _ => self.at += 1,
+            }
+            if depth == 0 {
+                return Ok(());
+            }
+        }
+        Err(Diagnostic::error(codes::UNTERMINATED_COMMENT, "a block comment is never closed")
+            .at(Span::new(self.source, start..start + 2), "opened here")
+            .note("block comments nest: each `/*` inside needs a `*/` of its own"))
+    }
+
+    fn token(&mut self, names: &mut Names) -> Result<Kind, Diagnostic> {
+        let start = self.at;
+        match self.bytes[start] {
+            b'a'..=b'z' | b'A'..=b'Z' | b'_' => Ok(self.word(names)),
+            b'0'..=b'9' => Ok(self.number()),
+            b'.' if self.peek(1).is_ascii_digit() => Ok(self.number()),
+            b':' if self.peek(1) == b':' => Ok(self.two(Kind::Path)),
+            b'-' if self.peek(1) == b'>' => Ok(self.two(Kind::Arrow)),
+            mark @ (b'!' | b'%' | b'&' | b'('..=b'/' | b':'..=b'>' | b'@' | b'[' | b']' | b'^' | b'{'..=b'~') => {
+                self.at += 1;
+                Ok(Kind::Mark(mark))
+            }
+            _ => match self.character() {
+                Some(letter) if unicode_ident::is_xid_start(letter) => Ok(self.word(names)),
+                other => Err(self.stray(other.unwrap_or('\0'))),
+            },
+        }
+    }
+
+    fn two(&mut self, kind: Kind) -> Kind {
+        self.at += 2;
+        kind
+    }
+
+    fn stray(&self, letter: char) -> Diagnostic {
+        let span = Span::new(self.source, self.at..self.at + letter.len_utf8().min(self.bytes.len() - self.at));
+        let found = Diagnostic::error(codes::SYNTAX_ERROR, format!("unexpected character `{}`", letter.escape_debug()));
+        match letter {
+            '#' => found.at(span, "WGSL has no preprocessor").note("help: use `import` and `@if(...)`"),
+            _ => found.at(span, "not a character of WGSL"),
+        }
+    }
+
+    fn word(&mut self, names: &mut Names) -> Kind {
+        let start = self.at;
+        while self.at < self.bytes.len() {
+            match self.bytes[self.at] {
+                b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'0'..=b'9' => self.at += 1,
+                0x80.. => match self.character() {
+                    Some(letter) if unicode_ident::is_xid_continue(letter) => self.at += letter.len_utf8(),
+                    _ => break,
+                },
+                _ => break,
+            }
+        }
+        Kind::Word(names.intern(&self.text[start..self.at]))
+    }
+
+    /// Any numeric literal, loosely: what it means is the compiler's to judge.
+    fn number(&mut self) -> Kind {
+        let hexadecimal = self.bytes[self.at] == b'0' && matches!(self.peek(1), b'x' | b'X');
+        loop {
+            let exponent = if hexadecimal { matches!(self.peek(0), b'p' | b'P') } else { matches!(self.peek(0), b'e' | b'E') };
+            match self.peek(0) {
+                _ if exponent && matches!(self.peek(1), b'+' | b'-') => self.at += 2,
+                b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' | b'.' => self.at += 1,
+                _ => return Kind::Number,
+            }
+        }
+    }
+}
+
+fn is_line_break(letter: char) -> bool {
+    matches!(letter, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
+}
+
+fn is_blank(letter: char) -> bool {
+    matches!(letter, '\u{85}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}')
+}

@@ -1,0 +1,100 @@
+//! Which comments and blanks belong to what: they go where it goes.
+
+use std::ops::Range;
+
+/// Where an item's text starts: at the comments right above it, without a blank line between.
+///
+/// `from` is where the item before ended, its own trailing comment included.
+pub fn leading(text: &str, from: u32, start: u32) -> u32 {
+    let bytes = text.as_bytes();
+    let (mut at, end) = (from as usize, start as usize);
+    let mut attached = None;
+    let mut newlines = 0;
+    while at < end {
+        match bytes[at] {
+            b'/' => {
+                attached = if newlines > 1 { Some(at) } else { attached.or(Some(at)) };
+                newlines = 0;
+                at = comment_end(text, at, end);
+            }
+            byte => {
+                newlines += usize::from(byte == b'\n');
+                at += 1;
+            }
+        }
+    }
+    attached.filter(|_| newlines <= 1).map_or(start, |at| at as u32)
+}
+
+/// Where a thing's text ends: behind a comment on the same line, if nothing else follows there.
+pub fn trailing(text: &str, end: u32, limit: u32) -> u32 {
+    let rest = &text[end as usize..limit as usize];
+    let line = &rest[..rest.find(['\n', '\r']).unwrap_or(rest.len())];
+    let comment = line.trim_start_matches([' ', '\t']);
+    if comment.starts_with("//") { end + line.trim_end().len() as u32 } else { end }
+}
+
+/// What goes with a removed node: its lines, if it has them to itself, and the `//` lines above.
+///
+/// `before` and `after` are the ends of the neighbouring tokens.
+pub fn lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32> {
+    let head = &text[before as usize..node.start as usize];
+    let end = trailing(text, node.end, after);
+    let tail = &text[end as usize..after as usize];
+    let indent = head.len() - head.trim_end_matches([' ', '\t']).len();
+    let starts_line = head[..head.len() - indent].ends_with('\n');
+    let blank = tail.len() - tail.trim_start_matches([' ', '\t', '\r']).len();
+    match (starts_line, tail[blank..].starts_with('\n')) {
+        (true, true) => {
+            let start = node.start - indent as u32;
+            comment_lines(text, before, start)..end + blank as u32 + 1
+        }
+        // In the middle of a line the blanks behind go too: `f(@if(a) x, y)`.
+        (false, false) if end == node.end => node.start..end + (tail.len() - tail.trim_start_matches([' ', '\t']).len()) as u32,
+        _ => node.start..end,
+    }
+}
+
+/// Past the blanks after a removed attribute.
+pub fn skip_blank(text: &str, end: u32) -> u32 {
+    let rest = &text[end as usize..];
+    end + (rest.len() - rest.trim_start_matches([' ', '\t', '\r', '\n']).len()) as u32
+}
+
+/// The start of the whole `//` lines that stand right above the line starting at `start`.
+fn comment_lines(text: &str, before: u32, start: u32) -> u32 {
+    let head = &text[before as usize..start as usize];
+    if head.contains("/*") {
+        return start;
+    }
+    let mut at = head.len();
+    while let Some(line) = head[..at].strip_suffix('\n') {
+        let Some(newline) = line.rfind('\n') else { break };
+        if !line[newline + 1..].trim_start().starts_with("//") {
+            break;
+        }
+        at = newline + 1;
+    }
+    before + at as u32
+}
+
+fn comment_end(text: &str, at: usize, limit: usize) -> usize {
+    let rest = &text[at..limit];
+    if rest.starts_with("//") {
+        return at + rest.find(['\n', '\r']).unwrap_or(rest.len());
+    }
+    let (mut depth, mut end) = (0usize, 0);
+    while end < rest.len() {
+        if rest[end..].starts_with("/*") {
+            (depth, end) = (depth + 1, end + 2);
+        } else if rest[end..].starts_with("*/") {
+            (depth, end) = (depth - 1, end + 2);
+            if depth == 0 {
+                break;
+            }
+        } else {
+            end += rest[end..].chars().next().map_or(1, char::len_utf8);
+        }
+    }
+    (at + end.max(1)).min(limit)
+}

@@ -1,0 +1,89 @@
+//! Where the path of an `#include` may lead.
+
+use super::Place;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::resolve::Packages;
+use crate::source::Package;
+
+/// Number of the root package; dependency `i` is `i + 1`.
+pub const ROOT: usize = 0;
+
+/// Extensions of files worth suggesting.
+pub const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp", "h"];
+
+/// The package of that number.
+pub fn package(packages: &Packages, number: usize) -> &Package {
+    number.checked_sub(1).and_then(|index| packages.dependencies.get(index)).unwrap_or(&packages.root)
+}
+
+/// The places to look at, in order: `"path"` is relative to the includer, then to its package's
+/// root; `<name/path>` is in the package of that name, then relative to the root package's root.
+pub fn candidates(packages: &Packages, includer: &Place, path: &str, angled: bool) -> Result<Vec<Place>, Diagnostic> {
+    let mut places = Vec::new();
+    if angled {
+        if let Some((name, rest)) = path.split_once('/')
+            && let Some(number) = named(packages, name)
+        {
+            places.push((number, normalize("", rest).ok_or_else(|| outside(path))?));
+        }
+        places.push((ROOT, normalize("", path).ok_or_else(|| outside(path))?));
+    } else {
+        places.push((includer.0, normalize(folder(&includer.1), path).ok_or_else(|| outside(path))?));
+        places.extend(normalize("", path).map(|path| (includer.0, path)));
+    }
+    Ok(places)
+}
+
+/// The packages whose files an `#include` can name.
+pub fn searched(packages: &Packages, includer: usize, angled: bool) -> Vec<usize> {
+    if angled { (0..=packages.dependencies.len()).collect() } else { vec![includer] }
+}
+
+/// How the includer would write a file.
+pub fn spelling(packages: &Packages, includer: &Place, (number, file): (usize, &str), angled: bool) -> String {
+    match (angled, number) {
+        (true, ROOT) => file.to_owned(),
+        (true, _) => format!("{}/{file}", package(packages, number).name),
+        (false, _) => relative(folder(&includer.1), file),
+    }
+}
+
+/// The error for a path that leaves its package.
+pub fn outside(path: &str) -> Diagnostic {
+    Diagnostic::error(codes::OUTSIDE_ROOT, format!("`{path}` leads out of its package's root"))
+}
+
+/// `path` seen from `folder`, without `.` and `..`; `None` if it is absolute or leaves the root.
+pub fn normalize(folder: &str, path: &str) -> Option<String> {
+    if path.starts_with('/') || path.contains(['\\', ':']) {
+        return None;
+    }
+    let mut parts = Vec::new();
+    for part in folder.split('/').chain(path.split('/')) {
+        match part {
+            "" | "." => {}
+            ".." => drop(parts.pop()?),
+            _ => parts.push(part),
+        }
+    }
+    Some(parts.join("/"))
+}
+
+fn named(packages: &Packages, name: &str) -> Option<usize> {
+    let dependency = packages.dependencies.iter().position(|package| package.name == name).map(|index| index + 1);
+    dependency.or((packages.root.name == name).then_some(ROOT))
+}
+
+fn folder(path: &str) -> &str {
+    path.rsplit_once('/').map_or("", |(folder, _)| folder)
+}
+
+fn relative(folder: &str, file: &str) -> String {
+    let (mut from, mut to) = (folder.split('/').filter(|part| !part.is_empty()).peekable(), file.split('/').peekable());
+    while from.peek().is_some() && from.peek() == to.peek() {
+        from.next();
+        to.next();
+    }
+    let up: String = from.map(|_| "../").collect();
+    up + &to.collect::<Vec<_>>().join("/")
+}

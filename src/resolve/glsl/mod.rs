@@ -1,0 +1,141 @@
+//! Every file that a GLSL file may include, under any settings.
+
+mod include;
+
+use std::collections::HashMap;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::parse::glsl::{Module, Symbols, parse};
+use crate::resolve::Packages;
+use crate::source::{self, LIMITS, SourceId, SourceSet, Span};
+
+/// The files reachable from a root file, tokenised, and where each `#include` leads.
+#[derive(Debug)]
+pub struct Graph {
+    /// Path of the root file, relative to the root package.
+    pub root: String,
+    /// The root first, then in the order of first mention, breadth first.
+    pub modules: Vec<Module>,
+    /// For each module, the target of each of its includes.
+    pub targets: Vec<Vec<Target>>,
+    /// Spellings of all tokens.
+    pub symbols: Symbols,
+    /// Paths as diagnostics show them, for each module.
+    pub paths: Vec<String>,
+}
+
+/// Where an `#include` leads.
+#[derive(Debug, Clone)]
+pub enum Target {
+    /// Index of a module.
+    Module(usize),
+    /// Nowhere: an error once the directive is active.
+    Missing(Box<Diagnostic>),
+}
+
+/// A package, by number, and a normalised path in it.
+type Place = (usize, String);
+
+/// What has been read so far.
+struct Loader<'a> {
+    sources: &'a mut SourceSet,
+    packages: &'a Packages,
+    symbols: Symbols,
+    modules: Vec<Module>,
+    paths: Vec<String>,
+    places: Vec<Place>,
+    known: HashMap<Place, Result<Option<usize>, Box<Diagnostic>>>,
+    listings: HashMap<usize, Vec<String>>,
+}
+
+/// Reads `root`, a path relative to the root package, and all that it may include.
+///
+/// A missing or unreadable include is no error here, since its directive may never be active;
+/// a missing root is.
+pub fn load(sources: &mut SourceSet, packages: &Packages, root: &str) -> Result<Graph, Diagnostics> {
+    let mut loader = Loader {
+        sources,
+        packages,
+        symbols: Symbols::default(),
+        modules: Vec::new(),
+        paths: Vec::new(),
+        places: Vec::new(),
+        known: HashMap::new(),
+        listings: HashMap::new(),
+    };
+    let path = include::normalize("", root).ok_or_else(|| vec![include::outside(root)])?;
+    let place = (include::ROOT, path);
+    if loader.module(&place).map_err(|error| vec![*error])?.is_none() {
+        return Err(vec![Diagnostic::error(codes::MISSING_INCLUDE, format!("there is no file `{root}`"))]);
+    }
+    let mut targets = Vec::new();
+    while targets.len() < loader.modules.len() {
+        let resolved = loader.targets(targets.len())?;
+        targets.push(resolved);
+    }
+    let Loader { modules, symbols, paths, .. } = loader;
+    Ok(Graph { root: root.to_owned(), modules, targets, symbols, paths })
+}
+
+impl Loader<'_> {
+    /// Resolves every include of a module that was read.
+    fn targets(&mut self, module: usize) -> Result<Vec<Target>, Diagnostics> {
+        let includes: Vec<_> =
+            self.modules[module].includes.iter().map(|include| (include.path.clone(), include.angled, include.span)).collect();
+        let mut targets = Vec::with_capacity(includes.len());
+        for (path, angled, span) in includes {
+            targets.push(self.target(module, &path, angled, span));
+            if self.modules.len() > LIMITS.files {
+                let message = format!("more than {} files are included", LIMITS.files);
+                return Err(vec![Diagnostic::error(codes::TOO_MANY_FILES, message).at(span, "one too many")]);
+            }
+        }
+        Ok(targets)
+    }
+
+    fn target(&mut self, module: usize, path: &str, angled: bool, span: Span) -> Target {
+        let places = match include::candidates(self.packages, &self.places[module], path, angled) {
+            Ok(places) => places,
+            Err(error) => return Target::Missing(Box::new(error.at(span, "this path"))),
+        };
+        for place in places {
+            match self.module(&place) {
+                Ok(Some(found)) => return Target::Module(found),
+                Ok(None) => {}
+                Err(error) => return Target::Missing(Box::new(error.at(span, "included here"))),
+            }
+        }
+        Target::Missing(Box::new(self.missing(module, path, angled, span)))
+    }
+
+    fn missing(&mut self, module: usize, path: &str, angled: bool, span: Span) -> Diagnostic {
+        let error = Diagnostic::error(codes::MISSING_INCLUDE, format!("cannot find `{path}`")).at(span, "no such file");
+        let includer = self.places[module].clone();
+        let mut spellings = Vec::new();
+        for package in include::searched(self.packages, includer.0, angled) {
+            let files = self.listings.entry(package).or_insert_with(|| include::package(self.packages, package).files.list(include::EXTENSIONS));
+            spellings.extend(files.iter().map(|file| include::spelling(self.packages, &includer, (package, file), angled)));
+        }
+        error.suggest(path, spellings.iter().map(String::as_str))
+    }
+
+    /// The module at a place, read at the first request.
+    fn module(&mut self, place: &Place) -> Result<Option<usize>, Box<Diagnostic>> {
+        if let Some(known) = self.known.get(place) {
+            return known.clone();
+        }
+        let package = include::package(self.packages, place.0);
+        let read = source::read(self.sources, package, &place.1).map_err(Box::new);
+        let found = read.map(|source| source.map(|source| self.add(place, source)));
+        self.known.insert(place.clone(), found.clone());
+        found
+    }
+
+    fn add(&mut self, place: &Place, source: SourceId) -> usize {
+        let module = parse(self.sources, source, &mut self.symbols);
+        self.modules.push(module);
+        self.paths.push(self.sources.get(source).path.clone());
+        self.places.push(place.clone());
+        self.modules.len() - 1
+    }
+}

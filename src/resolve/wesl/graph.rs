@@ -1,0 +1,113 @@
+//! The resolved modules.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::diagnostic::Diagnostic;
+use crate::parse::wesl::{ConditionId, Module, Name, Names};
+use crate::source::{SourceId, Span};
+
+/// Every module that a root module may reach, ready to be composed any number of times.
+#[derive(Debug)]
+pub struct Graph {
+    pub(crate) names: Names,
+    /// The root module first.
+    pub(crate) nodes: Vec<Node>,
+    /// Indices of the nodes in the order of the output: by label, the root module last.
+    pub(crate) order: Vec<u32>,
+    pub(crate) constants: Vec<Constant>,
+    /// Errors that count once something needs what they are about.
+    pub(crate) failures: Vec<Diagnostic>,
+    /// Items, conditions and bindings of all nodes: the ends of the nodes' bases.
+    pub(crate) totals: Bases,
+    pub(crate) by_source: BTreeMap<SourceId, u32>,
+}
+
+impl Graph {
+    /// The imports that led to a file, from its own importer to one in the root module.
+    ///
+    /// Empty for the root module and for files that are not of this graph.
+    pub fn chain(&self, source: SourceId) -> Vec<Span> {
+        self.importers(source).map(|(span, _)| span).collect()
+    }
+
+    /// [`Self::chain`] as notes: `imported by main.wesl:3:8`.
+    pub fn trace(&self, source: SourceId) -> Vec<String> {
+        self.importers(source).map(|(_, note)| note.to_owned()).collect()
+    }
+
+    fn importers(&self, source: SourceId) -> impl Iterator<Item = (Span, &str)> {
+        let first = self.by_source.get(&source).and_then(|node| self.nodes[*node as usize].importer.as_ref());
+        std::iter::successors(first, |importer| {
+            let node = self.by_source.get(&importer.span.source)?;
+            self.nodes[*node as usize].importer.as_ref()
+        })
+        .map(|importer| (importer.span, importer.note.as_str()))
+    }
+}
+
+/// Where a module's own tables start in tables over all modules.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Bases {
+    pub items: u32,
+    pub conditions: u32,
+    pub bindings: u32,
+}
+
+/// A module in its place.
+#[derive(Debug)]
+pub struct Node {
+    pub module: Module,
+    /// 0 for the root package, else one more than the dependency's index.
+    pub package: usize,
+    /// Names from the package's root.
+    pub path: Vec<String>,
+    /// `package::a::b` or `lamplight::brdf::specular`.
+    pub label: String,
+    /// Item indices by name, in source order.
+    pub sets: HashMap<Name, Vec<u32>>,
+    /// By reference: what it may mean, the first whose conditions hold.
+    pub bindings: Vec<Vec<Candidate>>,
+    /// Imports that lead nowhere: they count if the module is reached and the conditions hold.
+    pub broken_imports: Vec<(Vec<ConditionId>, u32)>,
+    /// Warnings, for modules of the root package.
+    pub lints: Vec<Diagnostic>,
+    /// What led here first; nothing for the root module.
+    pub importer: Option<Importer>,
+    pub bases: Bases,
+}
+
+/// The import or inline path that led to a module.
+#[derive(Debug, Clone)]
+pub struct Importer {
+    pub span: Span,
+    pub note: String,
+}
+
+/// Something a use may mean.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// All must hold; of the module that uses it.
+    pub conditions: Vec<ConditionId>,
+    pub target: Target,
+}
+
+/// What a path leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// The items of that name in a node; conditions choose.
+    Items { node: u32, name: Name },
+    /// Index into [`Graph::constants`].
+    Constant(u32),
+    /// A module: fine to import, no value in itself.
+    Module,
+    /// Index into [`Graph::failures`].
+    Failed(u32),
+}
+
+/// `constants::NAME`, used somewhere.
+#[derive(Debug)]
+pub struct Constant {
+    pub name: Name,
+    /// Its first use.
+    pub span: Span,
+}

@@ -1,0 +1,238 @@
+//! Reads modules until no path leads to a new one.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target};
+use super::lint;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::parse::wesl::{self, ConditionId, Name, Names, Path, Reference};
+use crate::resolve::Packages;
+use crate::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
+
+/// The graph while it grows.
+pub struct Loader<'a> {
+    pub(super) sources: &'a mut SourceSet,
+    pub(super) packages: &'a Packages,
+    pub(super) names: Names,
+    pub(super) nodes: Vec<Node>,
+    pub(super) constants: Vec<Constant>,
+    pub(super) failures: Vec<Diagnostic>,
+    /// By package and path: the node of a file, nothing, or why it cannot be read.
+    known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
+    /// By package: its files, once something is missing.
+    listings: HashMap<usize, Vec<String>>,
+}
+
+impl<'a> Loader<'a> {
+    pub fn new(sources: &'a mut SourceSet, packages: &'a Packages) -> Self {
+        Self {
+            sources,
+            packages,
+            names: Names::default(),
+            nodes: Vec::new(),
+            constants: Vec::new(),
+            failures: Vec::new(),
+            known: HashMap::new(),
+            listings: HashMap::new(),
+        }
+    }
+
+    /// Reads the root module; false if there is no such file.
+    pub fn root(&mut self, file: &str) -> Result<bool, Diagnostic> {
+        let Some(source) = source::read(self.sources, &self.packages.root, file)? else { return Ok(false) };
+        let stem = file.strip_suffix(".wesl").or_else(|| file.strip_suffix(".wgsl")).unwrap_or(file);
+        let path: Vec<String> = stem.split('/').filter(|part| !part.is_empty() && *part != ".").map(str::to_owned).collect();
+        self.known.insert((0, path.join("/")), Ok(Some(0)));
+        self.add(source, 0, path, None);
+        Ok(true)
+    }
+
+    /// Resolves every module and everything they lead to.
+    pub fn finish(mut self) -> Result<Graph, Diagnostics> {
+        let mut at = 0;
+        while at < self.nodes.len() {
+            self.resolve(at as u32);
+            at += 1;
+        }
+        let mut graph = self.graph();
+        let errors = certain_errors(&mut graph);
+        if errors.is_empty() { Ok(graph) } else { Err(errors) }
+    }
+
+    fn graph(self) -> Graph {
+        let mut totals = Bases::default();
+        let mut nodes = self.nodes;
+        let mut by_source = BTreeMap::new();
+        for (index, node) in nodes.iter_mut().enumerate() {
+            node.bases = totals;
+            totals.items += node.module.items.len() as u32;
+            totals.conditions += node.module.conditions.len() as u32;
+            totals.bindings += node.bindings.len() as u32;
+            by_source.insert(node.module.source, index as u32);
+        }
+        let mut order: Vec<u32> = (1..nodes.len() as u32).collect();
+        order.sort_by(|left, right| nodes[*left as usize].label.cmp(&nodes[*right as usize].label));
+        order.push(0);
+        Graph { names: self.names, nodes, order, constants: self.constants, failures: self.failures, totals, by_source }
+    }
+
+    pub(super) fn package(&self, index: usize) -> &'a Package {
+        match index {
+            0 => &self.packages.root,
+            dependency => &self.packages.dependencies[dependency - 1],
+        }
+    }
+
+    /// The module of a package at a path, read at first sight.
+    pub(super) fn module(&mut self, package: usize, path: &[Name], asker: Span) -> Result<Option<u32>, Diagnostic> {
+        let path: Vec<String> = path.iter().map(|name| self.names.text(*name).to_owned()).collect();
+        let key = (package, path.join("/"));
+        if let Some(known) = self.known.get(&key) {
+            return known.clone();
+        }
+        let outcome = self.read(package, &path, asker);
+        self.known.insert(key, outcome.clone());
+        outcome
+    }
+
+    fn read(&mut self, package: usize, path: &[String], asker: Span) -> Result<Option<u32>, Diagnostic> {
+        for stem in self.stems(package, path) {
+            for extension in ["wesl", "wgsl"] {
+                let found = source::read(self.sources, self.package(package), &format!("{stem}.{extension}"))
+                    .map_err(|error| error.at(asker, "imported here"))?;
+                if let Some(source) = found {
+                    if self.nodes.len() >= LIMITS.files {
+                        let message = format!("more than {} modules", LIMITS.files);
+                        return Err(Diagnostic::error(codes::TOO_MANY_FILES, message).at(asker, "the first one too many"));
+                    }
+                    return Ok(Some(self.add(source, package, path.to_vec(), Some(asker))));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Where a module's file may be: a package's own module is `package`, `lib` or its name.
+    fn stems(&self, package: usize, path: &[String]) -> Vec<String> {
+        match path {
+            [] => vec!["package".to_owned(), "lib".to_owned(), self.package(package).name.clone()],
+            path => vec![path.join("/")],
+        }
+    }
+
+    fn add(&mut self, source: SourceId, package: usize, path: Vec<String>, asker: Option<Span>) -> u32 {
+        let text = self.sources.get(source).text.clone();
+        let module = wesl::parse(source, text, &mut self.names);
+        let mut sets: HashMap<Name, Vec<u32>> = HashMap::new();
+        for (index, item) in module.items.iter().enumerate().filter(|(_, item)| item.name != Name::UNDERSCORE) {
+            sets.entry(item.name).or_default().push(index as u32);
+        }
+        path.iter().for_each(|part| {
+            self.names.intern(part);
+        });
+        let label = self.label(package, &path);
+        let importer = asker.map(|span| Importer { span, note: self.note(span) });
+        self.nodes.push(Node {
+            module,
+            package,
+            path,
+            label,
+            sets,
+            bindings: Vec::new(),
+            broken_imports: Vec::new(),
+            lints: Vec::new(),
+            importer,
+            bases: Bases::default(),
+        });
+        self.nodes.len() as u32 - 1
+    }
+
+    pub(super) fn label(&self, package: usize, path: &[String]) -> String {
+        let first = if package == 0 { "package" } else { &self.package(package).name };
+        std::iter::once(first).chain(path.iter().map(String::as_str)).collect::<Vec<_>>().join("::")
+    }
+
+    fn note(&self, span: Span) -> String {
+        let (line, column) = self.sources.position(span.source, span.start as usize);
+        format!("imported by {}:{line}:{column}", self.sources.get(span.source).path)
+    }
+
+    /// Files of a package, for suggestions.
+    pub(super) fn listing(&mut self, package: usize) -> &[String] {
+        let files = &self.package(package).files;
+        self.listings.entry(package).or_insert_with(|| files.list(&["wesl", "wgsl"]))
+    }
+
+    pub(super) fn fail(&mut self, error: Diagnostic) -> Target {
+        self.failures.push(error);
+        Target::Failed(self.failures.len() as u32 - 1)
+    }
+
+    /// Resolves a module's imports, then its uses.
+    fn resolve(&mut self, node: u32) {
+        let imports: Vec<(Option<ConditionId>, Path, Name)> = self.nodes[node as usize]
+            .module
+            .imports
+            .iter()
+            .map(|import| (import.condition, import.path.clone(), import.alias))
+            .collect();
+        let mut imported: HashMap<Name, Vec<Candidate>> = HashMap::new();
+        for (index, (condition, path, alias)) in imports.iter().enumerate() {
+            for mut candidate in self.candidates(node, path, Some(index)) {
+                candidate.conditions.extend(*condition);
+                if let Target::Failed(failure) = candidate.target {
+                    self.nodes[node as usize].broken_imports.push((candidate.conditions.clone(), failure));
+                }
+                imported.entry(*alias).or_default().push(candidate);
+            }
+        }
+        let references = self.nodes[node as usize].module.references.clone();
+        let bindings = references.iter().map(|reference| self.binding(node, reference, &imported)).collect();
+        self.nodes[node as usize].bindings = bindings;
+        lint::clashes(self, node, &imported);
+        self.nodes[node as usize].lints = lint::lints(&self.names, &self.nodes[node as usize]);
+    }
+
+    fn binding(&mut self, node: u32, reference: &Reference, imported: &HashMap<Name, Vec<Candidate>>) -> Vec<Candidate> {
+        match reference {
+            Reference::Path(path) => self.candidates(node, path, None),
+            Reference::Name(name) => {
+                let own = self.nodes[node as usize].sets.contains_key(name);
+                let own = own.then(|| Candidate { conditions: Vec::new(), target: Target::Items { node, name: *name } });
+                own.into_iter().chain(imported.get(name).into_iter().flatten().cloned()).collect()
+            }
+        }
+    }
+}
+
+/// The errors that every composition meets: of the root module and of what it imports
+/// unconditionally. They are taken out of the graph, which is then of no further use.
+fn certain_errors(graph: &mut Graph) -> Diagnostics {
+    let mut certain = vec![false; graph.nodes.len()];
+    let mut failed = vec![false; graph.failures.len()];
+    let mut errors = Vec::new();
+    let mut open = vec![0];
+    while let Some(index) = open.pop() {
+        if std::mem::replace(&mut certain[index], true) {
+            continue;
+        }
+        let node = &graph.nodes[index];
+        let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
+        let broken: Vec<u32> = broken.map(|(_, failure)| *failure).filter(|failure| !std::mem::replace(&mut failed[*failure as usize], true)).collect();
+        let found = node.module.errors.iter().cloned().chain(broken.into_iter().map(|failure| graph.failures[failure as usize].clone()));
+        errors.extend(found.map(|error| traced(graph, error)));
+        let certainly = node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
+        open.extend(certainly.filter_map(|candidate| match candidate.target {
+            Target::Items { node, .. } => Some(node as usize),
+            _ => None,
+        }));
+    }
+    errors.sort_by_key(|error| error.labels.first().map(|label| label.span));
+    errors
+}
+
+/// With the chain of imports that led to the file it is in.
+fn traced(graph: &Graph, error: Diagnostic) -> Diagnostic {
+    let source = error.labels.first().map(|label| label.span.source);
+    source.map(|source| graph.trace(source)).into_iter().flatten().fold(error, Diagnostic::note)
+}

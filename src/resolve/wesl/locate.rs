@@ -1,0 +1,184 @@
+//! Where a path leads: through imported names and packages to a module, and in it to an item.
+
+use super::graph::{Candidate, Constant, Target};
+use super::load::Loader;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::parse::wesl::{ConditionId, Name, Origin, Path};
+use crate::source::{LIMITS, Span};
+
+/// A path from a package's root.
+#[derive(Debug, Clone)]
+struct Absolute {
+    /// `None` for the virtual package `constants`.
+    package: Option<usize>,
+    segments: Vec<Name>,
+    conditions: Vec<ConditionId>,
+}
+
+/// How many meanings one path may have under different conditions.
+const MEANINGS: usize = 64;
+
+impl Loader<'_> {
+    /// What a path of a module may mean. `import` is its index if an import has it: that one's
+    /// own name does not count for its first segment, and it may lead to a module.
+    pub(super) fn candidates(&mut self, node: u32, path: &Path, import: Option<usize>) -> Vec<Candidate> {
+        let span = self.nodes[node as usize].module.span(path.range.clone());
+        let mut visiting: Vec<usize> = import.into_iter().collect();
+        let found = self.absolute(node, path, &mut visiting).and_then(|absolutes| {
+            let candidate = |absolute: Absolute| {
+                let target = self.target(&absolute, span, import.is_some())?;
+                Ok(Candidate { conditions: absolute.conditions, target })
+            };
+            absolutes.into_iter().map(candidate).collect()
+        });
+        found.unwrap_or_else(|error| vec![Candidate { conditions: Vec::new(), target: self.fail(error) }])
+    }
+
+    /// The path from a package's root, for each import that its first segment may mean.
+    fn absolute(&self, node: u32, path: &Path, visiting: &mut Vec<usize>) -> Result<Vec<Absolute>, Diagnostic> {
+        let here = &self.nodes[node as usize];
+        let span = here.module.span(path.range.clone());
+        match path.origin {
+            Origin::Package => Ok(vec![Absolute { package: Some(here.package), segments: path.segments.clone(), conditions: Vec::new() }]),
+            Origin::Super(ups) => self.above(node, ups as usize, &path.segments, span).map(|absolute| vec![absolute]),
+            Origin::Scope => {
+                let named = |index: &usize| here.module.imports[*index].alias == path.segments[0];
+                let (seen, through): (Vec<usize>, Vec<usize>) =
+                    (0..here.module.imports.len()).filter(named).partition(|index| visiting.contains(index));
+                if through.is_empty() {
+                    let cyclic = visiting.len() > 1 && !seen.is_empty();
+                    return self.in_package(node, &path.segments, span, cyclic).map(|absolute| vec![absolute]);
+                }
+                self.through_imports(node, path, &through, visiting)
+            }
+        }
+    }
+
+    fn through_imports(&self, node: u32, path: &Path, imports: &[usize], visiting: &mut Vec<usize>) -> Result<Vec<Absolute>, Diagnostic> {
+        let module = &self.nodes[node as usize].module;
+        let mut found = Vec::new();
+        for index in imports {
+            let import = &module.imports[*index];
+            visiting.push(*index);
+            if visiting.len() > LIMITS.include_depth {
+                return Err(cyclic(module.span(path.range.clone())));
+            }
+            for mut absolute in self.absolute(node, &import.path, visiting)? {
+                absolute.conditions.extend(import.condition);
+                absolute.segments.extend(&path.segments[1..]);
+                found.push(absolute);
+            }
+            visiting.pop();
+            if found.len() > MEANINGS {
+                let message = format!("a path with more than {MEANINGS} meanings");
+                return Err(Diagnostic::error(codes::CYCLIC_IMPORT, message).at(module.span(path.range.clone()), "here"));
+            }
+        }
+        Ok(found)
+    }
+
+    fn above(&self, node: u32, ups: usize, segments: &[Name], span: Span) -> Result<Absolute, Diagnostic> {
+        let here = &self.nodes[node as usize];
+        let Some(depth) = here.path.len().checked_sub(ups) else {
+            let message = format!("the path leaves the root of its package: `{}` is {} deep", here.label, here.path.len());
+            return Err(Diagnostic::error(codes::OUTSIDE_ROOT, message).at(span, format!("{ups} times `super`")));
+        };
+        let above = here.path[..depth].iter().filter_map(|part| self.names.find(part));
+        let segments = above.chain(segments.iter().copied()).collect();
+        Ok(Absolute { package: Some(here.package), segments, conditions: Vec::new() })
+    }
+
+    fn in_package(&self, node: u32, segments: &[Name], span: Span, in_circle: bool) -> Result<Absolute, Diagnostic> {
+        let first = self.names.text(segments[0]);
+        let dependency = self.packages.dependencies.iter().position(|package| package.name == first);
+        let own = self.package(self.nodes[node as usize].package).name == first;
+        let package = match dependency {
+            Some(index) => Some(index + 1),
+            None if own => Some(self.nodes[node as usize].package),
+            None if segments[0] == Name::CONSTANTS => None,
+            None if in_circle => return Err(cyclic(span)),
+            None => return Err(self.unknown_package(first, span)),
+        };
+        Ok(Absolute { package, segments: segments[1..].to_vec(), conditions: Vec::new() })
+    }
+
+    fn unknown_package(&self, first: &str, span: Span) -> Diagnostic {
+        let error = Diagnostic::error(codes::UNKNOWN_PACKAGE, format!("there is no package `{first}`")).at(span, "not a package");
+        let files = self.packages.root.files.list(&["wesl", "wgsl"]);
+        let own = files.iter().any(|file| file.split(['/', '.']).next() == Some(first));
+        match own {
+            true => error.note(format!("help: for the module of this package write `package::{first}`")),
+            false => error.suggest(first, self.packages.dependencies.iter().map(|package| package.name.as_str())),
+        }
+    }
+
+    fn target(&mut self, absolute: &Absolute, span: Span, import: bool) -> Result<Target, Diagnostic> {
+        let Some(package) = absolute.package else { return Ok(self.constant(&absolute.segments, span)) };
+        let Some((last, parents)) = absolute.segments.split_last() else { return Ok(Target::Module) };
+        let parent = self.module(package, parents, span)?;
+        if let Some(node) = parent.filter(|node| self.nodes[*node as usize].sets.contains_key(last)) {
+            return Ok(Target::Items { node, name: *last });
+        }
+        if self.is_module(package, &absolute.segments, span, import)? {
+            return Ok(Target::Module);
+        }
+        Err(match parent {
+            Some(node) => self.missing_item(node, *last, span),
+            None => self.missing_module(package, parents, span),
+        })
+    }
+
+    fn constant(&mut self, segments: &[Name], span: Span) -> Target {
+        match segments {
+            [] => Target::Module,
+            [name] => {
+                let known = self.constants.iter().position(|constant| constant.name == *name);
+                Target::Constant(known.unwrap_or_else(|| {
+                    self.constants.push(Constant { name: *name, span });
+                    self.constants.len() - 1
+                }) as u32)
+            }
+            _ => self.fail(Diagnostic::error(codes::MISSING_MODULE, "the module `constants` has no modules").at(span, "too long a path")),
+        }
+    }
+
+    /// Whether a module or a folder is there. Only imports need to know that of files.
+    fn is_module(&mut self, package: usize, segments: &[Name], span: Span, import: bool) -> Result<bool, Diagnostic> {
+        let path = segments.iter().map(|name| self.names.text(*name)).collect::<Vec<_>>().join("/");
+        if import && self.module(package, segments, span)?.is_some() {
+            return Ok(true);
+        }
+        let listing = self.listing(package);
+        let within = |file: &String| file.strip_prefix(&path).is_some_and(|rest| rest.starts_with(['/', '.']));
+        Ok(listing.iter().any(within))
+    }
+
+    fn missing_item(&mut self, node: u32, name: Name, span: Span) -> Diagnostic {
+        let here = &self.nodes[node as usize];
+        let text = self.names.text(name);
+        let error = Diagnostic::error(codes::MISSING_ITEM, format!("`{}` has no item `{text}`", here.label)).at(span, "not found");
+        let imports = here.module.imports.iter().any(|import| import.alias == name);
+        let error = if imports { error.note("it imports that name, but imports are not passed on") } else { error };
+        error.suggest(text, here.module.items.iter().map(|item| self.names.text(item.name)))
+    }
+
+    fn missing_module(&mut self, package: usize, path: &[Name], span: Span) -> Diagnostic {
+        let path: Vec<String> = path.iter().map(|name| self.names.text(*name).to_owned()).collect();
+        let label = self.label(package, &path);
+        let shown = self.package(package).files.display(&path.join("/"));
+        let listing = self.listing(package).to_vec();
+        let mut known: Vec<String> = Vec::new();
+        for file in listing {
+            let parts: Vec<String> = file.rsplit_once('.').map_or(&*file, |(stem, _)| stem).split('/').map(str::to_owned).collect();
+            known.push(self.label(package, &parts));
+        }
+        Diagnostic::error(codes::MISSING_MODULE, format!("there is no module `{label}`"))
+            .at(span, "not found")
+            .note(format!("looked for `{shown}.wesl` and `{shown}.wgsl`"))
+            .suggest(&label, known.iter().map(String::as_str))
+    }
+}
+
+fn cyclic(span: Span) -> Diagnostic {
+    Diagnostic::error(codes::CYCLIC_IMPORT, "imported names that stand for each other").at(span, "leads back to itself")
+}

@@ -1,0 +1,288 @@
+//! WESL composition: one folder of `tests/compose_wesl/` for each case.
+//!
+//! A case has a root module (`main.wesl`, or what its settings say), the other files of the root
+//! package, dependencies as `deps/NAME/`, perhaps `settings.txt`, and what must come out:
+//! `expected.wgsl`, or `expected.err` with the diagnostics as people see them; with them
+//! `expected.warnings` and `expected.reads` where there are any to speak of.
+//! `UPDATE_EXPECT=1` writes what comes out: read it before committing.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use lamplight::compose::wesl::compose;
+use lamplight::compose::{Composed, Keep, Mangle, Options};
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::permute::{Setting, Settings};
+use lamplight::resolve::Packages;
+use lamplight::resolve::wesl::{Graph, load};
+use lamplight::source::{Files, Memory, Package, SourceSet};
+use libtest_mimic::{Failed, Trial};
+
+pub fn trials() -> Vec<Trial> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compose_wesl");
+    let mut cases: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()).collect();
+    cases.sort();
+    let named = |case: PathBuf| {
+        let name = case.file_name().unwrap().to_string_lossy().into_owned();
+        Trial::test(format!("compose_wesl::{name}"), move || check(&case))
+    };
+    let mut trials: Vec<Trial> = cases.into_iter().map(named).collect();
+    trials.push(Trial::test("compose_wesl permutations are deterministic", permutations));
+    trials.push(Trial::test("compose_wesl survives mutilated text", mutilated));
+    trials
+}
+
+/// `settings.txt`: `set NAME = VALUE`, `enum NAME = A, B`, `integer NAME`, `keep all|A,B`,
+/// `mangle underscore`, `root FILE`, `reads`, `unparsed` (naga need not accept the text).
+#[derive(Default)]
+struct Case {
+    settings: Settings,
+    options: Options,
+    root: Option<String>,
+    reads: bool,
+    unparsed: bool,
+}
+
+impl Case {
+    fn read(folder: &Path) -> Self {
+        let mut case = Self::default();
+        for line in fs::read_to_string(folder.join("settings.txt")).unwrap_or_default().lines() {
+            let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
+            let (name, value) = rest.split_once('=').map_or((rest.trim(), ""), |(name, value)| (name.trim(), value.trim()));
+            let list = |text: &str| text.split(',').map(|part| part.trim().to_owned()).collect::<Vec<_>>();
+            match word {
+                "set" => drop(case.settings.values.insert(name.to_owned(), Setting::parse(value))),
+                "enum" => drop(case.settings.enums.insert(name.to_owned(), list(value))),
+                "integer" => drop(case.settings.integers.insert(name.to_owned())),
+                "keep" if name == "all" => case.options.keep = Keep::All,
+                "keep" => case.options.keep = Keep::Items(list(name)),
+                "mangle" => case.options.mangle = Mangle::Underscore,
+                "root" => case.root = Some(name.to_owned()),
+                "reads" => case.reads = true,
+                "unparsed" => case.unparsed = true,
+                _ => panic!("{}: unknown line `{line}`", folder.display()),
+            }
+        }
+        case
+    }
+}
+
+fn check(folder: &Path) -> Result<(), Failed> {
+    let case = Case::read(folder);
+    let packages = packages(folder);
+    let mut sources = SourceSet::default();
+    let root = case.root.as_deref().unwrap_or("main.wesl");
+    let outcome = load(&mut sources, &packages, root).and_then(|graph| compose(&graph, &case.settings, &case.options));
+    let human = |diagnostics: &[_]| render(&sources, diagnostics, Form::Human);
+    let mut found = BTreeMap::from([("wgsl", None), ("err", None), ("warnings", None), ("reads", None)]);
+    match &outcome {
+        Ok(composed) => {
+            found.insert("wgsl", Some(composed.text.clone()));
+            found.insert("warnings", Some(human(&composed.warnings)).filter(|text| !text.is_empty()));
+            found.insert("reads", case.reads.then(|| composed.reads.iter().map(|(name, value)| format!("{name} = {value}\n")).collect()));
+        }
+        Err(errors) => drop(found.insert("err", Some(human(errors)))),
+    }
+    let mut differences = String::new();
+    for (kind, text) in found {
+        differences += &compare(&folder.join(format!("expected.{kind}")), text);
+    }
+    if let Ok(composed) = &outcome {
+        differences += &map_errors(&sources, composed);
+        if !case.unparsed && let Err(error) = naga::front::wgsl::parse_str(&composed.text) {
+            differences += &error.emit_to_string(&composed.text);
+        }
+    }
+    if differences.is_empty() { Ok(()) } else { Err(differences.into()) }
+}
+
+/// What is wrong with a file of expectations; nothing if it is updated.
+fn compare(path: &Path, found: Option<String>) -> String {
+    let expected = fs::read_to_string(path).ok();
+    if expected == found {
+        return String::new();
+    }
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        match found {
+            Some(text) => fs::write(path, text).unwrap(),
+            None => fs::remove_file(path).unwrap(),
+        }
+        return String::new();
+    }
+    let shown = |text: Option<String>| text.unwrap_or_else(|| "(no such file)\n".to_owned());
+    format!("--- {}\n{}--- found\n{}", path.display(), shown(expected), shown(found))
+}
+
+/// Copies must be copies, and the segments in order.
+fn map_errors(sources: &SourceSet, composed: &Composed) -> String {
+    let segments = composed.map.segments();
+    let mut errors = String::new();
+    for (index, segment) in segments.iter().enumerate() {
+        let end = segments.get(index + 1).map_or(composed.text.len(), |next| next.start as usize);
+        let output = &composed.text[segment.start as usize..end];
+        if let Some(span) = segment.span.filter(|_| segment.verbatim)
+            && !sources.text(span).starts_with(output)
+        {
+            errors += &format!("not a copy: {output:?} of {:?}\n", sources.text(span));
+        }
+    }
+    errors
+}
+
+fn packages(folder: &Path) -> Packages {
+    let mut root = Memory::default();
+    let mut dependencies: BTreeMap<String, Memory> = BTreeMap::new();
+    for (path, text) in files(folder, "") {
+        match path.strip_prefix("deps/").and_then(|rest| rest.split_once('/')) {
+            Some((package, path)) => drop(dependencies.entry(package.to_owned()).or_default().0.insert(path.to_owned(), text)),
+            None => drop(root.0.insert(path, text)),
+        }
+    }
+    let package = |(name, files): (String, Memory)| Package { name: name.clone(), files: Box::new(Shown { name, files }) };
+    Packages {
+        root: Package { name: "app".to_owned(), files: Box::new(root) },
+        dependencies: dependencies.into_iter().map(package).collect(),
+    }
+}
+
+/// A dependency whose files are shown with its name.
+struct Shown {
+    name: String,
+    files: Memory,
+}
+
+impl Files for Shown {
+    fn read(&self, path: &str) -> Result<Option<String>, lamplight::source::ReadError> {
+        self.files.read(path)
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        self.files.list(extensions)
+    }
+
+    fn display(&self, path: &str) -> String {
+        format!("{}/{path}", self.name)
+    }
+}
+
+fn files(folder: &Path, prefix: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = format!("{prefix}{}", path.file_name().unwrap().to_string_lossy());
+        match path.is_dir() {
+            true => found.extend(files(&path, &format!("{name}/"))),
+            false if name.ends_with(".wesl") || (name.ends_with(".wgsl") && name != "expected.wgsl") => {
+                found.push((name, fs::read_to_string(&path).unwrap()));
+            }
+            false => {}
+        }
+    }
+    found
+}
+
+const LIGHTS: &str = "
+import package::shade::{lambert, gloss as shine};
+@if(fog) import package::mist::fade;
+@if(shadow == soft) import package::shade::soft as visibility;
+@elif(shadow == hard) import package::shade::hard as visibility;
+@fragment fn main() -> @location(0) vec4f {
+    var c = lambert(0.5);
+    @if(gloss) c += shine(c);
+    @if(fog) c *= fade(c);
+    @if(shadow != none) c *= visibility(c);
+    @if(lights >= 2) { c += lambert(0.25); }
+    @else { c -= lambert(0.125); }
+    return vec4f(c * f32(constants::lights));
+}
+";
+
+const SHADE: &str = "
+fn lambert(x: f32) -> f32 { return max(x, 0.0); }
+fn gloss(x: f32) -> f32 { @if(gloss && fog) return x; return x * x; }
+fn hard(x: f32) -> f32 { return step(0.5, x); }
+fn soft(x: f32) -> f32 { return lambert(x) * hard(x); }
+";
+
+const MIST: &str = "fn fade(x: f32) -> f32 { return lambert(x); } fn lambert(x: f32) -> f32 { return x; }";
+
+fn lights() -> (SourceSet, Graph) {
+    let texts = [("main.wesl", LIGHTS), ("shade.wesl", SHADE), ("mist.wesl", MIST)];
+    let files = texts.map(|(path, text)| (path.to_owned(), text.to_owned()));
+    let root = Package { name: "app".to_owned(), files: Box::new(Memory(files.into())) };
+    let mut sources = SourceSet::default();
+    let graph = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl").expect("the modules are right");
+    (sources, graph)
+}
+
+/// Every choice, from two graphs, its settings put in from both ends: same bytes, same reads, and
+/// what was not read makes no difference.
+fn permutations() -> Result<(), Failed> {
+    let ((_, graph), (_, again)) = (lights(), lights());
+    let mut by_reads: BTreeMap<Vec<(String, Setting)>, String> = BTreeMap::new();
+    let mut count = 0;
+    for choice in 0..480u32 {
+        let flag = |bit: u32| Setting::Bool(choice >> bit & 1 == 1);
+        let shadow = ["none", "hard", "soft"][(choice / 32 % 3) as usize];
+        let mut values = vec![
+            ("fog", flag(0)),
+            ("gloss", flag(1)),
+            ("unread", flag(2)),
+            ("other", flag(3)),
+            ("spare", flag(4)),
+            ("shadow", Setting::Name(shadow.to_owned())),
+            ("lights", Setting::Int(i64::from(choice / 96))),
+        ];
+        let forward = compose(&graph, &settings(&values), &Options::default()).expect("composes");
+        values.rotate_left(choice as usize % 7);
+        values.reverse();
+        let backward = compose(&again, &settings(&values), &Options::default()).expect("composes");
+        if forward.text != backward.text || forward.reads != backward.reads || forward.map.segments() != backward.map.segments() {
+            return Err(format!("choice {choice} composes in two ways").into());
+        }
+        naga::front::wgsl::parse_str(&forward.text).map_err(|error| error.emit_to_string(&forward.text))?;
+        if by_reads.entry(forward.reads).or_insert_with(|| forward.text.clone()) != &forward.text {
+            return Err(format!("choice {choice} reads like another but differs").into());
+        }
+        count += 1;
+    }
+    let distinct = by_reads.len();
+    if distinct == 60 { Ok(()) } else { Err(format!("{distinct} distinct of {count}, expected 60").into()) }
+}
+
+fn settings(values: &[(&str, Setting)]) -> Settings {
+    Settings {
+        values: values.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
+        enums: [("shadow".to_owned(), ["none", "hard", "soft"].map(str::to_owned).to_vec())].into(),
+        integers: ["lights".to_owned()].into(),
+    }
+}
+
+/// Texts with a piece cut out or doubled, and hostile ones: an answer each, never a panic.
+fn mutilated() -> Result<(), Failed> {
+    let mut texts: Vec<String> = Vec::new();
+    for at in 0..LIGHTS.len() {
+        texts.push(LIGHTS[..at].to_owned());
+        texts.push(format!("{}{}", &LIGHTS[..at], &LIGHTS[(at + 3).min(LIGHTS.len())..]));
+        texts.push(format!("{}@if({}", &LIGHTS[..at], &LIGHTS[at..]));
+    }
+    texts.extend(["(", "{", "@if(", "!", "/*", "fn f() {", "@if(a) ", "import a::", "a::"].map(|piece| piece.repeat(100_000)));
+    texts.push(format!("@if({}a) fn f() {{}}", "!".repeat(300_000)));
+    texts.push(format!("@if({}a) fn f() {{}}", "a && ".repeat(200_000)));
+    texts.push(format!("fn f() {{ {} }}", "if a {} else ".repeat(100_000) + "{}"));
+    texts.push(format!("@if(a) const a = 1; {}", "@elif(a) const a = 1; ".repeat(50_000)));
+    texts.push((0..2000).map(|index| format!("import a{}::b as a{index};\n", index + 1)).collect::<String>() + "const c = a0::x;");
+    for text in texts {
+        let files = [("main.wesl".to_owned(), text), ("shade.wesl".to_owned(), SHADE.to_owned()), ("mist.wesl".to_owned(), MIST.to_owned())];
+        let root = Package { name: "app".to_owned(), files: Box::new(Memory(files.into())) };
+        let mut sources = SourceSet::default();
+        let settings = settings(&[("fog", Setting::Bool(true)), ("gloss", Setting::Bool(true)), ("a", Setting::Bool(false))]);
+        let outcome = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
+            .and_then(|graph| compose(&graph, &settings, &Options { keep: Keep::All, ..Options::default() }));
+        if let Err(errors) = outcome {
+            assert!(!errors.is_empty() && !render(&sources, &errors, Form::Short).is_empty());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,7 @@
+// package::accel
+
+fn none() -> f32 { return 3.0; }
+
+// package::main
+
+fn main() -> f32 { return none(); }

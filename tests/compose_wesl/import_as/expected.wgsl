@@ -1,0 +1,7 @@
+// package::file
+
+fn foo() { /* body */ }
+
+// package::main
+
+fn main() { foo(); }

@@ -1,0 +1,7 @@
+// package::bar
+
+fn foo() {}
+
+// package::main
+
+fn main() { foo(); }

@@ -1,0 +1,7 @@
+// lighting
+
+fn lighting() {}
+
+// package::main
+
+fn main() { lighting(); }

@@ -1,0 +1,7 @@
+// package::f
+
+fn foo() {}
+
+// package::main
+
+fn main() { foo(); foo(); }

@@ -1,0 +1,13 @@
+// package::m
+
+fn one() {}
+fn two() { three(); }
+
+// package::n
+
+fn three() {}
+
+// package::main
+
+fn a() { one(); }
+fn b() {}

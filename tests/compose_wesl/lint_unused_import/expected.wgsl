@@ -1,0 +1,7 @@
+// package::m
+
+const a = 1;
+
+// package::main
+
+const x = a;

@@ -1,0 +1,291 @@
+//! Every module of the shader library, by itself: valid in both languages, the same in both, and documented.
+
+mod emits;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write as _;
+use std::path::{Component, Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use lamplight::source::{Embedded, Files as _};
+use libtest_mimic::{Failed, Trial};
+use naga::front::{glsl, wgsl};
+use naga::{Handle, Module, ShaderStage, Type, TypeInner};
+
+/// What one trial checks of a module, given its path without extension, such as `lighting/spot`.
+type Check = fn(&str) -> Result<(), Failed>;
+
+const CHECKS: &[(&str, Check)] = &[
+    ("wesl", wesl_is_valid),
+    ("glsl", glsl_is_valid),
+    ("glslang_450", |module| glslang(module, &DIALECTS[0])),
+    ("glslang_330", |module| glslang(module, &DIALECTS[1])),
+    ("glslang_300_es", |module| glslang(module, &DIALECTS[2])),
+    ("glslang_310_es", |module| glslang(module, &DIALECTS[3])),
+    ("targets", every_target_writes),
+    ("twins", twins_agree),
+    ("doc", functions_are_documented),
+];
+
+/// A version of GLSL: what comes before the module, what declares an output, and glslang's options.
+struct Dialect {
+    head: &'static str,
+    output: &'static str,
+    options: &'static [&'static str],
+}
+
+const DIALECTS: [Dialect; 4] = [
+    Dialect { head: "#version 450\n", output: "layout(location = 0) out vec4 colour;\n", options: &["-V", "-o", "/dev/null"] },
+    Dialect { head: "#version 330 core\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\n", output: "out vec4 colour;\n", options: &[] },
+    Dialect { head: ES_300, output: "out vec4 colour;\n", options: &[] },
+    Dialect { head: ES_310, output: "out vec4 colour;\n", options: &[] },
+];
+
+const ES_300: &str = "#version 300 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\nprecision highp float;\nprecision highp int;\n";
+const ES_310: &str = "#version 310 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\nprecision highp float;\nprecision highp int;\n";
+
+/// The parts every function's documentation has, each at the start of a line.
+const DOC_PARTS: [&str; 5] = ["Parameters: ", "Returns: ", "Source: ", "Edges: ", "Error model: "];
+
+/// One trial for each module and check, and those about the library as a whole.
+pub fn trials() -> Vec<Trial> {
+    let mut trials = vec![Trial::test("shaderlib::pairs", every_module_has_its_twin), Trial::test("shaderlib::names", names_are_unique)];
+    for module in modules() {
+        for (name, check) in CHECKS {
+            let module = module.clone();
+            let title = format!("shaderlib::{}::{name}", module.replace('/', "::"));
+            trials.push(Trial::test(title, move || check(&module)));
+        }
+    }
+    trials
+}
+
+fn modules() -> Vec<String> {
+    stems("wesl")
+}
+
+fn stems(extension: &str) -> Vec<String> {
+    let files = Embedded.list(&[extension]);
+    files.iter().filter(|path| !path.starts_with("programs/")).filter_map(|path| Some(path.rsplit_once('.')?.0.to_owned())).collect()
+}
+
+fn every_module_has_its_twin() -> Result<(), Failed> {
+    let mut glsl = stems("glsl");
+    // Spells textures for both kinds of GLSL; WGSL has one kind.
+    glsl.retain(|path| path != "filter/sampling");
+    same("modules", &modules(), &glsl)
+}
+
+/// GLSL has no modules: no two of the library may declare the same name.
+fn names_are_unique() -> Result<(), Failed> {
+    let mut owners = BTreeMap::new();
+    for module in modules() {
+        for function in functions(&read(&format!("{module}.wesl"))) {
+            if let Some(other) = owners.insert(function.name.clone(), module.clone()) {
+                return Err(format!("`{}` is in `{other}` and in `{module}`", function.name).into());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn wesl_is_valid(module: &str) -> Result<(), Failed> {
+    parse_wesl(module).map(|_| ())
+}
+
+fn glsl_is_valid(module: &str) -> Result<(), Failed> {
+    parse_glsl(module).map(|_| ())
+}
+
+fn every_target_writes(module: &str) -> Result<(), Failed> {
+    let functions: Vec<_> = functions(&read(&format!("{module}.wesl"))).into_iter().map(|f| (f.name, f.types)).collect();
+    let text = joined_wesl(module, &mut BTreeSet::new()) + &emits::entry(&functions);
+    for (version, text) in emits::emits(&text)? {
+        run_glslang(&text, &[]).map_err(|error| format!("{version:?}: {}\n{text}", error.message().unwrap_or_default()))?;
+    }
+    Ok(())
+}
+
+fn twins_agree(module: &str) -> Result<(), Failed> {
+    same("signatures", &signatures(&parse_wesl(module)?), &signatures(&parse_glsl(module)?))?;
+    let summaries = |path: String| functions(&read(&path)).into_iter().map(|f| (f.name, f.doc.first().cloned())).collect::<Vec<_>>();
+    same("summaries", &summaries(format!("{module}.wesl")), &summaries(format!("{module}.glsl")))
+}
+
+fn functions_are_documented(module: &str) -> Result<(), Failed> {
+    let text = read(&format!("{module}.wesl"));
+    if !text.starts_with("//! ") {
+        return Err("the module has no documentation".into());
+    }
+    let faults: Vec<String> = functions(&text).iter().flat_map(faults).collect();
+    if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
+}
+
+fn faults(function: &Function) -> Vec<String> {
+    let part = |name: &str| function.doc.iter().find_map(|line| line.strip_prefix(name)).filter(|text| !text.is_empty());
+    let missing = DOC_PARTS.iter().filter(|name| part(name).is_none()).map(|name| format!("`{}` lacks `{name}`", function.name));
+    let described = part(DOC_PARTS[0]).unwrap_or_default();
+    let unknown = function.parameters.iter().filter(|name| !described.contains(&format!("`{name}`")));
+    missing.chain(unknown.map(|name| format!("`{}` does not describe `{name}`", function.name))).collect()
+}
+
+/// A function as its text has it.
+struct Function {
+    name: String,
+    parameters: Vec<String>,
+    types: Vec<String>,
+    doc: Vec<String>,
+}
+
+/// The functions of a module in either language; the names of parameters in WESL only.
+fn functions(text: &str) -> Vec<Function> {
+    let mut found = Vec::new();
+    let mut doc = Vec::new();
+    for (offset, line) in lines(text) {
+        if let Some(comment) = line.strip_prefix("///") {
+            doc.push(comment.trim().to_owned());
+            continue;
+        }
+        if let Some((head, _)) = line.split_once('(').filter(|_| is_declaration(line)) {
+            let name = head.rsplit(' ').next().unwrap_or(head).to_owned();
+            let (parameters, types) = parameters(&text[offset..]);
+            found.push(Function { name, parameters, types, doc: std::mem::take(&mut doc) });
+        }
+        doc.clear();
+    }
+    found
+}
+
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    text.split_inclusive('\n').scan(0, |offset, line| {
+        let start = *offset;
+        *offset += line.len();
+        Some((start, line.trim_end()))
+    })
+}
+
+fn is_declaration(line: &str) -> bool {
+    line.starts_with(|first: char| first.is_ascii_alphabetic()) && line.ends_with(['{', '('])
+}
+
+/// Names and types. A comma is followed by a parameter's name and colon, or belongs to a type.
+fn parameters(declaration: &str) -> (Vec<String>, Vec<String>) {
+    let list = declaration.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map_or("", |(list, _)| list);
+    let mut found: Vec<(String, String)> = Vec::new();
+    for part in list.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        match (part.split_once(": "), found.last_mut()) {
+            (Some((name, ty)), _) => found.push((name.to_owned(), ty.to_owned())),
+            (None, Some((_, ty))) => *ty = format!("{ty}, {part}"),
+            (None, None) => {}
+        }
+    }
+    found.into_iter().unzip()
+}
+
+fn read(path: &str) -> String {
+    Embedded.read(path).expect("the embedded library is readable").unwrap_or_else(|| panic!("no `{path}` in the library"))
+}
+
+/// The module after those it imports, without the imports: names are unique in the library.
+fn joined_wesl(module: &str, seen: &mut BTreeSet<String>) -> String {
+    if !seen.insert(module.to_owned()) {
+        return String::new();
+    }
+    let mut text = String::new();
+    for line in read(&format!("{module}.wesl")).lines() {
+        match line.strip_prefix("import package::") {
+            Some(import) => text += &joined_wesl(&import.rsplit_once("::").expect("an item").0.replace("::", "/"), seen),
+            None => text = text + line + "\n",
+        }
+    }
+    text
+}
+
+/// The module with its includes in their places.
+fn joined_glsl(path: &Path, seen: &mut BTreeSet<PathBuf>) -> String {
+    if !seen.insert(path.to_owned()) {
+        return String::new();
+    }
+    let mut text = String::new();
+    for line in read(path.to_str().expect("UTF-8")).lines() {
+        match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
+            Some(include) => text += &joined_glsl(&normal(&path.with_file_name(include)), seen),
+            None => text = text + line + "\n",
+        }
+    }
+    text
+}
+
+fn normal(path: &Path) -> PathBuf {
+    path.components().fold(PathBuf::new(), |mut done, component| {
+        match component {
+            Component::ParentDir => drop(done.pop()),
+            other => done.push(other),
+        }
+        done
+    })
+}
+
+fn fragment(module: &str, dialect: &Dialect) -> String {
+    let text = joined_glsl(Path::new(&format!("{module}.glsl")), &mut BTreeSet::new());
+    format!("{}{text}{}void main() {{ colour = vec4(1.0); }}\n", dialect.head, dialect.output)
+}
+
+fn parse_wesl(module: &str) -> Result<Module, Failed> {
+    let text = joined_wesl(module, &mut BTreeSet::new());
+    validated(wgsl::parse_str(&text).map_err(|error| error.emit_to_string(&text))?)
+}
+
+fn parse_glsl(module: &str) -> Result<Module, Failed> {
+    let text = fragment(module, &DIALECTS[0]);
+    let parsed = glsl::Frontend::default().parse(&glsl::Options::from(ShaderStage::Fragment), &text);
+    validated(parsed.map_err(|errors| errors.emit_to_string(&text))?)
+}
+
+fn validated(module: Module) -> Result<Module, Failed> {
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).map_err(|error| format!("{error:?}"))?;
+    Ok(module)
+}
+
+fn glslang(module: &str, dialect: &Dialect) -> Result<(), Failed> {
+    run_glslang(&fragment(module, dialect), dialect.options)
+}
+
+fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {
+    let mut command = Command::new("glslangValidator");
+    command.args(["--stdin", "-S", "frag"]).args(options).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let started = command.spawn();
+    let mut child = started.map_err(|error| format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`"))?;
+    child.stdin.take().expect("piped").write_all(text.as_bytes())?;
+    let output = child.wait_with_output()?;
+    if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&output.stdout).into_owned().into()) }
+}
+
+/// Each function's parameters and result, by its name.
+fn signatures(module: &Module) -> BTreeMap<String, String> {
+    let functions = module.functions.iter().map(|(_, function)| {
+        let name = |name: &Option<String>| name.clone().unwrap_or_default();
+        let parameters: Vec<String> =
+            function.arguments.iter().map(|argument| format!("{}: {}", name(&argument.name), spelled(module, argument.ty))).collect();
+        let result = function.result.as_ref().map_or(String::new(), |result| spelled(module, result.ty));
+        (name(&function.name), format!("({}) -> {result}", parameters.join(", ")))
+    });
+    functions.filter(|(name, _)| name != "main").collect()
+}
+
+fn spelled(module: &Module, handle: Handle<Type>) -> String {
+    let Type { name, inner } = &module.types[handle];
+    match inner {
+        TypeInner::Struct { members, .. } => {
+            let members = members.iter().map(|member| format!("{:?}@{}: {}", member.name, member.offset, spelled(module, member.ty)));
+            format!("{name:?} {{ {} }}", members.collect::<Vec<_>>().join(", "))
+        }
+        TypeInner::Array { base, size, .. } => format!("array<{}, {size:?}>", spelled(module, *base)),
+        other => format!("{other:?}"),
+    }
+}
+
+fn same<T: PartialEq + std::fmt::Debug>(what: &str, wesl: &T, glsl: &T) -> Result<(), Failed> {
+    if wesl == glsl { Ok(()) } else { Err(format!("{what} differ\nWESL: {wesl:#?}\nGLSL: {glsl:#?}").into()) }
+}
