@@ -1,1 +1,35 @@
-//! CPU executor.
+//! The CPU executor: runs functions of a naga module, in `f64`, in `f32`, and in value plus error.
+//!
+//! [`Program::new`] lowers a module once; [`Machine::new`] gives it memory; [`Machine::call`] runs
+//! a function on scalars, [`Machine::quad`] on the four fragments derivatives need. Arguments and
+//! results are flattened to scalars in the order of declaration.
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use lamplight::eval::{Machine, Program};
+//! let module = naga::front::wgsl::parse_str("fn half(x: f32) -> f32 { return 0.5 * x; }")?;
+//! let info = naga::valid::Validator::new(Default::default(), Default::default()).validate(&module)?;
+//! let program = Program::new(&module, &info)?;
+//! let half = program.function("half").ok_or("no such function")?;
+//! let mut machine = Machine::<f64>::new(&program)?;
+//! assert_eq!(machine.call(half, &[3.0])?, &[1.5]);
+//! # Ok(())
+//! # }
+//! ```
+
+mod code;
+mod error;
+mod layout;
+mod lower;
+mod machine;
+mod number;
+mod program;
+mod resources;
+
+pub use code::Compare;
+pub use error::{Error, Finding, Kind as FindingKind};
+pub use layout::{Kind, MAX_SLOTS};
+pub use machine::{LOOP_LIMIT, Machine};
+pub use number::{Bounded, Number};
+pub use program::{Branch, Function, FunctionId, Point, Program};
+pub use resources::{Address, Filter, Level, Resources, Sampler, Shape, Texture};

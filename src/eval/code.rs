@@ -1,0 +1,454 @@
+//! The register program a module is lowered to: flat instructions over slots of one memory.
+//!
+//! WGSL has no recursion, so every function's values have fixed places in that memory: calls
+//! copy arguments to them, nothing is allocated, and a pointer is the number of a slot.
+
+/// Number of a slot of the memory.
+pub type Slot = u32;
+
+/// Float functions of one argument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unary {
+    Negate,
+    Abs,
+    Saturate,
+    Cos,
+    Cosh,
+    Sin,
+    Sinh,
+    Tan,
+    Tanh,
+    Acos,
+    Asin,
+    Atan,
+    Asinh,
+    Acosh,
+    Atanh,
+    Radians,
+    Degrees,
+    Ceil,
+    Floor,
+    Round,
+    Fract,
+    Trunc,
+    Exp,
+    Exp2,
+    Log,
+    Log2,
+    Sign,
+    Sqrt,
+    InverseSqrt,
+    Quantize,
+}
+
+/// Float functions of two arguments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Binary {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Remainder,
+    Min,
+    Max,
+    Atan2,
+    Pow,
+    Step,
+}
+
+/// Float functions of three arguments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ternary {
+    Clamp,
+    Fma,
+    Mix,
+    SmoothStep,
+}
+
+/// Comparisons of floats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Compare {
+    Equal,
+    NotEqual,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+}
+
+/// Functions of one 32-bit word: integers and booleans (0 or 1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Word1 {
+    Negate,
+    Not,
+    LogicalNot,
+    Abs,
+    Sign,
+    TrailingZeros,
+    LeadingZeros,
+    CountOnes,
+    Reverse,
+    FirstTrailing,
+    FirstLeadingSigned,
+    FirstLeading,
+    Truth,
+}
+
+/// Functions of two words. `S` and `U` forms read them as signed and unsigned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Word2 {
+    Add,
+    Subtract,
+    Multiply,
+    DivideS,
+    DivideU,
+    RemainderS,
+    RemainderU,
+    And,
+    Or,
+    Xor,
+    ShiftLeft,
+    ShiftRightS,
+    ShiftRightU,
+    Equal,
+    NotEqual,
+    LessS,
+    LessU,
+    LessEqualS,
+    LessEqualU,
+    MinS,
+    MinU,
+    MaxS,
+    MaxU,
+    DotBytesS,
+    DotBytesU,
+}
+
+/// Changes between numbers and words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Convert {
+    FloatFromS,
+    FloatFromU,
+    SFromFloat,
+    UFromFloat,
+    BoolFromFloat,
+    FloatFromBits,
+    BitsFromFloat,
+    IsNan,
+    IsInf,
+}
+
+/// Functions of whole vectors and matrices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Geometry {
+    Dot,
+    DotWord,
+    Cross,
+    Distance,
+    Length,
+    Normalize,
+    FaceForward,
+    Reflect,
+    Refract,
+    Determinant,
+    Inverse,
+    Modf,
+    Frexp,
+    Ldexp,
+}
+
+/// Functions between vectors and packed words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Packing {
+    Pack4Snorm8,
+    Pack4Unorm8,
+    Pack2Snorm16,
+    Pack2Unorm16,
+    Pack2Half,
+    Pack4,
+    PackClampS,
+    PackClampU,
+    Unpack4Snorm8,
+    Unpack4Unorm8,
+    Unpack2Snorm16,
+    Unpack2Unorm16,
+    Unpack2Half,
+    Unpack4S,
+    Unpack4U,
+}
+
+/// Products of matrices, column by column in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Product {
+    MatrixVector,
+    VectorMatrix,
+    MatrixMatrix,
+    Outer,
+}
+
+/// An operand: its first slot, and 0 if all components share that slot, else 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Operand {
+    pub slot: Slot,
+    pub stride: u32,
+}
+
+impl Operand {
+    /// The slot of component `index`.
+    #[inline(always)]
+    pub fn at(self, index: u32) -> usize {
+        (self.slot + index * self.stride) as usize
+    }
+}
+
+/// One step of the program. `n` counts components; results never overlap operands.
+#[derive(Debug, Clone, Copy)]
+pub enum Instruction {
+    Copy {
+        to: Slot,
+        from: Slot,
+        n: u32,
+    },
+    Fill {
+        to: Slot,
+        from: Slot,
+        n: u32,
+    },
+    Zero {
+        to: Slot,
+        n: u32,
+    },
+    Float1 {
+        op: Unary,
+        n: u8,
+        to: Slot,
+        a: Operand,
+    },
+    Float2 {
+        op: Binary,
+        n: u8,
+        to: Slot,
+        a: Operand,
+        b: Operand,
+    },
+    Float3 {
+        op: Ternary,
+        n: u8,
+        to: Slot,
+        a: Operand,
+        b: Operand,
+        c: Operand,
+    },
+    Compare {
+        op: Compare,
+        n: u8,
+        to: Slot,
+        a: Operand,
+        b: Operand,
+    },
+    Word1 {
+        op: Word1,
+        n: u8,
+        to: Slot,
+        a: Operand,
+    },
+    Word2 {
+        op: Word2,
+        n: u8,
+        to: Slot,
+        a: Operand,
+        b: Operand,
+    },
+    ExtractBits {
+        signed: bool,
+        n: u8,
+        to: Slot,
+        from: Operand,
+        offset: Slot,
+        count: Slot,
+    },
+    InsertBits {
+        n: u8,
+        to: Slot,
+        from: Operand,
+        new: Operand,
+        offset: Slot,
+        count: Slot,
+    },
+    Convert {
+        op: Convert,
+        n: u8,
+        to: Slot,
+        a: Operand,
+    },
+    Pack {
+        op: Packing,
+        to: Slot,
+        from: Slot,
+    },
+    Select {
+        n: u8,
+        to: Slot,
+        condition: Operand,
+        accept: Operand,
+        reject: Operand,
+    },
+    Reduce {
+        all: bool,
+        n: u8,
+        to: Slot,
+        a: Slot,
+    },
+    Geometry {
+        op: Geometry,
+        n: u8,
+        to: Slot,
+        a: Slot,
+        b: Slot,
+        c: Slot,
+    },
+    Product {
+        op: Product,
+        inner: u8,
+        rows: u8,
+        columns: u8,
+        to: Slot,
+        a: Slot,
+        b: Slot,
+    },
+    Transpose {
+        rows: u8,
+        columns: u8,
+        to: Slot,
+        from: Slot,
+    },
+    /// `to = address(base) + min(index, count - 1) * size`: WGSL's clamped access.
+    Index {
+        to: Slot,
+        base: Slot,
+        index: Slot,
+        size: u32,
+        count: Slot,
+    },
+    /// A component of a value by index, clamped.
+    Pick {
+        to: Slot,
+        from: Slot,
+        index: Slot,
+        size: u32,
+        count: u32,
+    },
+    Load {
+        to: Slot,
+        pointer: Slot,
+        offset: u32,
+        n: u32,
+    },
+    Store {
+        pointer: Slot,
+        offset: u32,
+        from: Slot,
+        n: u32,
+    },
+    Jump {
+        to: u32,
+    },
+    JumpUnless {
+        condition: Slot,
+        to: u32,
+    },
+    Switch {
+        selector: Slot,
+        table: u32,
+    },
+    Call {
+        to: u32,
+    },
+    Return,
+    /// A loop begins another trip.
+    Trip,
+    /// A block is reached.
+    Mark {
+        point: u32,
+    },
+    Kill,
+    Derivative {
+        axis: Axis,
+        coarse: bool,
+        n: u8,
+        to: Slot,
+        a: Operand,
+    },
+    /// An access to a texture, by its index in `Program::images`.
+    Image {
+        access: u32,
+    },
+}
+
+impl Instruction {
+    /// Copies a value, each component into its own slot.
+    pub fn spread(to: Slot, from: Operand, n: u32) -> Self {
+        match from.stride {
+            0 => Self::Fill { to, from: from.slot, n },
+            _ => Self::Copy { to, from: from.slot, n },
+        }
+    }
+}
+
+/// Direction of a derivative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    X,
+    Y,
+    Width,
+}
+
+/// Where a `switch` goes.
+#[derive(Debug, Clone, Default)]
+pub struct Table {
+    pub cases: Vec<(u32, u32)>,
+    pub default: u32,
+}
+
+/// How a sample chooses its level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Level {
+    Auto,
+    Zero,
+    Exact(Slot),
+    Bias(Slot),
+    Gradient(Slot, Slot),
+}
+
+/// What is asked of a texture.
+#[derive(Debug, Clone, Copy)]
+pub enum Ask {
+    Sample { sampler: Slot, gather: Option<u8>, level: Level, offset: Option<Slot>, reference: Option<Slot>, clamp_to_edge: bool },
+    Load { level: Option<Slot> },
+    Size { level: Option<Slot> },
+    Levels,
+    Layers,
+    Samples,
+}
+
+/// An access to a texture: operands are dense vectors.
+#[derive(Debug, Clone, Copy)]
+pub struct Access {
+    pub image: Slot,
+    pub coordinate: Slot,
+    pub dimensions: u8,
+    pub layer: Option<Slot>,
+    pub ask: Ask,
+    pub to: Slot,
+    /// Components written; results are words if `words`.
+    pub n: u8,
+    pub words: bool,
+    pub depth: bool,
+}
+
+impl Access {
+    /// Whether the level follows from how the coordinates differ between neighbours.
+    pub fn implicit(&self) -> bool {
+        matches!(self.ask, Ask::Sample { level: Level::Auto | Level::Bias(_), gather: None, .. })
+    }
+}

@@ -1,0 +1,367 @@
+//! From naga's module to a register program, once per module.
+
+mod expression;
+mod image;
+mod math;
+mod operator;
+mod place;
+mod statement;
+
+use super::code::{Instruction, Operand, Slot};
+use super::error::Error;
+use super::layout::{Kind, Layout, MAX_SLOTS};
+use super::program::{Constant, Function, Global, Parameter, Program, Role};
+use naga::valid::{FunctionInfo, ModuleInfo};
+use naga::{AddressSpace, Arena, ArraySize, Expression, Handle, Module, Span, Type, TypeInner};
+use std::collections::BTreeMap;
+
+/// Where an expression's value is.
+#[derive(Debug, Clone, Copy)]
+enum Loc {
+    /// In slots; constant ones are never written by functions.
+    Value { operand: Operand, constant: bool },
+    /// A pointer known now.
+    Place(Slot),
+    /// A pointer in a slot, plus an offset.
+    Through { slot: Slot, offset: u32 },
+}
+
+/// The program while it grows.
+struct Build<'m> {
+    module: &'m Module,
+    layout: Layout<'m>,
+    program: Program,
+    /// Instructions that compute constants.
+    start: Vec<Instruction>,
+    literals: BTreeMap<(u8, u64), Slot>,
+    globals: Vec<Result<Loc, Error>>,
+    constants: Vec<Option<Loc>>,
+}
+
+/// One body of expressions while it is lowered.
+struct Body<'b, 'm> {
+    build: &'b mut Build<'m>,
+    expressions: &'m Arena<Expression>,
+    types: Vec<&'m TypeInner>,
+    locs: Vec<Option<Loc>>,
+    /// First slot of each local variable.
+    locals: Vec<Slot>,
+    arguments: Vec<Slot>,
+    function: u32,
+    span: Span,
+    /// Whether instructions go to the constants' part.
+    constant: bool,
+    breaks: Vec<Vec<usize>>,
+    continues: Vec<Vec<usize>>,
+    depth: u32,
+    point: Option<u32>,
+}
+
+/// Lowers every function of the module.
+pub(super) fn lower(module: &Module, info: &ModuleInfo) -> Result<Program, Error> {
+    let mut build = Build::new(module);
+    build.constants(info)?;
+    build.globals();
+    for (handle, function) in module.functions.iter() {
+        build.function(function.name.clone().unwrap_or_default(), function, &info[handle]);
+    }
+    for (index, entry) in module.entry_points.iter().enumerate() {
+        build.function(entry.name.clone(), &entry.function, info.get_entry_point(index));
+    }
+    build.finish()
+}
+
+impl<'m> Build<'m> {
+    fn new(module: &'m Module) -> Self {
+        let program = Program {
+            code: Vec::new(),
+            spans: Vec::new(),
+            slots: 0,
+            pool: Vec::new(),
+            start: 0,
+            functions: Vec::new(),
+            tables: Vec::new(),
+            images: Vec::new(),
+            points: Vec::new(),
+            globals: Vec::new(),
+            types: module.types.clone(),
+        };
+        let layout = Layout::new(&module.types);
+        Self { module, layout, program, start: Vec::new(), literals: BTreeMap::new(), globals: Vec::new(), constants: Vec::new() }
+    }
+
+    /// Fresh slots, all zero before anything runs.
+    fn alloc(&mut self, slots: u32) -> Result<Slot, Error> {
+        let first = self.program.slots;
+        match first.checked_add(slots) {
+            Some(end) if end <= MAX_SLOTS => {
+                self.program.slots = end;
+                Ok(first)
+            }
+            _ => Err(Error::too_large(format!("the values of the module take more than {MAX_SLOTS} scalars"))),
+        }
+    }
+
+    /// The slot that holds a constant, the same for the same bits.
+    fn literal(&mut self, value: Constant) -> Result<Slot, Error> {
+        let key = match value {
+            Constant::Word(word) => (0, u64::from(word)),
+            Constant::Float(float) => (1, float.to_bits()),
+        };
+        if let Some(slot) = self.literals.get(&key) {
+            return Ok(*slot);
+        }
+        let slot = self.alloc(1)?;
+        self.program.pool.push((slot, value));
+        self.literals.insert(key, slot);
+        Ok(slot)
+    }
+
+    fn word(&mut self, word: u32) -> Result<Slot, Error> {
+        self.literal(Constant::Word(word))
+    }
+
+    /// Lowers module-scope constants and overrides to code that runs once per machine. One that
+    /// is not supported is missing, and an error where it is used.
+    fn constants(&mut self, info: &'m ModuleInfo) -> Result<(), Error> {
+        let expressions = &self.module.global_expressions;
+        let types = expressions.iter().map(|(handle, _)| info[handle].inner_with(&self.module.types)).collect();
+        let mut body = Body::new(self, expressions, types);
+        body.constant = true;
+        for (handle, _) in expressions.iter() {
+            match body.evaluate(handle) {
+                Err(error) if error.code == crate::diagnostic::codes::EVAL_TOO_LARGE => return Err(error),
+                _ => {}
+            }
+        }
+        self.constants = body.locs;
+        Ok(())
+    }
+
+    fn globals(&mut self) {
+        for (_, variable) in self.module.global_variables.iter() {
+            let loc = self.global(variable).map_err(|error| error.or_at(Span::UNDEFINED));
+            self.globals.push(loc);
+        }
+    }
+
+    fn global(&mut self, variable: &naga::GlobalVariable) -> Result<Loc, Error> {
+        let slots = self.layout.size(variable.ty)?;
+        let index = self.program.globals.len() as u32;
+        let inner = &self.module.types[variable.ty].inner;
+        let (role, loc) = match (variable.space, inner) {
+            (AddressSpace::Private, _) => self.private(variable, slots)?,
+            (AddressSpace::Handle, TypeInner::Sampler { .. }) => (Role::Sampler, Loc::dense(self.word(index)?, true)),
+            (AddressSpace::Handle, _) => (Role::Image, Loc::dense(self.word(index)?, true)),
+            (AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Immediate, _) => self.buffer(inner, slots)?,
+            (space, _) => return Err(Error::unsupported(format!("variables in the address space `{space:?}`"))),
+        };
+        let slot = if let Loc::Place(slot) = loc { slot } else { 0 };
+        let binding = variable.binding.map(|binding| (binding.group, binding.binding));
+        let bytes = inner.try_size(self.module.to_ctx()).unwrap_or(0);
+        self.program.globals.push(Global {
+            name: variable.name.clone().unwrap_or_default(),
+            binding,
+            ty: variable.ty,
+            slot,
+            slots,
+            bytes,
+            role,
+        });
+        Ok(loc)
+    }
+
+    fn private(&mut self, variable: &naga::GlobalVariable, slots: u32) -> Result<(Role, Loc), Error> {
+        let init = match variable.init.map(|init| self.constants.get(init.index()).copied().flatten()) {
+            Some(Some(Loc::Value { operand, .. })) if operand.stride == 1 || slots == 1 => Some(operand.slot),
+            Some(_) => return Err(Error::unsupported("this initial value of a variable")),
+            None => None,
+        };
+        Ok((Role::Private(init), Loc::Place(self.alloc(slots)?)))
+    }
+
+    fn buffer(&mut self, inner: &TypeInner, slots: u32) -> Result<(Role, Loc), Error> {
+        let last = match *inner {
+            TypeInner::Struct { ref members, .. } => members.last().map_or(inner, |member| &self.module.types[member.ty].inner),
+            _ => inner,
+        };
+        let TypeInner::Array { base, size: ArraySize::Dynamic, .. } = *last else {
+            return Ok((Role::Buffer, Loc::Place(self.alloc(slots)?)));
+        };
+        let (address, count, element) = (self.alloc(1)?, self.alloc(1)?, self.layout.size(base)?);
+        Ok((Role::Runtime { address, count, element }, Loc::Through { slot: address, offset: 0 }))
+    }
+
+    /// Lowers a function; what goes wrong is kept with it.
+    fn function(&mut self, name: String, function: &'m naga::Function, info: &'m FunctionInfo) {
+        let entry = Function {
+            name,
+            arguments: Vec::new(),
+            result: Vec::new(),
+            returned: 0,
+            parameters: Vec::new(),
+            result_slot: 0,
+            entry: self.program.code.len() as u32,
+            buffers: Vec::new(),
+            error: None,
+        };
+        let (code, points) = (self.program.code.len(), self.program.points.len());
+        self.program.functions.push(entry);
+        if let Err(error) = self.lower_function(function, info) {
+            self.program.code.truncate(code);
+            self.program.spans.truncate(code);
+            self.program.points.truncate(points);
+            if let Some(entry) = self.program.functions.last_mut() {
+                entry.error = Some(error);
+            }
+        }
+    }
+
+    fn lower_function(&mut self, function: &'m naga::Function, info: &'m FunctionInfo) -> Result<(), Error> {
+        let (mut arguments, mut result) = (Vec::new(), Vec::new());
+        if let Some(returned) = &function.result {
+            self.layout.kinds(returned.ty, &mut result)?;
+        }
+        let returned = result.len() as u32;
+        let mut parameters = Vec::new();
+        for argument in &function.arguments {
+            let pointee = pointee(&self.module.types[argument.ty].inner);
+            let mut kinds = Vec::new();
+            self.layout.kinds(pointee.unwrap_or(argument.ty), &mut kinds)?;
+            let (slots, n) = (self.layout.size(argument.ty)?, kinds.len() as u32);
+            let behind = pointee.map(|_| result.len() as u32);
+            parameters.push(Parameter { slot: self.alloc(slots)?, n, pointee: behind });
+            result.extend(kinds.iter().filter(|_| pointee.is_some()));
+            arguments.extend(kinds);
+        }
+        let result_slot = self.alloc(result.len() as u32)?;
+        parameters.iter_mut().for_each(|parameter| parameter.pointee = parameter.pointee.map(|behind| result_slot + behind));
+        let slots = parameters.iter().map(|parameter| parameter.slot).collect();
+        let buffers = self.buffers(info);
+        let index = self.program.functions.len() - 1;
+        let entry = &mut self.program.functions[index];
+        *entry = Function { arguments, result, returned, parameters, result_slot, buffers, ..entry.clone() };
+        let types = function.expressions.iter().map(|(handle, _)| info[handle].ty.inner_with(&self.module.types)).collect();
+        let mut body = Body::new(self, &function.expressions, types);
+        (body.function, body.arguments) = (index as u32, slots);
+        body.whole(function)
+    }
+
+    /// The buffers a function and its callees use, by index.
+    fn buffers(&self, info: &FunctionInfo) -> Vec<u32> {
+        let used = self.module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());
+        let bindings: Vec<_> = used.filter_map(|(_, variable)| variable.binding.map(|binding| (binding.group, binding.binding))).collect();
+        let globals = self.program.globals.iter().enumerate();
+        let wanted = globals.filter(|(_, global)| global.binding.is_some_and(|binding| bindings.contains(&binding)));
+        wanted.filter(|(_, global)| matches!(global.role, Role::Buffer | Role::Runtime { .. })).map(|(index, _)| index as u32).collect()
+    }
+
+    fn finish(mut self) -> Result<Program, Error> {
+        let start = self.program.code.len() as u32;
+        self.program.start = start;
+        self.program.code.append(&mut self.start);
+        self.program.code.push(Instruction::Return);
+        self.program.spans.resize(self.program.code.len(), Span::UNDEFINED);
+        Ok(self.program)
+    }
+}
+
+/// What a pointer parameter points to.
+fn pointee(inner: &TypeInner) -> Option<Handle<Type>> {
+    match *inner {
+        TypeInner::Pointer { base, .. } => Some(base),
+        _ => None,
+    }
+}
+
+impl Loc {
+    fn dense(slot: Slot, constant: bool) -> Self {
+        Self::Value { operand: Operand { slot, stride: 1 }, constant }
+    }
+}
+
+impl<'b, 'm> Body<'b, 'm> {
+    fn new(build: &'b mut Build<'m>, expressions: &'m Arena<Expression>, types: Vec<&'m TypeInner>) -> Self {
+        let locs = vec![None; expressions.len()];
+        Self {
+            build,
+            expressions,
+            types,
+            locs,
+            locals: Vec::new(),
+            arguments: Vec::new(),
+            function: 0,
+            span: Span::UNDEFINED,
+            constant: false,
+            breaks: Vec::new(),
+            continues: Vec::new(),
+            depth: 0,
+            point: None,
+        }
+    }
+
+    fn emit(&mut self, instruction: Instruction) {
+        if self.constant {
+            self.build.start.push(instruction);
+        } else {
+            self.build.program.code.push(instruction);
+            self.build.program.spans.push(self.span);
+        }
+    }
+
+    /// The type of an expression.
+    fn inner(&self, handle: Handle<Expression>) -> &'m TypeInner {
+        self.types[handle.index()]
+    }
+
+    fn slots(&self, handle: Handle<Expression>) -> Result<u32, Error> {
+        self.build.layout.slots(self.inner(handle))
+    }
+
+    /// Kind of the scalars of an expression.
+    fn kind(&self, handle: Handle<Expression>) -> Result<Kind, Error> {
+        let scalar = self.inner(handle).scalar();
+        scalar.and_then(super::layout::kind).ok_or_else(|| Error::unsupported("an operation on this type"))
+    }
+
+    /// Slots of one value: components are spread over them, or share one.
+    fn operand(&mut self, handle: Handle<Expression>) -> Result<Operand, Error> {
+        match self.loc(handle)? {
+            Loc::Value { operand, .. } => Ok(operand),
+            pointer => Ok(Operand { slot: self.address(pointer)?, stride: 1 }),
+        }
+    }
+
+    /// As [`Self::operand`], for an operation on `n` components: a scalar is shared by all.
+    fn spread(&mut self, handle: Handle<Expression>, n: u32) -> Result<Operand, Error> {
+        let operand = self.operand(handle)?;
+        let single = n > 1 && matches!(self.inner(handle), TypeInner::Scalar(_));
+        Ok(if single { Operand { stride: 0, ..operand } } else { operand })
+    }
+
+    /// The first of the slots of a value, each component in its own.
+    fn dense(&mut self, handle: Handle<Expression>) -> Result<Slot, Error> {
+        let (operand, n) = (self.operand(handle)?, self.slots(handle)?);
+        if operand.stride == 1 || n == 1 {
+            return Ok(operand.slot);
+        }
+        let to = self.build.alloc(n)?;
+        self.emit(Instruction::Fill { to, from: operand.slot, n });
+        Ok(to)
+    }
+
+    /// A slot that holds the address.
+    fn address(&mut self, pointer: Loc) -> Result<Slot, Error> {
+        match pointer {
+            Loc::Value { operand, .. } => Ok(operand.slot),
+            Loc::Place(place) => self.build.word(place),
+            Loc::Through { slot, offset: 0 } => Ok(slot),
+            Loc::Through { slot, offset } => {
+                let (to, offset) = (self.build.alloc(1)?, self.build.word(offset)?);
+                let [a, b] = [slot, offset].map(|slot| Operand { slot, stride: 1 });
+                self.emit(Instruction::Word2 { op: super::code::Word2::Add, n: 1, to, a, b });
+                Ok(to)
+            }
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Filtering within one level of a texture.
+
+use super::super::number::Number;
+use super::super::resources::{Address, Filter, Level, Sampler, Shape, Texture};
+
+/// Finest step of the fraction between two texels that hardware must have, as a share.
+const SUBTEXEL: f64 = 1.0 / 256.0;
+
+/// A place in a texture: coordinates in [0, 1] on a layer, and the bound of their errors.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    shape: Shape,
+    at: [f64; 3],
+    error: [f64; 3],
+    layer: u32,
+    face: usize,
+}
+
+/// What one lookup reads.
+pub(super) struct Footprint<'t, N> {
+    pub texture: &'t Texture,
+    pub sampler: &'t Sampler,
+    pub level: usize,
+    pub filter: Filter,
+    pub point: Point,
+    pub shift: [i64; 3],
+    /// Compared with each texel before filtering: the reference is on the left.
+    pub reference: Option<N>,
+}
+
+/// A texel of the footprint with its weight.
+struct Tap {
+    weight: f64,
+    texel: [f64; 4],
+}
+
+/// An axis and its sign.
+type Signed = (usize, f64);
+
+/// Major axis, sign, and the axes and signs of s and t for each face: +x, -x, +y, -y, +z, -z.
+const FACES: [(usize, f64, Signed, Signed); 6] = [
+    (0, 1.0, (2, -1.0), (1, -1.0)),
+    (0, -1.0, (2, 1.0), (1, -1.0)),
+    (1, 1.0, (0, 1.0), (2, 1.0)),
+    (1, -1.0, (0, 1.0), (2, -1.0)),
+    (2, 1.0, (0, 1.0), (1, -1.0)),
+    (2, -1.0, (0, -1.0), (1, -1.0)),
+];
+
+/// The place a coordinate means; a direction becomes a face and a place on it.
+pub(super) fn project(shape: Shape, coordinate: [f64; 3], error: [f64; 3], layer: u32) -> Point {
+    if shape != Shape::Cube {
+        return Point { shape, at: coordinate, error, layer, face: 0 };
+    }
+    let size = coordinate.map(f64::abs);
+    let major = if size[2] >= size[0] && size[2] >= size[1] { 2 } else { usize::from(size[1] >= size[0]) };
+    let face = 2 * major + usize::from(coordinate[major] < 0.0);
+    let (_, _, s, t) = FACES[face];
+    let along = |(axis, sign): Signed| 0.5 * (sign * coordinate[axis] / size[major] + 1.0);
+    let off = |(axis, _): Signed| 0.5 * (error[axis] + size[axis] / size[major] * error[major]) / size[major];
+    Point { shape, at: [along(s), along(t), 0.0], error: [off(s), off(t), 0.0], layer, face }
+}
+
+impl Point {
+    /// How the place on the face moves when the direction moves.
+    pub fn slope(&self, direction: [f64; 3], step: [f64; 3]) -> [f64; 3] {
+        let (major, sign, s, t) = FACES[self.face];
+        let size = direction[major].abs();
+        let along = |(axis, side): Signed| 0.5 * side * (step[axis] * size - direction[axis] * step[major] * sign) / (size * size);
+        [along(s), along(t), 0.0]
+    }
+}
+
+/// The filtered value of each component, with its error.
+pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> [(f64, f64); 4] {
+    let level = &footprint.texture.levels[footprint.level];
+    let taps = match footprint.filter {
+        Filter::Linear => linear(footprint, level),
+        Filter::Nearest => nearest(footprint, level, doubt),
+    };
+    let taps: Vec<Tap> = taps.into_iter().map(|tap| footprint.compared(tap, doubt)).collect();
+    let size = size(footprint, level);
+    let slack: f64 = (0..3).filter(|axis| size[*axis] > 0.0).map(|axis| footprint.point.error[axis] * size[axis] + SUBTEXEL).sum();
+    std::array::from_fn(|i| {
+        let value: f64 = taps.iter().map(|tap| tap.weight * tap.texel[i]).sum();
+        let (low, high) =
+            taps.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), tap| (low.min(tap.texel[i]), high.max(tap.texel[i])));
+        (value, if low == high { 0.0 } else { (high - low) * slack.min(1.0) + value.abs() * f64::from(f32::EPSILON) })
+    })
+}
+
+/// One component of the four texels around: (0, 1), (1, 1), (1, 0), (0, 0).
+pub(super) fn gathered<N: Number>(footprint: &Footprint<N>, component: usize, doubt: &mut bool) -> [(f64, f64); 4] {
+    let level = &footprint.texture.levels[footprint.level];
+    let base = base(footprint, level);
+    [[0, 1], [1, 1], [1, 0], [0, 0]].map(|[x, y]| {
+        let texel = footprint.texel(level, [base[0].saturating_add(x), base[1].saturating_add(y), base[2]]);
+        (footprint.compared(Tap { weight: 1.0, texel }, doubt).texel[component], 0.0)
+    })
+}
+
+/// Sizes of the filtered directions; 0 for those there are not.
+fn size<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
+    let depth = if footprint.point.shape == Shape::D3 { level.layers } else { 0 };
+    let height = if footprint.point.shape == Shape::D1 { 0 } else { level.height };
+    [level.width, height, depth].map(f64::from)
+}
+
+/// The texel down left of the place, as linear filters count.
+fn base<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
+    let size = size(footprint, level);
+    std::array::from_fn(|i| if size[i] == 0.0 { 0 } else { (footprint.point.at[i] * size[i] - 0.5).floor() as i64 })
+}
+
+fn linear<N>(footprint: &Footprint<N>, level: &Level) -> Vec<Tap> {
+    let (size, base) = (size(footprint, level), base(footprint, level));
+    let share: [f64; 3] =
+        std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 });
+    let corners = (0..8usize).map(|corner| [corner & 1, corner >> 1 & 1, corner >> 2]);
+    let there = corners.filter(|corner| (0..3).all(|i| corner[i] == 0 || size[i] > 0.0));
+    there
+        .map(|corner| {
+            let weight = (0..3).map(|i| if corner[i] == 1 { share[i] } else { 1.0 - share[i] }).product();
+            Tap { weight, texel: footprint.texel(level, std::array::from_fn(|i| base[i].saturating_add(corner[i] as i64))) }
+        })
+        .filter(|tap: &Tap| tap.weight != 0.0)
+        .collect()
+}
+
+/// The texel of the place; in doubt if the error reaches a texel that differs.
+fn nearest<N>(footprint: &Footprint<N>, level: &Level, doubt: &mut bool) -> Vec<Tap> {
+    let size = size(footprint, level);
+    let at = |side: f64| {
+        let coordinate = |i: usize| ((footprint.point.at[i] + side * footprint.point.error[i]) * size[i]).floor() as i64;
+        footprint.texel(level, std::array::from_fn(coordinate))
+    };
+    let texel = at(0.0);
+    *doubt |= at(-1.0) != texel || at(1.0) != texel;
+    vec![Tap { weight: 1.0, texel }]
+}
+
+impl<N: Number> Footprint<'_, N> {
+    fn compared(&self, tap: Tap, doubt: &mut bool) -> Tap {
+        let (Some(reference), Some(compare)) = (self.reference, self.sampler.compare) else { return tap };
+        let pass = N::compare(compare, reference, N::from_f64(tap.texel[0]), doubt);
+        Tap { texel: [f64::from(u8::from(pass)); 4], ..tap }
+    }
+}
+
+impl<N> Footprint<'_, N> {
+    /// The texel at column and row (and slice), addressed as the sampler says.
+    fn texel(&self, level: &Level, at: [i64; 3]) -> [f64; 4] {
+        let moved: [i64; 3] = std::array::from_fn(|i| at[i].saturating_add(self.shift[i]));
+        let place = match self.point.shape {
+            Shape::Cube => self.around(level, moved),
+            Shape::D3 => [0, 1, 2].map(|i| wrap(self.sampler.address[i], moved[i], [level.width, level.height, level.layers][i])),
+            _ => {
+                let layer = i64::from(self.point.layer.min(level.layers - 1));
+                [wrap(self.sampler.address[0], moved[0], level.width), wrap(self.sampler.address[1], moved[1], level.height), layer]
+            }
+        };
+        level.texel(place).unwrap_or_default()
+    }
+
+    /// A texel of a cube; beyond the edge of its face it lies on the neighbouring one.
+    fn around(&self, level: &Level, [x, y, _]: [i64; 3]) -> [i64; 3] {
+        let side = f64::from(level.width);
+        let (major, sign, s, t) = FACES[self.point.face];
+        let mut direction = [0.0; 3];
+        direction[major] = sign;
+        direction[s.0] = s.1 * (2.0 * (x as f64 + 0.5) / side - 1.0);
+        direction[t.0] = t.1 * (2.0 * (y as f64 + 0.5) / side - 1.0);
+        let place = project(Shape::Cube, direction, [0.0; 3], 0);
+        let texel = |at: f64| ((at * side).floor() as i64).clamp(0, i64::from(level.width) - 1);
+        let cube = self.point.layer.min(level.layers / 6 - 1);
+        [texel(place.at[0]), texel(place.at[1]), i64::from(6 * cube) + place.face as i64]
+    }
+}
+
+fn wrap(address: Address, at: i64, size: u32) -> i64 {
+    let size = i64::from(size);
+    match address {
+        Address::Clamp => at.clamp(0, size - 1),
+        Address::Repeat => at.rem_euclid(size),
+        Address::Mirror => {
+            let folded = at.rem_euclid(2 * size);
+            folded.min(2 * size - 1 - folded)
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! One thread of the shader: memory, a place in the code, and the loop that steps it.
+
+use super::super::code::Instruction;
+use super::super::error::{Error, Kind};
+use super::super::number::Number;
+use super::super::program::Program;
+use super::super::resources::Resources;
+use super::compute::compute;
+use super::texture;
+use super::watch::Watch;
+use crate::diagnostic::codes;
+
+/// The state of one thread.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lane<N> {
+    pub memory: Vec<N>,
+    pub pc: u32,
+    /// Where calls go back to.
+    pub calls: Vec<u32>,
+    pub trips: u64,
+    pub killed: bool,
+}
+
+/// What all lanes share.
+#[derive(Clone, Copy)]
+pub(super) struct Env<'e> {
+    pub program: &'e Program,
+    pub resources: &'e Resources,
+    pub loop_limit: u64,
+    /// Whether the lane has neighbours.
+    pub quad: bool,
+}
+
+impl Env<'_> {
+    /// The place of an instruction.
+    pub fn span(&self, pc: u32) -> naga::Span {
+        self.program.spans.get(pc as usize).copied().unwrap_or_default()
+    }
+}
+
+/// Why a lane stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    /// The function has returned.
+    Done,
+    /// The instruction at `pc` needs the other lanes of the quad.
+    Quad,
+}
+
+/// Runs until the function returns or needs its neighbours.
+pub(super) fn run<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) -> Result<Stop, Error> {
+    loop {
+        let at = lane.pc;
+        let Some(instruction) = env.program.code.get(at as usize) else { return Err(lost(env.program, at)) };
+        lane.pc += 1;
+        match *instruction {
+            Instruction::Jump { to } => lane.pc = to,
+            Instruction::JumpUnless { condition, to } if lane.word(condition) == 0 => lane.pc = to,
+            Instruction::JumpUnless { .. } => {}
+            Instruction::Mark { point } => watch.hits[point as usize] += 1,
+            Instruction::Trip => {
+                lane.trips += 1;
+                if lane.trips > env.loop_limit {
+                    return Err(endless(env, at));
+                }
+            }
+            Instruction::Switch { selector, table } => lane.pc = target(env.program, table, lane.word(selector)),
+            Instruction::Call { to } => {
+                lane.calls.push(lane.pc);
+                lane.pc = to;
+            }
+            Instruction::Return => match lane.calls.pop() {
+                Some(to) => lane.pc = to,
+                None => return Ok(Stop::Done),
+            },
+            Instruction::Kill => lane.killed = true,
+            Instruction::Derivative { .. } => {
+                lane.pc = at;
+                return Ok(Stop::Quad);
+            }
+            Instruction::Image { access } if env.quad && env.program.images[access as usize].implicit() => {
+                lane.pc = at;
+                return Ok(Stop::Quad);
+            }
+            Instruction::Image { access } => texture::single(env, access, &mut lane.memory, at, watch)?,
+            _ => {
+                let mut doubt = false;
+                compute(instruction, &mut lane.memory, &mut doubt);
+                if doubt {
+                    watch.note(Kind::Ambiguous, at);
+                }
+                if watch.sanitize {
+                    watch.inspect(instruction, &lane.memory, at);
+                }
+            }
+        }
+    }
+}
+
+impl<N: Number> Lane<N> {
+    #[inline(always)]
+    pub fn word(&self, slot: u32) -> u32 {
+        self.memory[slot as usize].word()
+    }
+}
+
+fn target(program: &Program, table: u32, selector: u32) -> u32 {
+    let table = &program.tables[table as usize];
+    table.cases.iter().find(|case| case.0 == selector).map_or(table.default, |case| case.1)
+}
+
+#[cold]
+fn endless(env: Env, pc: u32) -> Error {
+    let message = format!("the loops of this call made more than {} trips", env.loop_limit);
+    Error::new(codes::EVAL_LOOP_LIMIT, message).or_at(env.span(pc))
+}
+
+#[cold]
+fn lost(program: &Program, pc: u32) -> Error {
+    Error::new(codes::EVAL_INTERNAL, format!("no instruction {pc} of {}", program.code.len()))
+}

@@ -1,0 +1,266 @@
+//! Memory for a program, and the calls.
+
+mod compute;
+mod filter;
+mod geometry;
+mod lane;
+mod packing;
+mod quad;
+mod texture;
+mod watch;
+mod word;
+
+use super::error::{Error, Finding};
+use super::layout::{Kind, decode};
+use super::number::Number;
+use super::program::{Constant, Function, FunctionId, Program, Role};
+use super::resources::Resources;
+use crate::diagnostic::codes;
+use lane::{Lane, Stop};
+use watch::Watch;
+
+/// Loop trips one call may make unless set otherwise, all loops together.
+pub const LOOP_LIMIT: u64 = 1_000_000;
+
+/// A program with memory. Calls reuse it: none allocates.
+#[derive(Debug)]
+pub struct Machine<'p, N> {
+    program: &'p Program,
+    resources: Resources,
+    lane: Lane<N>,
+    /// Lanes of a quad, once one has run, and which of them were discarded.
+    quad: Vec<Lane<N>>,
+    killed: [bool; 4],
+    watch: Watch,
+    /// Arguments of `call_words`, kept for their memory.
+    words: Vec<N>,
+    /// Which globals have a buffer.
+    bound: Vec<bool>,
+    /// Loop trips one call may make, all loops together.
+    pub loop_limit: u64,
+}
+
+impl<'p, N: Number> Machine<'p, N> {
+    /// Memory for the program, with constants computed and nothing bound.
+    ///
+    /// # Errors
+    /// What computing the constants meets.
+    pub fn new(program: &'p Program) -> Result<Self, Error> {
+        let mut lane = Lane { memory: vec![N::default(); program.slots as usize], ..Lane::default() };
+        for &(slot, value) in &program.pool {
+            lane.memory[slot as usize] = match value {
+                Constant::Word(word) => N::from_word(word),
+                Constant::Float(value) => N::from_f64(value),
+            };
+        }
+        let watch = Watch::new(program);
+        let mut machine = Self {
+            program,
+            resources: Resources::default(),
+            lane,
+            quad: Vec::new(),
+            killed: [false; 4],
+            watch,
+            words: Vec::new(),
+            bound: vec![false; program.globals.len()],
+            loop_limit: LOOP_LIMIT,
+        };
+        machine.run(program.start)?;
+        Ok(machine)
+    }
+
+    /// The program this is the memory of.
+    pub fn program(&self) -> &'p Program {
+        self.program
+    }
+
+    /// Binds buffers, textures and samplers by group and binding. What stays unbound is an error
+    /// where it is used.
+    ///
+    /// # Errors
+    /// `eval-too-large` for a buffer that is.
+    pub fn bind(&mut self, resources: Resources) -> Result<(), Error> {
+        self.lane.memory.truncate(self.program.slots as usize);
+        for (index, global) in self.program.globals.iter().enumerate() {
+            self.bound[index] = false;
+            let Some(bytes) = global.binding.and_then(|binding| resources.buffers.get(&binding)) else { continue };
+            self.bound[index] = bytes.len() >= global.bytes as usize;
+            let mut slots = Vec::new();
+            decode(&self.program.types, global.ty, bytes, &mut |kind, word| slots.push(slot_from_word::<N>(kind, word)));
+            match global.role {
+                Role::Buffer => {
+                    let first = global.slot as usize;
+                    self.lane.memory[first..first + slots.len()].copy_from_slice(&slots);
+                }
+                Role::Runtime { address, count, element } => self.append(slots, global.slots, address, count, element)?,
+                _ => {}
+            }
+        }
+        self.quad.clear();
+        self.resources = resources;
+        Ok(())
+    }
+
+    /// Refuses a function one of whose buffers is missing.
+    fn check_buffers(&self, function: &Function) -> Result<(), Error> {
+        match function.buffers.iter().find(|index| !self.bound[**index as usize]) {
+            None => Ok(()),
+            Some(index) => {
+                let name = &self.program.globals[*index as usize].name;
+                Err(Error::new(codes::EVAL_UNBOUND, format!("no buffer of its size is given for `{name}`")))
+            }
+        }
+    }
+
+    /// Places a buffer that ends in a runtime-sized array behind the memory.
+    fn append(&mut self, slots: Vec<N>, least: u32, address: u32, count: u32, element: u32) -> Result<(), Error> {
+        let first = self.lane.memory.len();
+        if first + slots.len() > super::layout::MAX_SLOTS as usize {
+            return Err(Error::too_large("a buffer is too large for the CPU executor"));
+        }
+        // The least size counts one element; all before it is fixed.
+        let fixed = (least - element) as usize;
+        let elements = slots.len().saturating_sub(fixed) / element.max(1) as usize;
+        self.lane.memory.extend(slots);
+        self.lane.memory[address as usize] = N::from_word(first as u32);
+        self.lane.memory[count as usize] = N::from_word(elements as u32);
+        Ok(())
+    }
+
+    /// Runs a function on flattened arguments and gives its flattened result. Floats are numbers,
+    /// integers and booleans are words ([`Number::from_word`]).
+    ///
+    /// # Errors
+    /// `eval-arguments`, `eval-loop-limit`, `eval-needs-quad`, `eval-unbound`, or why the
+    /// function could not be lowered.
+    pub fn call(&mut self, id: FunctionId, arguments: &[N]) -> Result<&[N], Error> {
+        let program = self.program;
+        let function = callable(program, id, arguments.len())?;
+        self.check_buffers(function)?;
+        begin(program, &mut self.lane);
+        place(&mut self.lane, function, arguments);
+        self.run(function.entry)?;
+        Ok(outcome(&self.lane, function))
+    }
+
+    /// As [`Self::call`], with every scalar as its 32 bits.
+    ///
+    /// # Errors
+    /// Those of [`Self::call`].
+    pub fn call_words(&mut self, id: FunctionId, arguments: &[u32], result: &mut Vec<u32>) -> Result<(), Error> {
+        let function = callable(self.program, id, arguments.len())?;
+        self.words.clear();
+        self.words.extend(function.arguments.iter().zip(arguments).map(|(kind, word)| slot_from_word::<N>(*kind, *word)));
+        self.check_buffers(function)?;
+        begin(self.program, &mut self.lane);
+        place(&mut self.lane, function, &self.words);
+        self.run(function.entry)?;
+        result.clear();
+        result.extend(function.result.iter().zip(outcome(&self.lane, function)).map(|(kind, slot)| word_from_slot(*kind, *slot)));
+        Ok(())
+    }
+
+    /// Runs code on the one lane to its end.
+    fn run(&mut self, entry: u32) -> Result<(), Error> {
+        (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
+        self.lane.calls.clear();
+        let env = lane::Env { program: self.program, resources: &self.resources, loop_limit: self.loop_limit, quad: false };
+        match lane::run(env, &mut self.lane, &mut self.watch)? {
+            Stop::Done => Ok(()),
+            Stop::Quad => Err(needs_quad(self.program, self.lane.pc)),
+        }
+    }
+
+    /// Whether the last call ran into `discard`.
+    pub fn discarded(&self) -> bool {
+        self.lane.killed
+    }
+
+    /// Loop trips of the last call.
+    pub fn trips(&self) -> u64 {
+        self.lane.trips
+    }
+
+    /// Turns the recording of numeric trouble on or off. Ambiguous comparisons are always
+    /// recorded.
+    pub fn sanitize(&mut self, on: bool) {
+        self.watch.sanitize = on;
+    }
+
+    /// What was noticed since the last [`Self::forget`], by kind and place.
+    pub fn findings(&self) -> Vec<Finding> {
+        self.watch.findings(self.program)
+    }
+
+    /// How often each of [`Program::points`] was reached since the last [`Self::forget`].
+    pub fn hits(&self) -> &[u64] {
+        &self.watch.hits
+    }
+
+    /// Forgets findings and hits.
+    pub fn forget(&mut self) {
+        self.watch.forget();
+    }
+}
+
+fn callable(program: &Program, id: FunctionId, given: usize) -> Result<&Function, Error> {
+    let function = program.signature(id).ok_or_else(|| Error::new(codes::EVAL_ARGUMENTS, "no such function in this program"))?;
+    if let Some(error) = &function.error {
+        return Err(error.clone());
+    }
+    let (name, wanted) = (&function.name, function.arguments.len());
+    if given != wanted {
+        return Err(Error::new(codes::EVAL_ARGUMENTS, format!("`{name}` takes {wanted} scalars and was given {given}")));
+    }
+    Ok(function)
+}
+
+/// Sets private variables to their initial values.
+fn begin<N: Number>(program: &Program, lane: &mut Lane<N>) {
+    for global in &program.globals {
+        let (to, n) = (global.slot as usize, global.slots as usize);
+        match global.role {
+            Role::Private(Some(from)) => lane.memory.copy_within(from as usize..from as usize + n, to),
+            Role::Private(None) => lane.memory[to..to + n].fill(N::default()),
+            _ => {}
+        }
+    }
+}
+
+fn place<N: Number>(lane: &mut Lane<N>, function: &Function, arguments: &[N]) {
+    let mut rest = arguments;
+    for parameter in &function.parameters {
+        let (value, others) = rest.split_at(parameter.n as usize);
+        let to = parameter.pointee.unwrap_or(parameter.slot) as usize;
+        lane.memory[to..to + value.len()].copy_from_slice(value);
+        if let Some(pointee) = parameter.pointee {
+            lane.memory[parameter.slot as usize] = N::from_word(pointee);
+        }
+        rest = others;
+    }
+}
+
+fn outcome<'l, N>(lane: &'l Lane<N>, function: &Function) -> &'l [N] {
+    let first = function.result_slot as usize;
+    &lane.memory[first..first + function.result.len()]
+}
+
+fn needs_quad(program: &Program, pc: u32) -> Error {
+    let span = program.spans.get(pc as usize).copied().unwrap_or_default();
+    Error::new(codes::EVAL_NEEDS_QUAD, "a derivative needs a quad of four fragments").or_at(span)
+}
+
+/// A slot from the 32 bits of a scalar.
+pub(super) fn slot_from_word<N: Number>(kind: Kind, word: u32) -> N {
+    match kind {
+        Kind::Float => N::from_f64(f64::from(f32::from_bits(word))),
+        _ => N::from_word(word),
+    }
+}
+
+fn word_from_slot<N: Number>(kind: Kind, slot: N) -> u32 {
+    match kind {
+        Kind::Float => slot.bits(),
+        _ => slot.word(),
+    }
+}

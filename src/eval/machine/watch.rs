@@ -1,0 +1,138 @@
+//! What a run notices: coverage, trouble with numbers.
+
+use super::super::code::{Binary, Convert, Geometry, Instruction, Operand, Unary, Word2};
+use super::super::error::{Finding, Kind};
+use super::super::number::Number;
+use super::super::program::Program;
+use std::collections::BTreeMap;
+
+/// Most places remembered; a run that meets more has enough to look at.
+const MAX_FINDINGS: usize = 10_000;
+
+/// Coverage and findings of one machine.
+#[derive(Debug)]
+pub(super) struct Watch {
+    pub sanitize: bool,
+    pub hits: Vec<u64>,
+    findings: BTreeMap<(Kind, u32), u64>,
+}
+
+impl Watch {
+    pub fn new(program: &Program) -> Self {
+        Self { sanitize: false, hits: vec![0; program.points.len()], findings: BTreeMap::new() }
+    }
+
+    pub fn forget(&mut self) {
+        self.hits.fill(0);
+        self.findings.clear();
+    }
+
+    /// Counts a finding at an instruction.
+    #[cold]
+    pub fn note(&mut self, kind: Kind, pc: u32) {
+        if self.findings.len() < MAX_FINDINGS || self.findings.contains_key(&(kind, pc)) {
+            *self.findings.entry((kind, pc)).or_default() += 1;
+        }
+    }
+
+    /// Findings by kind and place; one place may have several instructions.
+    pub fn findings(&self, program: &Program) -> Vec<Finding> {
+        let mut found: Vec<Finding> = Vec::new();
+        for (&(kind, pc), &count) in &self.findings {
+            let span = program.spans.get(pc as usize).copied().unwrap_or_default();
+            match found.iter_mut().find(|finding| finding.kind == kind && finding.span == span) {
+                Some(finding) => finding.count += count,
+                None => found.push(Finding { kind, span, count }),
+            }
+        }
+        found
+    }
+
+    /// Looks at the operands and the result of an instruction that has just run.
+    #[cold]
+    pub fn inspect<N: Number>(&mut self, instruction: &Instruction, memory: &[N], pc: u32) {
+        let read = |slot: u32| memory[slot as usize].value();
+        match *instruction {
+            Instruction::Float1 { op, n, to, a } => {
+                let outside = (0..n).any(|i| outside1(op, memory[a.at(u32::from(i))].value()));
+                self.judge(outside.then_some(Kind::Domain), memory, &[(a, n)], (to, n), pc);
+            }
+            Instruction::Float2 { op, n, to, a, b } => {
+                let trouble = (0..u32::from(n)).find_map(|i| outside2(op, memory[a.at(i)].value(), memory[b.at(i)].value()));
+                self.judge(trouble, memory, &[(a, n), (b, n)], (to, n), pc);
+            }
+            Instruction::Float3 { n, to, a, b, c, .. } => self.judge(None, memory, &[(a, n), (b, n), (c, n)], (to, n), pc),
+            Instruction::Convert { op, n, a, .. } => {
+                let wild = (0..u32::from(n)).any(|i| unfit(op, memory[a.at(i)].value()));
+                self.note_if(wild, Kind::Conversion, pc);
+            }
+            Instruction::Word2 { op: Word2::DivideS | Word2::DivideU | Word2::RemainderS | Word2::RemainderU, n, b, .. } => {
+                let zero = (0..u32::from(n)).any(|i| memory[b.at(i)].word() == 0);
+                self.note_if(zero, Kind::DivisionByZero, pc);
+            }
+            Instruction::Geometry { op: Geometry::Normalize, n, a, .. } => {
+                let zero = (a..a + u32::from(n)).all(|slot| read(slot) == 0.0);
+                self.note_if(zero, Kind::Domain, pc);
+            }
+            Instruction::Geometry { op: Geometry::Dot | Geometry::Length, n, to, a, .. } => {
+                self.judge(None, memory, &[(Operand { slot: a, stride: 1 }, n)], (to, 1), pc);
+            }
+            Instruction::Index { index, count, .. } => {
+                let outside = memory[index as usize].word() >= memory[count as usize].word();
+                self.note_if(outside, Kind::OutOfBounds, pc);
+            }
+            Instruction::Pick { index, count, .. } => self.note_if(memory[index as usize].word() >= count, Kind::OutOfBounds, pc),
+            _ => {}
+        }
+    }
+
+    fn note_if(&mut self, when: bool, kind: Kind, pc: u32) {
+        if when {
+            self.note(kind, pc);
+        }
+    }
+
+    /// Notes trouble with the operands, else a result that is not finite though they are.
+    fn judge<N: Number>(&mut self, trouble: Option<Kind>, memory: &[N], operands: &[(Operand, u8)], to: (u32, u8), pc: u32) {
+        let finite = |(operand, n): &(Operand, u8)| (0..u32::from(*n)).all(|i| memory[operand.at(i)].value().is_finite());
+        let results = &memory[to.0 as usize..(to.0 + u32::from(to.1)) as usize];
+        let nan = results.iter().any(|result| result.value().is_nan());
+        let infinite = results.iter().any(|result| result.value().is_infinite());
+        match trouble {
+            Some(kind) => self.note(kind, pc),
+            None if !operands.iter().all(finite) => {}
+            None if nan => self.note(Kind::NotANumber, pc),
+            None if infinite => self.note(Kind::Infinity, pc),
+            None => {}
+        }
+    }
+}
+
+fn outside1(op: Unary, x: f64) -> bool {
+    match op {
+        Unary::Sqrt => x < 0.0,
+        Unary::InverseSqrt | Unary::Log | Unary::Log2 => x <= 0.0,
+        Unary::Acos | Unary::Asin | Unary::Atanh => x.abs() > 1.0,
+        Unary::Acosh => x < 1.0,
+        _ => false,
+    }
+}
+
+fn outside2(op: Binary, a: f64, b: f64) -> Option<Kind> {
+    match op {
+        Binary::Divide | Binary::Remainder if b == 0.0 => Some(Kind::DivisionByZero),
+        Binary::Pow if a < 0.0 || a == 0.0 && b <= 0.0 => Some(Kind::Domain),
+        Binary::Atan2 if a == 0.0 && b == 0.0 => Some(Kind::Domain),
+        _ => None,
+    }
+}
+
+/// Whether the integer type cannot hold the number, cut to a whole one.
+fn unfit(op: Convert, x: f64) -> bool {
+    let whole = x.trunc();
+    match op {
+        Convert::SFromFloat => !(-2147483648.0..=2147483647.0).contains(&whole),
+        Convert::UFromFloat => !(0.0..=4294967295.0).contains(&whole),
+        _ => false,
+    }
+}

@@ -1,0 +1,56 @@
+//! The numbers a program can run on.
+
+mod bounded;
+mod half;
+mod native;
+
+pub use bounded::Bounded;
+pub use half::{half_from, half_to};
+
+use super::code::{Binary, Compare, Ternary, Unary};
+
+/// A number of the shader's type `f32`, and the slot that holds it. A slot also holds the words
+/// of integers and booleans; instructions know which.
+///
+/// `doubt` is set where a discontinuous function meets arguments nearer to the jump than their
+/// errors, so that either side would be right.
+pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
+    /// A slot holding a word. `from_word(0)` is the default.
+    fn from_word(word: u32) -> Self;
+    /// The word in the slot.
+    fn word(self) -> u32;
+    /// Nearest number, without error.
+    fn from_f64(value: f64) -> Self;
+    /// A number known to within `error`; kinds that carry no error drop it.
+    fn with_error(value: f64, error: f64) -> Self;
+    /// The value.
+    fn value(self) -> f64;
+    /// Bound of the absolute error; 0 for kinds that carry none.
+    fn error(self) -> f64;
+    /// Applies a function of one argument.
+    fn unary(op: Unary, x: Self, doubt: &mut bool) -> Self;
+    /// Applies a function of two arguments.
+    fn binary(op: Binary, a: Self, b: Self, doubt: &mut bool) -> Self;
+    /// Applies a function of three arguments.
+    fn ternary(op: Ternary, a: Self, b: Self, c: Self, doubt: &mut bool) -> Self;
+    /// Compares; false where a side is not a number, except for `!=`.
+    fn compare(op: Compare, a: Self, b: Self, doubt: &mut bool) -> bool;
+    /// Sum of products, of slices of one length.
+    fn dot(a: &[Self], b: &[Self]) -> Self;
+
+    /// The bits as `f32`; one pattern for all that is not a number.
+    fn bits(self) -> u32 {
+        let value = self.value() as f32;
+        if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() }
+    }
+
+    /// Truncated towards zero and clamped to the range of `i32`; 0 for what is not a number.
+    fn to_i32(self, doubt: &mut bool) -> i32 {
+        Self::unary(Unary::Trunc, self, doubt).value() as i32
+    }
+
+    /// Truncated towards zero and clamped to the range of `u32`; 0 for what is not a number.
+    fn to_u32(self, doubt: &mut bool) -> u32 {
+        Self::unary(Unary::Trunc, self, doubt).value() as u32
+    }
+}

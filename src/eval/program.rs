@@ -1,0 +1,161 @@
+//! A lowered module.
+
+use super::code::{Access, Instruction, Slot, Table};
+use super::error::Error;
+use super::layout::Kind;
+use super::lower;
+use naga::{Handle, Span, Type, UniqueArena};
+
+/// A module ready to run on any [`super::Number`]. It borrows nothing and may be shared between
+/// threads; each thread has its own [`super::Machine`].
+#[derive(Debug)]
+pub struct Program {
+    pub(super) code: Vec<Instruction>,
+    /// Place of each instruction in the text naga parsed.
+    pub(super) spans: Vec<Span>,
+    /// Slots of the memory.
+    pub(super) slots: u32,
+    pub(super) pool: Vec<(Slot, Constant)>,
+    /// Where constants and overrides are computed, once per machine.
+    pub(super) start: u32,
+    pub(super) functions: Vec<Function>,
+    pub(super) tables: Vec<Table>,
+    pub(super) images: Vec<Access>,
+    pub(super) points: Vec<Point>,
+    pub(super) globals: Vec<Global>,
+    pub(super) types: UniqueArena<Type>,
+}
+
+/// Index of a function of a [`Program`]: functions first, entry points after them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FunctionId(pub(super) u32);
+
+impl From<Handle<naga::Function>> for FunctionId {
+    /// The function of that handle in the module the program was lowered from.
+    fn from(handle: Handle<naga::Function>) -> Self {
+        Self(handle.index() as u32)
+    }
+}
+
+/// A function as the caller sees it.
+#[derive(Debug, Clone)]
+pub struct Function {
+    pub name: String,
+    /// Kinds of the flattened arguments; for a pointer, those of what it points to.
+    pub arguments: Vec<Kind>,
+    /// Kinds of the flattened result, then of what is left behind each pointer.
+    pub result: Vec<Kind>,
+    /// Slots of the returned value alone.
+    pub(super) returned: u32,
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) result_slot: Slot,
+    pub(super) entry: u32,
+    /// Buffers the function or its callees read, by index.
+    pub(super) buffers: Vec<u32>,
+    /// Why the function cannot run, if so.
+    pub error: Option<Error>,
+}
+
+/// Where a parameter lies, and what it points to if it is a pointer.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parameter {
+    pub slot: Slot,
+    /// Slots taken from outside: of the value, or of what the pointer points to.
+    pub n: u32,
+    pub pointee: Option<Slot>,
+}
+
+/// A block of statements that coverage counts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    pub function: FunctionId,
+    pub branch: Branch,
+    /// All statements that run if the block is reached.
+    pub span: Span,
+}
+
+/// How a block is reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Branch {
+    Entry,
+    Accept,
+    Reject,
+    Case,
+    Body,
+    Continuing,
+    /// Statements behind a branch that may have left.
+    After,
+}
+
+/// A value in a slot before anything runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Constant {
+    Word(u32),
+    Float(f64),
+}
+
+/// A module-scope variable.
+#[derive(Debug, Clone)]
+pub(super) struct Global {
+    pub name: String,
+    /// Group and binding.
+    pub binding: Option<(u32, u32)>,
+    pub ty: Handle<Type>,
+    pub slot: Slot,
+    pub slots: u32,
+    /// Least size as a buffer.
+    pub bytes: u32,
+    pub role: Role,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Initialised at each call from the slot, or to zero.
+    Private(Option<Slot>),
+    Buffer,
+    /// A runtime-sized array lies behind the memory: slots holding its address and length, and
+    /// the slots of one element.
+    Runtime {
+        address: Slot,
+        count: Slot,
+        element: u32,
+    },
+    Image,
+    Sampler,
+}
+
+impl Program {
+    /// Lowers a validated module. A function that uses something unsupported keeps its error
+    /// and the others run.
+    ///
+    /// # Errors
+    /// `eval-too-large` if the module-scope values take too much memory.
+    pub fn new(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Result<Self, Error> {
+        lower::lower(module, info)
+    }
+
+    /// The function or entry point of that name.
+    pub fn function(&self, name: &str) -> Option<FunctionId> {
+        self.functions.iter().position(|function| function.name == name).map(|index| FunctionId(index as u32))
+    }
+
+    /// The word that stands for a texture or sampler where a function takes one as argument.
+    pub fn handle(&self, group: u32, binding: u32) -> Option<u32> {
+        self.globals.iter().position(|global| global.binding == Some((group, binding))).map(|index| index as u32)
+    }
+
+    /// Every function and entry point.
+    pub fn functions(&self) -> impl Iterator<Item = (FunctionId, &Function)> {
+        self.functions.iter().enumerate().map(|(index, function)| (FunctionId(index as u32), function))
+    }
+
+    /// What the caller must know of a function.
+    pub fn signature(&self, id: FunctionId) -> Option<&Function> {
+        self.functions.get(id.0 as usize)
+    }
+
+    /// The blocks coverage counts, in the order of `Machine::hits`.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+}

@@ -1,0 +1,96 @@
+//! What a module's bindings are bound to.
+
+use super::code::Compare;
+use std::collections::BTreeMap;
+
+/// Values of bindings, by group and binding.
+#[derive(Debug, Clone, Default)]
+pub struct Resources {
+    /// Uniform and storage buffers as bytes, laid out as the shader declares.
+    pub buffers: BTreeMap<(u32, u32), Vec<u8>>,
+    pub textures: BTreeMap<(u32, u32), Texture>,
+    pub samplers: BTreeMap<(u32, u32), Sampler>,
+}
+
+/// How a texture is addressed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    D1,
+    D2,
+    D3,
+    /// Six layers make one cube: +x, -x, +y, -y, +z, -z.
+    Cube,
+}
+
+/// A texture. Depth is in the first component.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texture {
+    pub shape: Shape,
+    /// The largest level first.
+    pub levels: Vec<Level>,
+}
+
+/// One level of a texture: texels row by row, layer by layer (or slice by slice).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    pub width: u32,
+    pub height: u32,
+    /// Layers of an array, faces of cubes, slices of a 3D texture.
+    pub layers: u32,
+    pub texels: Vec<[f64; 4]>,
+}
+
+/// How coordinates outside of a texture are answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Address {
+    #[default]
+    Clamp,
+    Repeat,
+    Mirror,
+}
+
+/// Between texels and between levels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Filter {
+    #[default]
+    Nearest,
+    Linear,
+}
+
+/// A sampler; with a comparison it is a `sampler_comparison`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sampler {
+    /// For u, v and w.
+    pub address: [Address; 3],
+    pub mag: Filter,
+    pub min: Filter,
+    pub mipmap: Filter,
+    /// Least and greatest level; `(0, 0)` keeps the first.
+    pub levels: (f64, f64),
+    pub compare: Option<Compare>,
+}
+
+impl Texture {
+    /// A texture of one level, its texels row by row.
+    pub fn flat(shape: Shape, width: u32, height: u32, layers: u32, texels: Vec<[f64; 4]>) -> Self {
+        Self { shape, levels: vec![Level { width, height, layers, texels }] }
+    }
+
+    /// Whether every level has the texels its size says, and a cube whole cubes.
+    pub(super) fn is_complete(&self) -> bool {
+        let filled = |level: &Level| {
+            let size = u64::from(level.width) * u64::from(level.height) * u64::from(level.layers);
+            size > 0 && size == level.texels.len() as u64 && (self.shape != Shape::Cube || level.layers.is_multiple_of(6))
+        };
+        !self.levels.is_empty() && self.levels.iter().all(filled)
+    }
+}
+
+impl Level {
+    /// The texel at column, row and layer.
+    pub(super) fn texel(&self, [x, y, z]: [i64; 3]) -> Option<[f64; 4]> {
+        let within = |at: i64, size: u32| usize::try_from(at).ok().filter(|at| *at < size as usize);
+        let (x, y, z) = (within(x, self.width)?, within(y, self.height)?, within(z, self.layers)?);
+        self.texels.get((z * self.height as usize + y) * self.width as usize + x).copied()
+    }
+}

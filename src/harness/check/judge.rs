@@ -1,0 +1,184 @@
+//! Compares what an executor returned with what was expected.
+
+use super::job::{BoundLaw, Job};
+use crate::harness::cases::{Rows, number};
+use crate::harness::laws;
+use crate::harness::references::Expected;
+use crate::harness::tolerance;
+use naga::ScalarKind;
+
+/// What became of the rows of a case.
+#[derive(Debug, Default)]
+pub struct Verdict {
+    /// Rows tried.
+    pub inputs: usize,
+    /// Rows whose expected value no f32 holds: anything is right.
+    pub indeterminate: usize,
+    /// Rows that are off, but where a comparison is too close to call.
+    pub ambiguous: usize,
+    /// Whether there are more ambiguous rows than the case allows.
+    pub too_ambiguous: bool,
+    /// The component that used most of what it is allowed.
+    pub worst: Option<Worst>,
+    /// Rows that are off.
+    pub failing: Vec<usize>,
+    pub laws: Vec<LawVerdict>,
+    /// A small failing input, as a text with a case to paste.
+    pub smallest: Option<String>,
+}
+
+/// One component of one row.
+#[derive(Debug, Clone, Copy)]
+pub struct Worst {
+    pub row: usize,
+    pub word: usize,
+    pub found: f64,
+    pub expected: f64,
+    pub error: f64,
+    pub allowed: f64,
+}
+
+/// What became of a law.
+#[derive(Debug)]
+pub struct LawVerdict {
+    pub name: &'static str,
+    /// Rows that break it, with the first one's words.
+    pub broken: usize,
+    pub example: Option<String>,
+}
+
+impl Verdict {
+    /// Whether every row and every law holds.
+    pub fn passed(&self) -> bool {
+        self.failing.is_empty() && !self.too_ambiguous && self.laws.iter().all(|law| law.broken == 0)
+    }
+}
+
+impl Worst {
+    /// Error over what is allowed; at most 1 passes.
+    pub fn share(&self) -> f64 {
+        if self.error == 0.0 { 0.0 } else { self.error / self.allowed }
+    }
+
+    /// The error in units in the last place of the expected value.
+    pub fn ulps(&self) -> f64 {
+        self.error / tolerance::ulp(self.expected)
+    }
+
+    /// What is allowed in units in the last place of the expected value.
+    pub fn allowed_ulps(&self) -> f64 {
+        self.allowed / tolerance::ulp(self.expected)
+    }
+}
+
+/// Judges every row.
+pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Expected], results: &[u32]) -> Verdict {
+    let kinds = job.kernel().result_kinds();
+    let mut verdict = Verdict { inputs: rows.len(), ..Verdict::default() };
+    for (index, (expected, found)) in expected.iter().zip(results.chunks(kinds.len().max(1))).enumerate() {
+        let row = rows.row(index);
+        if is_indeterminate(expected) {
+            verdict.indeterminate += 1;
+            continue;
+        }
+        let Some(worst) = compare(job, row, expected, found, &kinds, index) else { continue };
+        if worst.share() <= 1.0 {
+            if verdict.worst.is_none_or(|known| known.share() <= worst.share()) {
+                verdict.worst = Some(worst);
+            }
+        } else if is_ambiguous(job, row) {
+            verdict.ambiguous += 1;
+        } else {
+            verdict.failing.push(index);
+            if verdict.worst.is_none_or(|known| known.share() < worst.share()) {
+                verdict.worst = Some(worst);
+            }
+        }
+    }
+    verdict.too_ambiguous = verdict.ambiguous as f64 > job.case.ambiguous * rows.len() as f64;
+    verdict
+}
+
+/// The worst component of the alternative that fits best.
+fn compare(job: &Job<'_>, row: &[f64], expected: &Expected, found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
+    let values = std::iter::once(&expected.value).chain(&expected.alternatives);
+    values.filter_map(|value| compare_one(job, row, value, found, kinds, index)).min_by(|a, b| a.share().total_cmp(&b.share()))
+}
+
+fn compare_one(job: &Job<'_>, row: &[f64], expected: &[f64], found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
+    let values = tolerance::values(&job.terms, row);
+    let component = |word: usize| {
+        let found = number(found[word], kinds[word]);
+        let expected = expected[word];
+        let is_float = kinds[word] == ScalarKind::Float;
+        let allowed = if is_float { tolerance::allowed(&job.terms, &values, word, expected) } else { 0.0 };
+        Worst { row: index, word, found, expected, error: distance(found, expected, is_float), allowed }
+    };
+    (0..kinds.len()).map(component).max_by(|a, b| a.share().total_cmp(&b.share()))
+}
+
+/// How far off a component is. Subnormals may be flushed; no number is infinitely far off.
+fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
+    let error = if found == expected { 0.0 } else { (found - expected).abs() };
+    if error.is_nan() {
+        f64::INFINITY
+    } else if is_float && error <= f64::from(f32::MIN_POSITIVE) {
+        0.0
+    } else {
+        error
+    }
+}
+
+fn is_indeterminate(expected: &Expected) -> bool {
+    expected.value.iter().any(|value| !value.is_finite() || value.abs() > f64::from(f32::MAX))
+}
+
+fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
+    job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
+}
+
+/// Judges one law over all rows.
+pub fn law(job: &Job<'_>, law: &BoundLaw<'_>, results: &[u32], transformed: Option<&[u32]>) -> LawVerdict {
+    let kinds = job.kernel().result_kinds();
+    let mut verdict = LawVerdict { name: law.law.kind.name, broken: 0, example: None };
+    if law.law.kind.name == "reaches" {
+        return reaches(law, results, &kinds, verdict);
+    }
+    for index in 0..job.rows.len() {
+        let row = job.rows.row(index);
+        let outside = law.rows.as_ref().zip(job.filter.as_ref()).is_some_and(|(rows, filter)| filter.scalar(rows.row(index)) != 1.0);
+        if outside || job.expected.get(index).is_some_and(is_indeterminate) || is_ambiguous(job, row) {
+            continue;
+        }
+        let values = tolerance::values(&job.terms, row);
+        for (word, kind) in kinds.iter().enumerate().filter(|(_, kind)| **kind != ScalarKind::Bool) {
+            let at = index * kinds.len() + word;
+            let value = number(results[at], *kind);
+            let other = transformed.map(|words| number(words[at], *kind));
+            let allowed = if other.is_some() {
+                2.0 * tolerance::allowed(&job.terms, &values, word, value) + f64::from(f32::MIN_POSITIVE)
+            } else {
+                0.0
+            };
+            let broken = laws::broken_by(law.law, value, other, word);
+            if value.is_nan() || other.is_some_and(f64::is_nan) || broken > allowed {
+                verdict.broken += 1;
+                let text = || format!("{row:?} gives {value}, compared with {other:?}: off by {broken:e}, allowed {allowed:e}");
+                verdict.example.get_or_insert_with(text);
+            }
+        }
+    }
+    verdict
+}
+
+fn reaches(law: &BoundLaw<'_>, results: &[u32], kinds: &[ScalarKind], mut verdict: LawVerdict) -> LawVerdict {
+    let values = || results.iter().zip(kinds.iter().cycle()).map(|(word, kind)| number(*word, *kind));
+    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    if let [low, high] = law.law.numbers[..]
+        && (least > low || most < high)
+    {
+        verdict.broken = 1;
+        verdict.example = Some(format!("values lie in [{least}, {most}], expected to reach [{low}, {high}]"));
+    }
+    verdict
+}

@@ -1,0 +1,124 @@
+//! Makes a failing input small: towards 0, 1 and few mantissa bits, a batch of candidates a draw.
+
+use super::job::Job;
+use super::judge;
+use crate::diagnostic::Diagnostic;
+use crate::harness::Session;
+use crate::harness::cases::number;
+use crate::harness::kernel::Kernel;
+use naga::ScalarKind;
+
+/// Rounds of candidates: each round keeps the simplest input that still fails.
+const ROUNDS: usize = 24;
+
+/// The smallest failing input found from a failing row, as text: values in decimal and hex, and a
+/// case ready to paste.
+pub fn shrink(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, failing: usize) -> Result<String, Diagnostic> {
+    let mut best = job.rows.row_words(failing).to_vec();
+    for _ in 0..ROUNDS {
+        let mut candidates = candidates(job, &best);
+        candidates.retain(|candidate| complexity(job, candidate) < complexity(job, &best) && meant(job, candidate));
+        candidates.sort_by_key(|candidate| complexity(job, candidate));
+        candidates.truncate(1024);
+        let Some(simpler) = first_failing(job, kernel, session, &candidates)? else { break };
+        best = simpler;
+    }
+    let found = session.run(kernel, &best)?;
+    Ok(describe(job, &best, &found))
+}
+
+fn first_failing(
+    job: &Job<'_>,
+    kernel: &Kernel,
+    session: &mut dyn Session,
+    candidates: &[Vec<u32>],
+) -> Result<Option<Vec<u32>>, Diagnostic> {
+    if candidates.is_empty() {
+        return Ok(None);
+    }
+    let rows = job.rows.with_words(candidates.concat());
+    let Some(expected) = (0..rows.len()).map(|index| job.expect(rows.row(index))).collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let results = session.run(kernel, &rows.words)?;
+    let verdict = judge::judge(job, &rows, &expected, &results);
+    Ok(verdict.failing.first().map(|index| candidates[*index].clone()))
+}
+
+/// Inputs with one value, or one unit vector, made simpler.
+fn candidates(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
+    let mut found = Vec::new();
+    for range in &job.rows.units {
+        for axis in 0..2 * range.len() {
+            let mut candidate = row.to_vec();
+            candidate[range.clone()].fill(0);
+            candidate[range.start + axis / 2] = if axis % 2 == 0 { 1f32.to_bits() } else { (-1f32).to_bits() };
+            found.push(candidate);
+        }
+    }
+    for (index, word) in row.iter().enumerate() {
+        if !job.rows.units.iter().any(|range| range.contains(&index)) {
+            found.extend(simpler(*word, job.rows.kinds[index]).into_iter().map(|value| {
+                let mut candidate = row.to_vec();
+                candidate[index] = value;
+                candidate
+            }));
+        }
+    }
+    found
+}
+
+fn simpler(word: u32, kind: ScalarKind) -> Vec<u32> {
+    if kind != ScalarKind::Float {
+        return vec![0, 1, word / 2, word.saturating_sub(1)];
+    }
+    let plain = [0.0f32, 1.0, -1.0, 0.5, 2.0].map(f32::to_bits);
+    let shorter = [22, 20, 16, 12, 8, 4, 2, 1].map(|bits| word & (u32::MAX << bits));
+    plain.into_iter().chain(shorter).collect()
+}
+
+/// Whether the case means such an input: within the columns' values, and not filtered out.
+fn meant(job: &Job<'_>, candidate: &[u32]) -> bool {
+    let row = crate::harness::cases::numbers(candidate, &job.rows.kinds);
+    let within = |index: usize| {
+        let column = (0..job.rows.len()).map(|at| job.rows.row(at)[index]);
+        let (low, high) = column.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        (low..=high).contains(&row[index])
+    };
+    job.filter.as_ref().is_none_or(|filter| filter.scalar(&row) == 1.0) && (0..row.len()).all(within)
+}
+
+/// Lower is simpler: values other than 0, then mantissa bits, then magnitude.
+fn complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
+    let cost = |(word, kind): (&u32, &ScalarKind)| match kind {
+        ScalarKind::Float if *word & 0x7fff_ffff == 0 => (0, *word >> 31),
+        ScalarKind::Float => {
+            let mantissa = 23 - (word & 0x7f_ffff | 0x80_0000).trailing_zeros();
+            (1, 1 + mantissa * 8 + ((word >> 23 & 0xff) as i32 - 127).unsigned_abs() + (word >> 31))
+        }
+        _ => (u32::from(*word != 0), 32 - word.leading_zeros()),
+    };
+    row.iter().zip(&job.rows.kinds).map(cost).fold((0, 0), |sum, cost| (sum.0 + cost.0, sum.1 + cost.1))
+}
+
+fn describe(job: &Job<'_>, words: &[u32], found: &[u32]) -> String {
+    let row = crate::harness::cases::numbers(words, &job.rows.kinds);
+    let expected = job.expect(&row).map(|expected| expected.value);
+    let kinds = job.kernel().result_kinds();
+    let mut text = String::new();
+    let mut at = 0;
+    let mut paste = Vec::new();
+    for (name, shape) in job.kernel().words() {
+        let range = at..at + shape.words() as usize;
+        at = range.end;
+        text += &format!("  {name} = {}\n", values(&words[range.clone()], &job.rows.kinds[range.clone()]));
+        paste.push(format!("{name} = {:?}", &row[range]));
+    }
+    text += &format!("  found {}\n", values(found, &kinds));
+    let expected = expected.unwrap_or_default();
+    text += &format!("  expected {expected:?}\n");
+    text + &format!("\n[[case]]\nfunction = {:?}\nrows = [{{ {}, expect = {expected:?} }}]\n", job.case.function, paste.join(", "))
+}
+
+fn values(words: &[u32], kinds: &[ScalarKind]) -> String {
+    let one = |(word, kind): (&u32, &ScalarKind)| format!("{} (0x{word:08x})", number(*word, *kind));
+    words.iter().zip(kinds).map(one).collect::<Vec<_>>().join(", ")
+}

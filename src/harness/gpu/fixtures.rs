@@ -1,0 +1,134 @@
+//! Fixtures as textures and samplers of a device.
+
+use super::pipeline;
+use crate::harness::fixture::{Address, Compare, Sampler, Texture};
+
+/// Depth cannot be copied into a texture, only drawn: the shader that draws it.
+const DEPTH: &str = "
+@group(0) @binding(0) var stored: texture_2d<u32>;
+@vertex fn triangle(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    let corner = vec2u((index << 1u) & 2u, index & 2u);
+    return vec4f(vec2f(corner) * 2.0 - 1.0, 0.0, 1.0);
+}
+@fragment fn depth(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
+    return bitcast<f32>(textureLoad(stored, vec2u(position.xy), 0).x);
+}";
+
+/// A view of the texture with its texels in place.
+pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
+    let cube = texture.kind.layers() == 6;
+    let dimension = if cube { wgpu::TextureViewDimension::Cube } else { wgpu::TextureViewDimension::D2 };
+    let created = if texture.kind.is_depth() { depth(device, queue, texture) } else { color(device, queue, texture) };
+    created.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
+}
+
+/// The sampler of a fixture.
+pub fn sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
+    let address = match sampler.address {
+        Address::Clamp => wgpu::AddressMode::ClampToEdge,
+        Address::Repeat => wgpu::AddressMode::Repeat,
+        Address::Mirror => wgpu::AddressMode::MirrorRepeat,
+    };
+    let filter = if sampler.linear { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
+    let compare = sampler.compare.map(|compare| match compare {
+        Compare::Less => wgpu::CompareFunction::Less,
+        Compare::LessEqual => wgpu::CompareFunction::LessEqual,
+        Compare::Greater => wgpu::CompareFunction::Greater,
+        Compare::GreaterEqual => wgpu::CompareFunction::GreaterEqual,
+    });
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: address,
+        address_mode_v: address,
+        address_mode_w: address,
+        mag_filter: filter,
+        min_filter: filter,
+        compare,
+        ..Default::default()
+    })
+}
+
+fn color(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let created = create(device, texture, texture.kind.layers(), wgpu::TextureFormat::Rgba32Float, usage);
+    write(queue, &created, texture, 0..texture.kind.layers());
+    created
+}
+
+fn depth(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
+    let created = create(device, texture, texture.kind.layers(), wgpu::TextureFormat::Depth32Float, usage);
+    let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let ty = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Uint,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let entry = wgpu::BindGroupLayoutEntry { binding: 0, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[entry] });
+    let drawing = pipeline::pipeline(device, &layout, &module, (&module, "depth"), None, Some(wgpu::TextureFormat::Depth32Float));
+    for layer in 0..texture.kind.layers() {
+        draw_layer(device, queue, texture, layer, &created, &layout, &drawing);
+    }
+    created
+}
+
+fn draw_layer(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &Texture,
+    layer: u32,
+    target: &wgpu::Texture,
+    layout: &wgpu::BindGroupLayout,
+    drawing: &wgpu::RenderPipeline,
+) {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let staged = create(device, texture, 1, wgpu::TextureFormat::R32Uint, usage);
+    write(queue, &staged, texture, layer..layer + 1);
+    let stored = staged.create_view(&Default::default());
+    let entry = wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&stored) };
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &[entry] });
+    let view = target.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_array_layer: layer,
+        array_layer_count: Some(1),
+        ..Default::default()
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let attachment = wgpu::RenderPassDepthStencilAttachment {
+        view: &view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
+    };
+    let mut pass =
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor { depth_stencil_attachment: Some(attachment), ..Default::default() });
+    pass.set_pipeline(drawing);
+    pass.set_bind_group(0, &group, &[]);
+    pass.draw(0..3, 0..1);
+    drop(pass);
+    queue.submit([encoder.finish()]);
+}
+
+fn create(device: &wgpu::Device, texture: &Texture, layers: u32, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// Copies layers of the fixture to the first layers of the texture.
+fn write(queue: &wgpu::Queue, target: &wgpu::Texture, texture: &Texture, layers: std::ops::Range<u32>) {
+    let row = texture.width as usize * texture.kind.channels();
+    let layer = row * texture.height as usize;
+    let texels = &texture.texels[layers.start as usize * layer..layers.end as usize * layer];
+    let bytes: Vec<u8> = texels.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row as u32 * 4), rows_per_image: Some(texture.height) };
+    let size = wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers.len() as u32 };
+    queue.write_texture(target.as_image_copy(), &bytes, layout, size);
+}

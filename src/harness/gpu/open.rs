@@ -1,0 +1,49 @@
+//! Finds an adapter and opens a device on it.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+use super::{Gpu, lock};
+
+/// The full-screen triangle.
+const VERTEX: &str = "
+@vertex fn triangle(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    let corner = vec2u((index << 1u) & 2u, index & 2u);
+    return vec4f(vec2f(corner) * 2.0 - 1.0, 0.0, 1.0);
+}";
+
+/// Opens the preferred adapter of a backend: a software one where there is one, since its
+/// numbers are the same on every machine. The error is in words.
+pub fn open(backend: wgpu::Backends) -> Result<Gpu, String> {
+    let descriptor = wgpu::InstanceDescriptor { backends: backend, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+    let instance = wgpu::Instance::new(descriptor);
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backend));
+    adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
+    let adapter = adapters.into_iter().next().ok_or("no adapter was found")?;
+    let wanted = wgpu::Features::FLOAT32_FILTERABLE & adapter.features();
+    let descriptor = wgpu::DeviceDescriptor { required_features: wanted, required_limits: adapter.limits(), ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| error.to_string())?;
+    let faults = watch(&device);
+    let source = wgpu::ShaderSource::Wgsl(VERTEX.into());
+    let vertex = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    Ok(Gpu { adapter: describe(&adapter.get_info()), device, queue, faults, vertex, prepared: HashMap::new(), runs: 0 })
+}
+
+/// Collects what would otherwise be a panic.
+fn watch(device: &wgpu::Device) -> Arc<Mutex<Vec<String>>> {
+    let faults = Arc::new(Mutex::new(Vec::new()));
+    let sink = Arc::clone(&faults);
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| lock(&sink).push(error.to_string())));
+    let sink = Arc::clone(&faults);
+    device.set_device_lost_callback(move |reason, message| {
+        if !matches!(reason, wgpu::DeviceLostReason::Destroyed) {
+            lock(&sink).push(format!("the device was lost: {message}"));
+        }
+    });
+    faults
+}
+
+fn describe(info: &wgpu::AdapterInfo) -> String {
+    let parts = [info.name.as_str(), info.driver.as_str(), info.driver_info.as_str()];
+    parts.iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join(", ")
+}

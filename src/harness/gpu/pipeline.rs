@@ -1,0 +1,124 @@
+//! A kernel's pipeline and the bindings that stay the same over its draws.
+
+use super::{TARGET_FORMAT, fixtures};
+use crate::harness::fixture::Fixture;
+use crate::harness::kernel::{ENTRY, Kernel, ResourceClass};
+
+/// Everything of a kernel that a device keeps.
+pub struct Prepared {
+    pub pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    resources: Vec<(u32, Bound)>,
+}
+
+enum Bound {
+    View(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+}
+
+impl Prepared {
+    /// Compiles the kernel and uploads its fixtures. Errors go to the device's error scopes.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, vertex: &wgpu::ShaderModule, kernel: &Kernel) -> Self {
+        let layout = layout(device, kernel);
+        let source = wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(kernel.module.clone()));
+        let fragment = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(&kernel.name), source });
+        let pipeline = pipeline(device, &layout, vertex, (&fragment, ENTRY), Some(TARGET_FORMAT), None);
+        let resources = kernel.resources().map(|resource| (resource.binding, bound(device, queue, &resource.fixture))).collect();
+        Self { pipeline, layout, resources }
+    }
+
+    /// The bind group of one draw.
+    pub fn bind(&self, device: &wgpu::Device, inputs: &wgpu::TextureView) -> wgpu::BindGroup {
+        let first = wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(inputs) };
+        let rest = self.resources.iter().map(|(binding, bound)| wgpu::BindGroupEntry {
+            binding: *binding,
+            resource: match bound {
+                Bound::View(view) => wgpu::BindingResource::TextureView(view),
+                Bound::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+            },
+        });
+        let entries: Vec<_> = std::iter::once(first).chain(rest).collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries })
+    }
+}
+
+/// A pipeline that draws one full-screen triangle.
+pub fn pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    vertex: &wgpu::ShaderModule,
+    fragment: (&wgpu::ShaderModule, &str),
+    color: Option<wgpu::TextureFormat>,
+    depth: Option<wgpu::TextureFormat>,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    let targets: Vec<_> = color.map(|format| Some(wgpu::ColorTargetState::from(format))).into_iter().collect();
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState { module: vertex, entry_point: Some("triangle"), compilation_options: Default::default(), buffers: &[] },
+        primitive: Default::default(),
+        depth_stencil: depth.map(|format| wgpu::DepthStencilState {
+            format,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: fragment.0,
+            entry_point: Some(fragment.1),
+            compilation_options: Default::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
+    let inputs = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
+    let rest = kernel.resources().map(|resource| (resource.binding, binding_type(resource.class, &resource.fixture)));
+    let entries: Vec<_> = std::iter::once((0, inputs))
+        .chain(rest)
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None })
+        .collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+}
+
+fn binding_type(class: ResourceClass, fixture: &Fixture) -> wgpu::BindingType {
+    match class {
+        ResourceClass::Sampler { comparison: true } => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
+        ResourceClass::Sampler { comparison: false } => wgpu::BindingType::Sampler(match fixture {
+            Fixture::Sampler(sampler) if sampler.linear => wgpu::SamplerBindingType::Filtering,
+            _ => wgpu::SamplerBindingType::NonFiltering,
+        }),
+        ResourceClass::Texture { dim, class, .. } => {
+            let dimension = match dim {
+                naga::ImageDimension::Cube => wgpu::TextureViewDimension::Cube,
+                _ => wgpu::TextureViewDimension::D2,
+            };
+            let sample = match class {
+                naga::ImageClass::Depth { .. } => wgpu::TextureSampleType::Depth,
+                _ => wgpu::TextureSampleType::Float { filterable: true },
+            };
+            texture_type(sample, dimension)
+        }
+    }
+}
+
+fn texture_type(sample_type: wgpu::TextureSampleType, view_dimension: wgpu::TextureViewDimension) -> wgpu::BindingType {
+    wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
+}
+
+fn bound(device: &wgpu::Device, queue: &wgpu::Queue, fixture: &Fixture) -> Bound {
+    match fixture {
+        Fixture::Texture(texture) => Bound::View(fixtures::upload(device, queue, texture)),
+        Fixture::Sampler(sampler) => Bound::Sampler(fixtures::sampler(device, *sampler)),
+    }
+}

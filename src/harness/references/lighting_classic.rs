@@ -1,0 +1,71 @@
+//! Sources: OpenGL Programming Guide, examples 7.8, 7.10 and 7.21; Newcastle University, tutorial
+//! 11; OpenGL: Build High Performance Graphics, recipe 5 (a shadow of part strength).
+
+use super::brdf_diffuse::lambert;
+use super::brdf_specular::{blinn_phong, phong_oglpg};
+use super::lighting_light::{Light, Sample};
+use super::{Arguments, Entry, Expected};
+use glam::DVec3;
+
+pub const REFERENCES: Entry = Entry {
+    module: "lighting::classic",
+    functions: &[
+        ("accumulate", accumulate),
+        ("resolve", resolve),
+        ("shadow_mix", |a| shadow_mix(a.f64(), a.f64()).into()),
+        ("shade_ncl", shade_ncl),
+        ("shade_oglpg_7_21", shade_oglpg_7_21),
+    ],
+};
+
+struct Material {
+    emission: DVec3,
+    ambient: DVec3,
+    diffuse: DVec3,
+    specular: DVec3,
+}
+
+impl Material {
+    /// Reads all eight fields, in the order in which they are declared.
+    fn read(a: &mut Arguments<'_>) -> Self {
+        let (emission, _shininess, ambient, _roughness) = (a.vec3(), a.f64(), a.vec3(), a.f64());
+        let (diffuse, _wrap, specular, _sigma) = (a.vec3(), a.f64(), a.vec3(), a.f64());
+        Self { emission, ambient, diffuse, specular }
+    }
+}
+
+/// scattered += La*Ma*ambient + Lc*Md*diff*att, reflected += Lc*Ms*spec*strength*att.
+fn accumulate(a: &mut Arguments<'_>) -> Expected {
+    let (scattered, reflected, material) = (a.vec3(), a.vec3(), Material::read(a));
+    let (light, sample) = (Light::read(a), Sample::read(a));
+    let (ambient, diffuse, specular, visibility) = (a.f64(), a.f64(), a.f64(), a.f64());
+    let lit = light.color * sample.attenuation * sample.spot * visibility;
+    let scattered = scattered + light.ambient * material.ambient * ambient + lit * material.diffuse * diffuse;
+    let reflected = reflected + lit * material.specular * specular * light.strength;
+    Expected::words(scattered.to_array().into_iter().chain(reflected.to_array()))
+}
+
+/// emission + base*scattered + reflected.
+fn resolve(a: &mut Arguments<'_>) -> Expected {
+    let (base, material, scattered, reflected) = (a.vec3(), Material::read(a), a.vec3(), a.vec3());
+    (material.emission + base * scattered + reflected).into()
+}
+
+/// mix(1, visibility, strength).
+fn shadow_mix(visibility: f64, strength: f64) -> f64 {
+    1.0 + (visibility - 1.0) * strength
+}
+
+/// (tex*Lc + Lc*spec*0.33)*att*lambert + tex*Lc*0.1, specular at 50: the tutorial's code.
+fn shade_ncl(a: &mut Arguments<'_>) -> Expected {
+    let (base, color, n, l, v, attenuation) = (a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.f64());
+    let lit = base * color + color * blinn_phong(n, l, v, 50.0) * 0.33;
+    (lit * attenuation * lambert(n, l) + base * color * 0.1).into()
+}
+
+/// amb + f*(kd*diff + ks*spec).
+fn shade_oglpg_7_21(a: &mut Arguments<'_>) -> Expected {
+    let (ambient, diffuse, specular, power) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
+    let (n, l, v, visibility) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
+    (ambient + visibility * (diffuse * lambert(n, l) + specular * phong_oglpg(n, l, v, power))).into()
+}

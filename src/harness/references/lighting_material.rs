@@ -1,0 +1,20 @@
+//! Source: OpenGL Programming Guide, example 7.11: as printed, and with what its text means.
+
+use super::{Arguments, Entry, Expected};
+
+pub const REFERENCES: Entry = Entry {
+    module: "lighting::material",
+    functions: &[("material_index", material_index), ("material_index_oglpg", material_index_oglpg)],
+};
+
+/// Two materials for each index, the front's first.
+fn material_index(a: &mut Arguments<'_>) -> Expected {
+    let (index, front) = (a.f64(), a.bool());
+    Expected::from(2.0 * index + if front { 0.0 } else { 1.0 })
+}
+
+/// The next material behind, whatever the index.
+fn material_index_oglpg(a: &mut Arguments<'_>) -> Expected {
+    let (index, front) = (a.f64(), a.bool());
+    Expected::from(index + if front { 0.0 } else { 1.0 })
+}

@@ -1,0 +1,30 @@
+//! Sources: IEEE 754-2019, section 3.4; OpenGL Programming Guide, example 7.2.
+
+use super::{Arguments, Entry, Expected};
+use glam::DVec3;
+
+pub const REFERENCES: Entry = Entry {
+    module: "math::safe",
+    functions: &[
+        ("safe_normalize", safe_normalize),
+        ("safe_pow", |a| safe_pow(a.f64(), a.f64()).into()),
+        ("saturate_color", |a| a.vec3().clamp(DVec3::ZERO, DVec3::ONE).into()),
+    ],
+};
+
+/// A vector without a direction in f32 gives the fallback: where that begins, and whether a
+/// subnormal vector was flushed before, is up to the device.
+fn safe_normalize(a: &mut Arguments<'_>) -> Expected {
+    let (v, fallback) = (a.vec3(), a.vec3());
+    let smallest = f64::from(f32::MIN_POSITIVE);
+    let flushed = v.map(|x| if x.abs() < smallest { 0.0 } else { x });
+    match flushed.abs().max_element() {
+        0.0 => fallback.into(),
+        _ => Expected::from(v.normalize()).or(flushed.normalize()),
+    }
+}
+
+/// `max(x, 0)^e`, 0^0 = 1.
+pub fn safe_pow(x: f64, e: f64) -> f64 {
+    if e == 0.0 { 1.0 } else { x.max(0.0).powf(e) }
+}

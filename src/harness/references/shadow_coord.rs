@@ -1,0 +1,49 @@
+//! Sources: OpenGL Programming Guide, examples 7.16, 7.19 and 7.20; OpenGL: Build High Performance
+//! Graphics, recipe 5 (the guard on w); Igalia, part II (the depth view).
+
+use super::{Arguments, Entry, Expected};
+use glam::DVec4;
+
+pub const REFERENCES: Entry = Entry {
+    module: "shadow::coord",
+    functions: &[
+        ("shadow_coord", shadow_coord),
+        ("project", |a| project(a.vec4(), a.f64())),
+        ("project_gl", project_gl),
+        ("linearize_depth", linearize_depth),
+        ("depth_view_igl", |a| (1.0 - (1.0 - a.f64()) * 100.0).into()),
+    ],
+};
+
+fn shadow_coord(a: &mut Arguments<'_>) -> Expected {
+    let (matrix, p) = (a.mat4(), a.vec3());
+    Expected::words((matrix * p.extend(1.0)).to_array())
+}
+
+/// u = x/2 + 1/2, v = 1/2 - y/2, depth = z, after division by w; rows of the map from the top.
+fn project(clip: DVec4, min_w: f64) -> Expected {
+    if clip.w <= min_w.max(0.0) {
+        return Expected::words([0.0; 4]);
+    }
+    let ndc = clip / clip.w;
+    let (u, v) = (0.5 * ndc.x + 0.5, 0.5 - 0.5 * ndc.y);
+    let inside = [u, v, ndc.z].iter().all(|value| (0.0..=1.0).contains(value));
+    Expected::words([u, v, ndc.z, f64::from(u8::from(inside))])
+}
+
+/// OpenGL's bias matrix: everything scaled and moved by one half.
+fn project_gl(a: &mut Arguments<'_>) -> Expected {
+    let (clip, min_w) = (a.vec4(), a.f64());
+    if clip.w <= min_w.max(0.0) {
+        return Expected::words([0.0; 4]);
+    }
+    let at = clip / clip.w * 0.5 + DVec4::splat(0.5);
+    let inside = [at.x, at.y, at.z].iter().all(|value| (0.0..=1.0).contains(value));
+    Expected::words([at.x, at.y, at.z, f64::from(u8::from(inside))])
+}
+
+/// n*f/(f - d*(f - n)).
+fn linearize_depth(a: &mut Arguments<'_>) -> Expected {
+    let (d, near, far) = (a.f64(), a.f64(), a.f64());
+    (near * far / (far - d * (far - near))).into()
+}

@@ -1,0 +1,225 @@
+//! The numeric harness: executors, kernels, cases.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+use lamplight::compose::Language;
+use lamplight::diagnostic::render::Form;
+use lamplight::harness::library::Library;
+use lamplight::harness::{self, check, executors, expression, kernel};
+use lamplight::source::{Memory, SourceSet};
+use libtest_mimic::{Failed, Trial};
+
+type Run = fn() -> Result<(), Failed>;
+
+/// One trial for each property of the harness and each executor.
+pub fn trials() -> Vec<Trial> {
+    let executors = executors::ALL.iter().map(|executor| {
+        Trial::test(format!("harness::executor::{}", executor.name), move || {
+            harness::on_thread(|| runs(executor).map_err(|failed| failed.message().unwrap_or_default().to_owned()))
+                .ok_or("panicked")?
+                .map_err(Failed::from)
+        })
+    });
+    let others: [(&str, Run); 5] = [
+        ("library", library),
+        ("expressions", expressions),
+        ("expression_errors", expression_errors),
+        ("case_errors", case_errors),
+        ("wrong_function", wrong_function),
+    ];
+    executors.chain(others.map(|(name, run)| Trial::test(format!("harness::{name}"), run))).collect()
+}
+
+/// Runs with every executor open, on a thread that ends before the trial does.
+fn opened<T: Send>(run: impl FnOnce(&mut [check::Open]) -> Result<T, Failed> + Send) -> Result<T, Failed> {
+    let outcome = harness::on_thread(|| {
+        let mut open = Vec::new();
+        for entry in executors::ALL {
+            open.push(check::Open { executor: entry.name, session: (entry.open)().map_err(|error| entry.missing(&error))? });
+        }
+        run(&mut open).map_err(|failed| failed.message().unwrap_or_default().to_owned())
+    });
+    outcome.ok_or("panicked")?.map_err(Failed::from)
+}
+
+/// The library's own cases, in both languages, on every executor.
+fn library() -> Result<(), Failed> {
+    opened(|open| {
+        let library = Library::embedded();
+        let sources = Mutex::new(SourceSet::default());
+        let only = std::env::var("LAMPLIGHT_CASES").unwrap_or_default();
+        let paths: Vec<_> = library.case_files().into_iter().filter(|path| path.contains(&only)).collect();
+        let report =
+            library.check(&sources, &paths, &[Language::Wesl, Language::Glsl], open).map_err(|errors| render(&sources, &errors))?;
+        if report.passed() { Ok(()) } else { Err(check::failures(&report).into()) }
+    })
+}
+
+/// Values of expressions, alike in both languages and on every executor.
+const EXPRESSIONS: &[(&str, &str)] = &[
+    ("lighting::spot::cone_exponent(0.5, 0.25, 2.0)", "0.25"),
+    ("lamplight::lighting::spot::cone_hard(0.5, 0.75) + 1f", "1"),
+    ("vec3f(1, 2, 3).zyx * 0.5", "1.5 1 0.5"),
+    ("mat2x2<f32>(1.0, 2.0, 3.0, 4.0)", "1 2 3 4"),
+    ("math::safe::is_nan_bits(1.0)", "false"),
+    ("lighting::material::material_index(3, false)", "7"),
+    (
+        "ambient::sh::sh4_irradiance(vec3f(0.0), array<vec3f, 4>(vec3f(1.0), vec3f(), vec3f(0.0), vec3<f32>(0.0)))",
+        "0.886227 0.886227 0.886227",
+    ),
+    ("brdf::diffuse::lambert(vec3f(0.0, 1.0, 0.0), vec3f(0.0, 1.0, 0.0))", "1"),
+    ("shadow::coord::project(vec4f(0.0, 0.0, 0.5, 1.0), 0.0)", "0.5 0.5 0.5 true"),
+];
+
+fn expressions() -> Result<(), Failed> {
+    opened(|open| {
+        let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
+        let mut wrong = String::new();
+        for (text, expected) in EXPRESSIONS {
+            for open in open.iter_mut() {
+                for language in [Language::Wesl, Language::Glsl] {
+                    let found = match expression::evaluate(&library, &sources, text, language, open.session.as_mut()) {
+                        Ok(value) => value.to_string(),
+                        Err(errors) => render(&sources, &errors).message().unwrap_or_default().to_owned(),
+                    };
+                    if found != *expected {
+                        wrong += &format!("{text} in {language:?} on {}: {found}, not {expected}\n", open.executor);
+                    }
+                }
+            }
+        }
+        if wrong.is_empty() { Ok(()) } else { Err(wrong.into()) }
+    })
+}
+
+/// Errors of expressions stand in the expression.
+const EXPRESSION_ERRORS: &[(&str, Language, &str)] = &[
+    ("1.0 +", Language::Wesl, "<expression>:1:"),
+    ("vec3f(1.0) * nothing", Language::Wesl, "<expression>:1:14: error["),
+    ("lighting::spot::cone_harf(0.5, 0.75)", Language::Wesl, "<expression>:1:"),
+    ("select(1.0, 2.0, true)", Language::Glsl, "<expression>:1:1: error[glsl-error]"),
+];
+
+fn expression_errors() -> Result<(), Failed> {
+    opened(|open| {
+        let library = Library::embedded();
+        for (text, language, expected) in EXPRESSION_ERRORS {
+            let sources = Mutex::new(SourceSet::default());
+            let errors = expression::evaluate(&library, &sources, text, *language, open[0].session.as_mut()).err().unwrap_or_default();
+            let found = lamplight::diagnostic::render::render(&sources.lock().unwrap(), &errors, Form::Short);
+            if !found.starts_with(expected) {
+                return Err(format!("{text}: {found}, not {expected}").into());
+            }
+        }
+        Ok(())
+    })
+}
+
+const USER_MODULE: &str = "fn half(x: f32) -> f32 { return 0.5 * x; }\nfn wrong(x: f32) -> f32 { return select(x, x + 1.0, x > 3.0); }";
+
+/// A case file of a user's module, and the place and words of what is wrong with it.
+const CASE_ERRORS: &[(&str, &str)] = &[
+    ("[[case]\n", "mine.toml:1:"),
+    ("[[case]]\nfunction = \"half\"\ninputs = { y = 1 }\n", "mine.toml:3:16: error[case-invalid]: the function has no parameter `y`"),
+    ("[[case]]\nfunction = \"half\"\ninput = { x = 1 }\n", "mine.toml:3:1: error[case-invalid]: unknown key `input`"),
+    ("[[case]]\nfunction = \"half\"\ninputs = { x = { grit = [0, 1], count = 3 } }\n", "mine.toml:3:"),
+    ("[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\n", "mine.toml:2:12: error[case-invalid]: there is no reference for `mine::half`"),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"0.5*z\"\n",
+        "mine.toml:4:16: error[case-invalid]: there is no parameter `z`",
+    ),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"0.5*x\"\ntolerance = { ulps = 1 }\n",
+        "mine.toml:5:15: error[case-invalid]: unknown error term `ulps`",
+    ),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { rises = \"x\" }\n",
+        "mine.toml:5:8: error[case-invalid]: this table is no law",
+    ),
+    ("[[case]]\nfunction = \"hal\"\ninputs = { x = 1 }\n", "mine.toml:2:12: error["),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = { hemisphere = \"n\", count = 2 } }\nformula = \"x\"\n",
+        "mine.toml:3:16: error[case-invalid]: `n` is given no values",
+    ),
+];
+
+fn user_library(cases: &str) -> Library {
+    let files = [("mine.wesl", USER_MODULE), ("mine.toml", cases)].map(|(path, text)| (path.to_owned(), text.to_owned()));
+    Library::new("mine", Arc::new(Memory(files.into())), Vec::new())
+}
+
+fn case_errors() -> Result<(), Failed> {
+    let mut wrong = String::new();
+    for (text, expected) in CASE_ERRORS {
+        let sources = Mutex::new(SourceSet::default());
+        let errors = user_library(text).check(&sources, &["mine.toml".to_owned()], &[Language::Wesl], &mut []).err().unwrap_or_default();
+        let found = lamplight::diagnostic::render::render(&sources.lock().unwrap(), &errors, Form::Short);
+        if !found.starts_with(expected) {
+            wrong += &format!("{text}: {found}not {expected}\n");
+        }
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(wrong.into()) }
+}
+
+/// A function that is off fails with its smallest input.
+fn wrong_function() -> Result<(), Failed> {
+    let cases =
+        "[[case]]\nfunction = \"wrong\"\nformula = \"x\"\nlaws = { falling = \"x\" }\ninputs = { x = { random = [0, 10], count = 500 } }\n";
+    opened(|open| {
+        let sources = Mutex::new(SourceSet::default());
+        let report = user_library(cases)
+            .check(&sources, &["mine.toml".to_owned()], &[Language::Wesl], open)
+            .map_err(|errors| render(&sources, &errors))?;
+        let text = check::failures(&report);
+        for expected in
+            ["x = 4 (0x40800000)", "found 5 (0x40a00000)", "the law `falling` is broken", "rows = [{ x = [4.0], expect = [4.0] }]"]
+        {
+            if !text.contains(expected) {
+                return Err(format!("{expected} is missing in\n{text}").into());
+            }
+        }
+        Ok(())
+    })
+}
+
+fn render(sources: &Mutex<SourceSet>, errors: &[lamplight::diagnostic::Diagnostic]) -> Failed {
+    lamplight::diagnostic::render::render(&sources.lock().unwrap(), errors, Default::default()).into()
+}
+
+const SHAPES: &str = "
+struct Inner { flag: bool, pair: vec2f }
+struct Outer { inner: array<Inner, 2>, m: mat3x2f, i: i32 }
+fn shapes(a: f32, o: Outer, u: vec3u) -> Outer {
+    var r = o;
+    r.inner[1].flag = !o.inner[1].flag;
+    r.m[1].y = a * 2.0;
+    r.i = o.i - i32(u.z);
+    return r;
+}";
+
+fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
+    let module = naga::front::wgsl::parse_str(SHAPES)?;
+    let kernel = kernel::build(&module, "shapes", &BTreeMap::new()).map_err(|error| format!("{error:?}"))?;
+    assert_eq!((kernel.input_words(), kernel.result_words()), (17, 13));
+    let mut session = (executor.open)().map_err(|error| executor.missing(&error))?;
+    let count = 70_000u32;
+    let inputs: Vec<u32> = (0..count).flat_map(shapes_input).collect();
+    let results = session.run(&kernel, &inputs).map_err(|error| format!("{error:?}"))?;
+    for (i, found) in results.chunks(13).enumerate() {
+        assert_eq!(found, shapes_expected(i as u32), "invocation {i} on {}", session.adapter());
+    }
+    assert_eq!(results.len(), count as usize * 13);
+    Ok(())
+}
+
+fn shapes_input(i: u32) -> [u32; 17] {
+    let f = |x: u32| ((i + x) as f32).to_bits();
+    [f(0), 1, f(1), f(2), i & 1, f(3), f(4), f(5), f(6), f(7), f(8), f(9), f(10), i, 0, 0, 7]
+}
+
+fn shapes_expected(i: u32) -> [u32; 13] {
+    let f = |x: u32| ((i + x) as f32).to_bits();
+    let doubled = (i as f32 * 2.0).to_bits();
+    [1, f(1), f(2), 1 - (i & 1), f(3), f(4), f(5), f(6), f(7), doubled, f(9), f(10), i.wrapping_sub(7)]
+}
