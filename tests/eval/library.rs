@@ -56,7 +56,7 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
             let inside = match kind {
                 Kind::Float => {
                     let found = f64::from(f32::from_bits(*found));
-                    !wanted.value().is_finite() || !((found - wanted.value()).abs() > wanted.error())
+                    wanted.error().is_infinite() || (found - wanted.value()).abs() <= wanted.error()
                 }
                 _ => *found == wanted.word(),
             };
