@@ -1,7 +1,7 @@
 //! How values of naga's types lie in slots, and in the bytes of buffers.
 
 use super::Error;
-use naga::{ArraySize, Handle, Scalar, ScalarKind, Type, TypeInner, UniqueArena};
+use naga::{ArraySize, Binding, Handle, Scalar, ScalarKind, Type, TypeInner, UniqueArena};
 
 /// Most slots one program may take: 64 MiB of `f64` for four lanes of a quad.
 pub const MAX_SLOTS: u32 = 1 << 21;
@@ -76,6 +76,19 @@ impl<'m> Layout<'m> {
             ref inner => to.extend(std::iter::repeat_n(leaf(inner), slots as usize)),
         }
         Ok(())
+    }
+
+    /// What each slot of an entry point's argument or result is bound to.
+    pub fn bindings(&self, ty: Handle<Type>, own: &Option<Binding>, to: &mut Vec<Option<Binding>>) -> Result<(), Error> {
+        match (own, &self.types[ty].inner) {
+            (None, TypeInner::Struct { members, .. }) => {
+                members.iter().try_for_each(|member| self.bindings(member.ty, &member.binding, to))
+            }
+            _ => {
+                to.extend(std::iter::repeat_n(own.clone(), self.size(ty)? as usize));
+                Ok(())
+            }
+        }
     }
 
     /// First slot of a component and its slots: member, element, column or scalar.

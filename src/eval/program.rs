@@ -45,6 +45,9 @@ pub struct Function {
     pub arguments: Vec<Kind>,
     /// Kinds of the flattened result, then of what is left behind each pointer.
     pub result: Vec<Kind>,
+    /// For entry points: the built-in or location each argument and each result slot belongs to.
+    pub inputs: Vec<Option<naga::Binding>>,
+    pub outputs: Vec<Option<naga::Binding>>,
     /// Slots of the returned value alone.
     pub(super) returned: u32,
     pub(super) parameters: Vec<Parameter>,

@@ -45,8 +45,10 @@ struct Out { @builtin(position) p: vec4f, @location(0) n: vec3f }
 }
 ";
 
-/// Function, arguments, result; `linear` and `repeat` choose the sampler.
-const CASES: &[(&str, bool, bool, &[f64], &[f64])] = &[
+/// Function, linear, repeat, arguments, result.
+type Case = (&'static str, bool, bool, &'static [f64], &'static [f64]);
+
+const CASES: &[Case] = &[
     ("sample_flat", false, false, &[0.2, 0.2], &[1.0]),
     ("sample_flat", false, false, &[0.8, 0.2], &[2.0]),
     ("sample_flat", false, false, &[0.2, 0.8], &[3.0]),
@@ -126,7 +128,7 @@ fn resources(linear: bool, repeat: bool) -> Resources {
     }
 }
 
-fn check((name, linear, repeat, arguments, wanted): &(&str, bool, bool, &[f64], &[f64])) -> Result<(), Failed> {
+fn check((name, linear, repeat, arguments, wanted): &Case) -> Result<(), Failed> {
     let program = program(SHADER)?;
     let mut machine = Machine::<f64>::new(&program)?;
     machine.bind(resources(*linear, *repeat))?;
@@ -174,6 +176,13 @@ fn entries() -> Result<(), Failed> {
     let mut machine = Machine::<f64>::new(&program)?;
     machine.bind(resources(false, false))?;
     let (vs, fs) = (program.function("vs").ok_or("vs")?, program.function("fs").ok_or("fs")?);
+    let location = |binding: &Option<naga::Binding>| match binding {
+        Some(naga::Binding::Location { location, .. }) => Some(*location),
+        _ => None,
+    };
+    let signature = program.signature(vs).ok_or("vs")?;
+    assert_eq!(signature.inputs.iter().map(location).collect::<Vec<_>>(), [None, Some(0), Some(0), Some(0)]);
+    assert_eq!(signature.outputs.iter().map(location).collect::<Vec<_>>(), [None, None, None, None, Some(0), Some(0), Some(0)]);
     let index = <f64 as lamplight::eval::Number>::from_word(3);
     assert_eq!(machine.call(vs, &[index, 4.0, 5.0, 6.0])?, &[4.0, 5.0, 6.0, 3.0, 4.0, 5.0, 6.0]);
     let front = <f64 as lamplight::eval::Number>::from_word(1);

@@ -198,6 +198,8 @@ impl<'m> Build<'m> {
             name,
             arguments: Vec::new(),
             result: Vec::new(),
+            inputs: Vec::new(),
+            outputs: Vec::new(),
             returned: 0,
             parameters: Vec::new(),
             result_slot: 0,
@@ -223,6 +225,10 @@ impl<'m> Build<'m> {
             self.layout.kinds(returned.ty, &mut result)?;
         }
         let returned = result.len() as u32;
+        let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
+        if let Some(returned) = &function.result {
+            self.layout.bindings(returned.ty, &returned.binding, &mut outputs)?;
+        }
         let mut parameters = Vec::new();
         for argument in &function.arguments {
             let pointee = pointee(&self.module.types[argument.ty].inner);
@@ -230,6 +236,7 @@ impl<'m> Build<'m> {
             self.layout.kinds(pointee.unwrap_or(argument.ty), &mut kinds)?;
             let (slots, n) = (self.layout.size(argument.ty)?, kinds.len() as u32);
             let behind = pointee.map(|_| result.len() as u32);
+            self.layout.bindings(pointee.unwrap_or(argument.ty), &argument.binding, &mut inputs)?;
             parameters.push(Parameter { slot: self.alloc(slots)?, n, pointee: behind });
             result.extend(kinds.iter().filter(|_| pointee.is_some()));
             arguments.extend(kinds);
@@ -240,7 +247,7 @@ impl<'m> Build<'m> {
         let buffers = self.buffers(info);
         let index = self.program.functions.len() - 1;
         let entry = &mut self.program.functions[index];
-        *entry = Function { arguments, result, returned, parameters, result_slot, buffers, ..entry.clone() };
+        *entry = Function { arguments, result, inputs, outputs, returned, parameters, result_slot, buffers, ..entry.clone() };
         let types = function.expressions.iter().map(|(handle, _)| info[handle].ty.inner_with(&self.module.types)).collect();
         let mut body = Body::new(self, &function.expressions, types);
         (body.function, body.arguments) = (index as u32, slots);

@@ -35,8 +35,10 @@ fn times(slope: f64, error: f64) -> f64 {
 }
 
 impl Bounded {
+    /// Where f32 may overflow, or the value is not a number, anything is allowed.
     fn new(value: f64, error: f64) -> Self {
-        Self { value, error: if error.is_nan() { f64::INFINITY } else { error } }
+        let held = value.abs() + error <= f64::from(f32::MAX);
+        Self { value, error: if held { error } else { f64::INFINITY } }
     }
 
     fn exact(value: f64) -> Self {

@@ -32,7 +32,7 @@ impl Session for Cpu {
         machine.bind(resources(kernel)).map_err(failed)?;
         let (function, handles) = (FunctionId::from(kernel.function), handles(kernel, program)?);
         let stride = kernel.input_words() as usize;
-        let count = if stride == 0 { 1 } else { inputs.len() / stride };
+        let count = inputs.len().checked_div(stride).unwrap_or(1);
         let (mut results, mut arguments, mut result) = (Vec::new(), Vec::new(), Vec::new());
         for call in 0..count {
             flatten(kernel, &handles, &inputs[call * stride..(call + 1) * stride], &mut arguments);
