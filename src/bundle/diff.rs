@@ -68,7 +68,9 @@ fn compare(program: &str, place: EntryPlace<'_>, old: Option<&EntryContents>, ne
             (Some(one), Some(other)) if one == other => continue,
             (None, _) => ("added", Vec::new()),
             (_, None) => ("removed", Vec::new()),
-            (Some(one), Some(other)) => ("changed", parts(old.and_then(|entry| entry.units.get(one)), new.and_then(|entry| entry.units.get(other)))),
+            (Some(one), Some(other)) => {
+                ("changed", parts(old.and_then(|entry| entry.units.get(one)), new.and_then(|entry| entry.units.get(other))))
+            }
         };
         changes.push(Change { program: program.to_owned(), language: place.0, entry: place.1.to_owned(), key: key.clone(), kind, parts });
     }

@@ -120,7 +120,8 @@ impl Packed {
         let (offset, length, expected) = self.sections[index];
         let section = slice(&self.bytes, offset, length, SECTIONS[index])?;
         if index != DATA {
-            let check = || if checksum(section) == expected { Ok(()) } else { Err(Error::corrupt(SECTIONS[index], "the checksum does not match")) };
+            let check =
+                || if checksum(section) == expected { Ok(()) } else { Err(Error::corrupt(SECTIONS[index], "the checksum does not match")) };
             self.checked[index].get_or_init(check).clone()?;
         }
         Ok(section)
@@ -279,7 +280,8 @@ impl Store for Packed {
         let mut targets = BTreeMap::new();
         for artifact in first..first + count {
             let (target, native, blob) = self.artifact_record(artifact)?;
-            targets.insert(target.name.clone(), Artifact { extension: target.extension.clone(), native: Arc::new(self.text(native)?), blob });
+            targets
+                .insert(target.name.clone(), Artifact { extension: target.extension.clone(), native: Arc::new(self.text(native)?), blob });
         }
         Ok(Unit { reflection: Arc::new(self.text(reflection)?), targets })
     }

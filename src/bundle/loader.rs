@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use super::contents::Contents;
 use super::store::{self, Store};
-use super::{Artifact, Axis, EntryContents, Error, Language, Miss, Native, ProgramContents, Reflection, Target, Unit, directory, file, key};
+use super::{
+    Artifact, Axis, EntryContents, Error, Language, Miss, Native, ProgramContents, Reflection, Target, Unit, directory, file, key,
+};
 
 /// An open bundle of either form. Cheap to share between threads.
 ///

@@ -27,7 +27,9 @@ pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
     for (name, program) in &contents.programs {
         let mut sets = BTreeMap::new();
         let mut entries = Vec::new();
-        for (language, entry, contents) in program.languages.iter().flat_map(|(language, entries)| entries.iter().map(move |(name, entry)| (*language, name, entry))) {
+        for (language, entry, contents) in
+            program.languages.iter().flat_map(|(language, entries)| entries.iter().map(move |(name, entry)| (*language, name, entry)))
+        {
             let keys = packer.key_set(&mut sets, contents)?;
             let units = packer.unit_numbers(contents)?;
             entries.push(EntryMeta { language, name: entry.clone(), keys, units });
