@@ -95,7 +95,8 @@ impl Contents {
     /// [`Error::Conflict`] where both have a key or a program's axes and disagree.
     pub fn merge(&mut self, other: Self) -> Result<(), Error> {
         for (name, program) in other.programs {
-            let mine = self.programs.entry(name.clone()).or_insert_with(|| ProgramContents { axes: program.axes.clone(), ..Default::default() });
+            let mine =
+                self.programs.entry(name.clone()).or_insert_with(|| ProgramContents { axes: program.axes.clone(), ..Default::default() });
             if mine.axes != program.axes {
                 return Err(Error::Conflict(format!("the axes of program `{name}`")));
             }

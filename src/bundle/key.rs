@@ -8,7 +8,10 @@ pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
     let mut parts: Vec<(&str, &str)> = Vec::new();
     for part in key.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let (name, value) = split(part);
-        let axis = axes.iter().find(|axis| axis.name == name).ok_or_else(|| bad(format!("there is no axis `{name}`{}", list(axes.iter().map(|axis| &axis.name)))))?;
+        let axis = axes
+            .iter()
+            .find(|axis| axis.name == name)
+            .ok_or_else(|| bad(format!("there is no axis `{name}`{}", list(axes.iter().map(|axis| &axis.name)))))?;
         if !axis.values.iter().any(|known| known == value) {
             return Err(bad(format!("axis `{name}` has no value `{value}`{}", list(axis.values.iter()))));
         }
@@ -19,7 +22,11 @@ pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
     }
     parts.retain(|(name, value)| !axes.iter().any(|axis| axis.name == *name && axis.default == *value));
     parts.sort_unstable();
-    Ok(parts.iter().map(|(name, value)| if *value == "true" { (*name).to_owned() } else { format!("{name}={value}") }).collect::<Vec<_>>().join(","))
+    Ok(parts
+        .iter()
+        .map(|(name, value)| if *value == "true" { (*name).to_owned() } else { format!("{name}={value}") })
+        .collect::<Vec<_>>()
+        .join(","))
 }
 
 /// In how many axes two canonical keys differ.

@@ -1,9 +1,33 @@
 //! Compiled permutations, as a directory or one file, and the loader an engine uses.
 //!
+//! The directory form is for reading and for version control: `manifest.json`, described by
+//! [`SCHEMA`], and `blobs/` named by content. The single file is for shipping: see [`pack`].
 //! This module uses nothing else of the crate.
 
+mod contents;
+mod diff;
+mod directory;
+mod error;
+mod file;
+mod key;
+mod layout;
+mod loader;
+mod manifest;
+mod pack;
 mod reflection;
+mod store;
 mod target;
 
+pub use contents::{Artifact, Axis, Contents, EntryContents, Hash, ProgramContents, Unit};
+pub use diff::{Change, Difference, diff};
+pub use directory::write_directory;
+pub use error::{Error, Miss};
+pub use key::canonical;
+pub use loader::{Bundle, Found, Program, Shader};
+pub use manifest::SCHEMA;
+pub use pack::{pack, write_file};
 pub use reflection::{Binding, Combined, Kind, Language, Member, Native, Override, Pair, Place, Reflection, Slot, Stage, Varying};
 pub use target::Target;
+
+/// Version of both forms; a loader reads exactly one.
+pub const VERSION: u32 = 1;

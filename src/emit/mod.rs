@@ -91,9 +91,8 @@ fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted,
         return (writer.write)(&source).map_err(failed);
     }
     let chosen = Some((point.stage, point.name.as_str()));
-    let (module, info) =
-        naga::back::pipeline_constants::process_overrides(&validated.module, &validated.info, chosen, &Default::default())
-            .map_err(|error| failed(error.to_string()))?;
+    let (module, info) = naga::back::pipeline_constants::process_overrides(&validated.module, &validated.info, chosen, &Default::default())
+        .map_err(|error| failed(error.to_string()))?;
     (writer.write)(&Source { module: &module, info: &info, stage: point.stage, entry: &point.name, index: 0 }).map_err(failed)
 }
 

@@ -85,7 +85,8 @@ fn varying(module: &Module, name: Option<&str>, ty: Handle<Type>, binding: &naga
 }
 
 fn bindings(module: &Module, info: &FunctionInfo, layouter: &Layouter) -> Vec<Binding> {
-    let mut found: Vec<Binding> = used(module, info).filter_map(|(handle, variable)| binding(module, info[handle], variable, layouter)).collect();
+    let mut found: Vec<Binding> =
+        used(module, info).filter_map(|(handle, variable)| binding(module, info[handle], variable, layouter)).collect();
     found.sort_by_key(|binding| (binding.group, binding.binding));
     found
 }

@@ -44,7 +44,8 @@ fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     match composed.language {
         Language::Wesl => wgsl::parse_str(&composed.text).map_err(|error| vec![report::wgsl(composed, &error)]),
         Language::Glsl => {
-            let stage = composed.stage.ok_or_else(|| vec![Diagnostic::error(codes::GLSL_ERROR, "the stage of the GLSL text is not known")])?;
+            let stage =
+                composed.stage.ok_or_else(|| vec![Diagnostic::error(codes::GLSL_ERROR, "the stage of the GLSL text is not known")])?;
             let options = glsl::Options::from(naga_stage(stage));
             glsl::Frontend::default().parse(&options, &composed.text).map_err(|errors| report::glsl(composed, &errors))
         }

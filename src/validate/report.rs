@@ -36,9 +36,11 @@ pub fn validation(composed: &Composed, error: &naga::WithSpan<ValidationError>) 
         Language::Wesl => codes::WGSL_ERROR,
         Language::Glsl => codes::GLSL_ERROR,
     };
-    // The innermost span, which naga adds first, says most: it becomes the diagnostic's place.
+    // The shortest span says most: it becomes the diagnostic's place.
+    let mut spans: Vec<_> = error.spans().map(|(span, context)| (span.to_range(), kind(context))).collect();
+    spans.sort_by_key(|(range, _)| range.as_ref().map_or(usize::MAX, ExactSizeIterator::len));
     let diagnostic = Diagnostic::error(code, sentence(&causes(error.as_inner()).join(": ")));
-    error.spans().fold(diagnostic, |diagnostic, (span, context)| place(diagnostic, composed, span.to_range(), kind(context)))
+    spans.into_iter().fold(diagnostic, |diagnostic, (range, words)| place(diagnostic, composed, range, words))
 }
 
 /// A label where the range has an author, else a note that quotes the composed text.
@@ -69,8 +71,9 @@ fn causes(error: &dyn Error) -> Vec<String> {
 
 /// Removes indices into naga's arenas, such as ` [12]`, which mean nothing to an author.
 fn without_handles(message: &str) -> String {
+    let message = message.replace("Some([", "[").replace("])", "]");
     let mut clean = String::with_capacity(message.len());
-    let mut rest = message;
+    let mut rest = message.as_str();
     while let Some(start) = rest.find(" [") {
         let digits = rest[start + 2..].bytes().take_while(u8::is_ascii_digit).count();
         let end = start + 2 + digits;

@@ -10,7 +10,13 @@ use crate::emit::glsl;
 use crate::emit::slots::Numbering;
 use crate::emit::{Emitted, Entry, Source};
 
-pub const TARGET: Entry = Entry { target: Target::ESSL300, extension: "essl300.glsl", binary: false, about: "GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2", write };
+pub const TARGET: Entry = Entry {
+    target: Target::ESSL300,
+    extension: "essl300.glsl",
+    binary: false,
+    about: "GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2",
+    write,
+};
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     glsl::write(source, Version::new_gles(300), Numbering::Named)

@@ -10,7 +10,8 @@ use crate::emit::glsl;
 use crate::emit::slots::Numbering;
 use crate::emit::{Emitted, Entry, Source};
 
-pub const TARGET: Entry = Entry { target: Target::GLSL330, extension: "glsl330.glsl", binary: false, about: "GLSL 3.30 core, for OpenGL 3.3", write };
+pub const TARGET: Entry =
+    Entry { target: Target::GLSL330, extension: "glsl330.glsl", binary: false, about: "GLSL 3.30 core, for OpenGL 3.3", write };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     glsl::write(source, Version::Desktop(330), Numbering::Named)

@@ -11,7 +11,8 @@ use crate::emit::glsl;
 use crate::emit::slots::Numbering;
 use crate::emit::{Emitted, Entry, Source};
 
-pub const TARGET: Entry = Entry { target: Target::GLSL450, extension: "glsl450.glsl", binary: false, about: "GLSL 4.50 core, for OpenGL 4.5", write };
+pub const TARGET: Entry =
+    Entry { target: Target::GLSL450, extension: "glsl450.glsl", binary: false, about: "GLSL 4.50 core, for OpenGL 4.5", write };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     glsl::write(source, Version::Desktop(450), Numbering::Explicit)

@@ -36,9 +36,7 @@ fn options(source: &Source<'_>) -> Result<Options, String> {
         let space = u8::try_from(binding.group).ok().filter(|space| *space < u8::MAX).ok_or("groups above 254 have no register space")?;
         let group = SamplerIndexBufferKey { group: binding.group };
         options.binding_map.insert(binding, BindTarget { space, register: binding.binding, ..BindTarget::default() });
-        options
-            .sampler_buffer_binding_map
-            .insert(group, BindTarget { space: u8::MAX, register: binding.group, ..BindTarget::default() });
+        options.sampler_buffer_binding_map.insert(group, BindTarget { space: u8::MAX, register: binding.group, ..BindTarget::default() });
     }
     Ok(options)
 }

@@ -46,8 +46,6 @@ fn target(kind: Kind, slot: u8) -> BindTarget {
         Kind::Storage => BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() },
         Kind::Texture => BindTarget { texture: Some(slot), ..BindTarget::default() },
         Kind::StorageTexture => BindTarget { texture: Some(slot), mutable: true, ..BindTarget::default() },
-        Kind::Sampler | Kind::ComparisonSampler => {
-            BindTarget { sampler: Some(BindSamplerTarget::Resource(slot)), ..BindTarget::default() }
-        }
+        Kind::Sampler | Kind::ComparisonSampler => BindTarget { sampler: Some(BindSamplerTarget::Resource(slot)), ..BindTarget::default() },
     }
 }

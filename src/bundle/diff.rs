@@ -1,0 +1,85 @@
+//! What differs between two bundles.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::{Contents, EntryContents, Language, Unit};
+
+/// Everything that differs, sorted.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Difference {
+    /// Programs whose axes changed.
+    pub axes: Vec<String>,
+    pub permutations: Vec<Change>,
+}
+
+/// One permutation of one entry point that differs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Change {
+    pub program: String,
+    pub language: Language,
+    pub entry: String,
+    pub key: String,
+    /// `added`, `removed`, or `changed`.
+    pub kind: &'static str,
+    /// Of a changed one: `reflection`, and the targets whose bytes or slots changed.
+    pub parts: Vec<String>,
+}
+
+impl Difference {
+    /// Whether the bundles hold the same.
+    pub fn is_empty(&self) -> bool {
+        self.axes.is_empty() && self.permutations.is_empty()
+    }
+}
+
+/// Compares `new` with `old`.
+pub fn diff(old: &Contents, new: &Contents) -> Difference {
+    let mut difference = Difference::default();
+    let programs: BTreeSet<&String> = old.programs.keys().chain(new.programs.keys()).collect();
+    for program in programs {
+        let axes = |contents: &Contents| contents.programs.get(program).map(|program| program.axes.clone()).unwrap_or_default();
+        if axes(old) != axes(new) {
+            difference.axes.push(program.clone());
+        }
+        let (before, after) = (entries(old, program), entries(new, program));
+        let places: BTreeSet<_> = before.keys().chain(after.keys()).copied().collect();
+        for place in places {
+            compare(program, place, before.get(&place).copied(), after.get(&place).copied(), &mut difference.permutations);
+        }
+    }
+    difference
+}
+
+type EntryPlace<'a> = (Language, &'a str);
+
+fn entries<'a>(contents: &'a Contents, program: &str) -> BTreeMap<EntryPlace<'a>, &'a EntryContents> {
+    let languages = contents.programs.get(program).into_iter().flat_map(|program| &program.languages);
+    languages.flat_map(|(language, entries)| entries.iter().map(|(name, entry)| ((*language, name.as_str()), entry))).collect()
+}
+
+fn compare(program: &str, place: EntryPlace<'_>, old: Option<&EntryContents>, new: Option<&EntryContents>, changes: &mut Vec<Change>) {
+    let keys = |entry: Option<&EntryContents>| entry.map(|entry| entry.keys.clone()).unwrap_or_default();
+    let (before, after) = (keys(old), keys(new));
+    let all: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
+    for key in all {
+        let (kind, parts) = match (before.get(key), after.get(key)) {
+            (Some(one), Some(other)) if one == other => continue,
+            (None, _) => ("added", Vec::new()),
+            (_, None) => ("removed", Vec::new()),
+            (Some(one), Some(other)) => {
+                ("changed", parts(old.and_then(|entry| entry.units.get(one)), new.and_then(|entry| entry.units.get(other))))
+            }
+        };
+        changes.push(Change { program: program.to_owned(), language: place.0, entry: place.1.to_owned(), key: key.clone(), kind, parts });
+    }
+}
+
+fn parts(old: Option<&Unit>, new: Option<&Unit>) -> Vec<String> {
+    let (Some(old), Some(new)) = (old, new) else { return Vec::new() };
+    let reflection = (old.reflection != new.reflection).then(|| "reflection".to_owned());
+    let targets: BTreeSet<&String> = old.targets.keys().chain(new.targets.keys()).collect();
+    let targets = targets.into_iter().filter(|target| old.targets.get(*target) != new.targets.get(*target)).cloned();
+    reflection.into_iter().chain(targets).collect()
+}

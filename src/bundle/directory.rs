@@ -1,0 +1,177 @@
+//! The directory form: `manifest.json` and `blobs/`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::contents::{checksum, hex};
+use super::manifest::{self, ManifestArtifact, ManifestUnit};
+use super::store::{Artifact, Program, Programs, Store, Unit};
+use super::{Contents, Error, Native, Reflection};
+
+const MANIFEST: &str = "manifest.json";
+const BLOBS: &str = "blobs";
+const TEMPORARY: &str = ".tmp-";
+
+/// Writes the directory form over whatever bundle is there.
+///
+/// Blobs come first, under names of their own content; then the manifest, by one rename; then
+/// blobs nobody names any more are removed. Killed at any point, the directory is the old bundle
+/// or the new one, whole.
+pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
+    let path = path.as_ref();
+    let blobs = path.join(BLOBS);
+    fs::create_dir_all(&blobs)?;
+    let mut names = BTreeSet::new();
+    for artifact in artifacts(contents) {
+        let blob = hex(&checksum(&artifact.bytes));
+        let name = ManifestArtifact { blob, extension: artifact.extension.clone(), bytes: 0, native: String::new() }.file()?;
+        if names.insert(name.clone()) {
+            replace(&blobs.join(name), &artifact.bytes)?;
+        }
+    }
+    replace(&path.join(MANIFEST), manifest::write(contents)?.as_bytes())?;
+    remove_stale(&blobs, &names)
+}
+
+/// Writes a file beside and renames it into place, unless it is there with these bytes already.
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    static NEXT: AtomicU32 = AtomicU32::new(0);
+    if fs::metadata(path).is_ok_and(|found| found.len() == bytes.len() as u64) && fs::read(path).is_ok_and(|found| found == bytes) {
+        return Ok(());
+    }
+    let temporary = format!("{TEMPORARY}{}-{}", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+    let temporary = path.with_file_name(temporary);
+    let written = fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        // The error that matters is the first one.
+        let _ = fs::remove_file(&temporary);
+    }
+    Ok(written?)
+}
+
+fn artifacts(contents: &Contents) -> impl Iterator<Item = &super::Artifact> {
+    let entries = contents.programs.values().flat_map(|program| program.languages.values()).flat_map(|entries| entries.values());
+    entries.flat_map(|entry| entry.units.values()).flat_map(|unit| unit.targets.values())
+}
+
+/// Removes blobs that are not named, and what a killed run left.
+fn remove_stale(blobs: &Path, names: &BTreeSet<String>) -> Result<(), Error> {
+    for entry in fs::read_dir(blobs)? {
+        let entry = entry?;
+        let is_named = entry.file_name().to_str().is_some_and(|name| names.contains(name));
+        if !is_named && entry.file_type()?.is_file() {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// An open directory; blobs are read when asked for.
+pub struct Directory {
+    blobs: PathBuf,
+    programs: Programs,
+    /// By number of the entry point.
+    keys: Vec<BTreeMap<String, u32>>,
+    units: Vec<(Arc<Reflection>, BTreeMap<String, (ManifestArtifact, u32)>)>,
+    natives: BTreeMap<String, Arc<Native>>,
+    /// By number of the blob.
+    artifacts: Vec<ManifestArtifact>,
+}
+
+/// Reads the manifest.
+pub fn open(path: &Path) -> Result<Directory, Error> {
+    let text = fs::read(path.join(MANIFEST)).map_err(|error| Error::Io(format!("{MANIFEST}: {error}")))?;
+    let text = String::from_utf8(text).map_err(|_| Error::corrupt(MANIFEST, "it is not UTF-8"))?;
+    let manifest = manifest::read(&text)?;
+    let mut directory = Directory {
+        blobs: path.join(BLOBS),
+        programs: Programs::new(),
+        keys: Vec::new(),
+        units: Vec::new(),
+        natives: manifest.natives.into_iter().map(|(name, native)| (name, Arc::new(native))).collect(),
+        artifacts: Vec::new(),
+    };
+    let reflections: BTreeMap<_, _> = manifest.reflections.into_iter().map(|(name, reflection)| (name, Arc::new(reflection))).collect();
+    let mut numbers = BTreeMap::new();
+    for (name, unit) in manifest.units {
+        numbers.insert(name, directory.units.len() as u32);
+        directory.add_unit(unit, &reflections)?;
+    }
+    for (name, program) in manifest.programs {
+        let mut index = Program { axes: program.axes, ..Program::default() };
+        for (language, entries) in program.entries {
+            for (entry, contents) in entries {
+                index.entries.insert((language, entry), directory.keys.len());
+                let number = |(key, unit)| Some((key, *numbers.get(&unit)?));
+                let keys: Option<_> = contents.keys.into_iter().map(number).collect();
+                directory.keys.push(keys.ok_or_else(|| Error::corrupt(MANIFEST, "a key names no unit"))?);
+            }
+        }
+        directory.programs.insert(name, index);
+    }
+    Ok(directory)
+}
+
+impl Directory {
+    fn add_unit(&mut self, unit: ManifestUnit, reflections: &BTreeMap<String, Arc<Reflection>>) -> Result<(), Error> {
+        let reflection = reflections.get(&unit.reflection).ok_or_else(|| Error::corrupt(MANIFEST, "a unit names no reflection"))?;
+        let mut targets = BTreeMap::new();
+        for (target, artifact) in unit.targets {
+            artifact.file()?;
+            self.artifacts.push(artifact.clone());
+            targets.insert(target, (artifact, self.artifacts.len() as u32 - 1));
+        }
+        self.units.push((reflection.clone(), targets));
+        Ok(())
+    }
+
+    fn entry(&self, entry: usize) -> Result<&BTreeMap<String, u32>, Error> {
+        self.keys.get(entry).ok_or_else(|| Error::corrupt(MANIFEST, "an entry point is out of range"))
+    }
+}
+
+impl Store for Directory {
+    fn programs(&self) -> &Programs {
+        &self.programs
+    }
+
+    fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error> {
+        Ok(self.entry(entry)?.get(key).copied())
+    }
+
+    fn each_key(&self, entry: usize, visit: &mut dyn FnMut(&str, u32)) -> Result<(), Error> {
+        self.entry(entry)?.iter().for_each(|(key, unit)| visit(key, *unit));
+        Ok(())
+    }
+
+    fn unit(&self, unit: u32) -> Result<Unit, Error> {
+        let (reflection, targets) = self.units.get(unit as usize).ok_or_else(|| Error::corrupt(MANIFEST, "a unit is out of range"))?;
+        let targets = targets.iter().map(|(target, (artifact, blob))| {
+            let native = self.natives.get(&artifact.native).ok_or_else(|| Error::corrupt(MANIFEST, "an artifact names no native"))?;
+            Ok((target.clone(), Artifact { extension: artifact.extension.clone(), native: native.clone(), blob: *blob }))
+        });
+        Ok(Unit { reflection: reflection.clone(), targets: targets.collect::<Result<_, Error>>()? })
+    }
+
+    fn blob(&self, blob: u32) -> Result<Vec<u8>, Error> {
+        let artifact = self.artifacts.get(blob as usize).ok_or_else(|| Error::corrupt(MANIFEST, "a blob is out of range"))?;
+        let name = artifact.file()?;
+        let path = self.blobs.join(&name);
+        let part = format!("{BLOBS}/{name}");
+        let metadata = fs::metadata(&path).map_err(|error| Error::Io(format!("{part}: {error}")))?;
+        if metadata.len() != artifact.bytes {
+            return Err(Error::corrupt(part, format!("it has {} bytes, not {}", metadata.len(), artifact.bytes)));
+        }
+        let bytes = fs::read(&path).map_err(|error| Error::Io(format!("{part}: {error}")))?;
+        if hex(&checksum(&bytes)) == artifact.blob { Ok(bytes) } else { Err(Error::corrupt(part, "the checksum does not match")) }
+    }
+
+    fn verify(&self) -> Result<(), Error> {
+        let distinct: BTreeMap<&ManifestArtifact, u32> = self.artifacts.iter().zip(0..).collect();
+        distinct.values().try_for_each(|blob| self.blob(*blob).map(|_| ()))?;
+        (0..self.units.len() as u32).try_for_each(|unit| self.unit(unit).map(|_| ()))
+    }
+}

@@ -1,0 +1,330 @@
+//! Reads the single file where it lies: only its header and META are parsed on opening.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::Path;
+use std::sync::{Arc, Mutex, OnceLock};
+
+use memmap2::Mmap;
+use serde::de::DeserializeOwned;
+
+use super::contents::{Hash, checksum};
+use super::layout::*;
+use super::store::{Artifact, Program, Programs, Store, Unit};
+use super::{Error, Reflection, VERSION};
+
+/// Decompressed groups that are kept: what a level's worth of similar shaders needs.
+const KEPT_GROUPS: usize = 16;
+
+/// An open single-file bundle.
+pub struct Packed {
+    bytes: Bytes,
+    sections: [(usize, usize, Hash); SECTIONS.len()],
+    /// Outcome of each section's checksum, on first use.
+    checked: [OnceLock<Result<(), Error>>; SECTIONS.len()],
+    meta: Meta,
+    programs: Programs,
+    entries: Vec<EntryMeta>,
+    groups: Mutex<Vec<(u32, Arc<[u8]>)>>,
+}
+
+enum Bytes {
+    Mapped(Mmap),
+    Owned(Vec<u8>),
+}
+
+impl std::ops::Deref for Bytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Mapped(map) => map,
+            Self::Owned(bytes) => bytes,
+        }
+    }
+}
+
+/// Maps the file. It must not be changed in place while it is open: replace it by renaming, as
+/// [`super::write_file`] does.
+pub fn open(path: &Path) -> Result<Packed, Error> {
+    let file = File::open(path)?;
+    if file.metadata()?.len() < HEADER_BYTES as u64 {
+        return Err(Error::corrupt("header", "the file is too short"));
+    }
+    // SAFETY: the map is read-only and private to this value. Another process could still change
+    // the file under it, which the documentation of this function excludes.
+    let map = unsafe { Mmap::map(&file)? };
+    parse(Bytes::Mapped(map))
+}
+
+/// The same over bytes in memory.
+pub fn from_bytes(bytes: Vec<u8>) -> Result<Packed, Error> {
+    parse(Bytes::Owned(bytes))
+}
+
+fn parse(bytes: Bytes) -> Result<Packed, Error> {
+    let sections = header(&bytes)?;
+    let (offset, length, expected) = sections[META];
+    let text = slice(&bytes, offset, length, "meta")?;
+    if checksum(text) != expected {
+        return Err(Error::corrupt("meta", "the checksum does not match"));
+    }
+    let meta: Meta = serde_json::from_slice(text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
+    let mut programs = Programs::new();
+    let mut entries = Vec::new();
+    for (name, program) in &meta.programs {
+        let mut numbers = BTreeMap::new();
+        for entry in &program.entries {
+            numbers.insert((entry.language, entry.name.clone()), entries.len());
+            entries.push(entry.clone());
+        }
+        programs.insert(name.clone(), Program { axes: program.axes.clone(), entries: numbers });
+    }
+    Ok(Packed { bytes, sections, checked: Default::default(), meta, programs, entries, groups: Mutex::default() })
+}
+
+/// Where the sections are, from a header that is what was written.
+fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error> {
+    let part = "header";
+    if slice(bytes, 0, 8, part)? != MAGIC {
+        return Err(Error::corrupt(part, "this is not a Lamplight bundle"));
+    }
+    let version = u32_at(bytes, 8, part)?;
+    if version != VERSION {
+        return Err(Error::Version { found: version, known: VERSION });
+    }
+    if hash_at(bytes, HEADER_BYTES - 16, part)? != checksum(slice(bytes, 0, HEADER_BYTES - 16, part)?) {
+        return Err(Error::corrupt(part, "the checksum does not match"));
+    }
+    if u32_at(bytes, 12, part)? as usize != SECTIONS.len() || u64_at(bytes, 16, part)? != bytes.len() as u64 {
+        return Err(Error::corrupt(part, format!("the file has {} bytes, not those it was written with", bytes.len())));
+    }
+    let mut sections = [(0, 0, [0; 16]); SECTIONS.len()];
+    let mut next = HEADER_BYTES;
+    for (index, section) in sections.iter_mut().enumerate() {
+        let at = 24 + index * 32;
+        let (offset, length) = (u64_at(bytes, at, part)? as usize, u64_at(bytes, at + 8, part)? as usize);
+        slice(bytes, offset, length, SECTIONS[index])?;
+        if offset != next {
+            return Err(Error::corrupt(SECTIONS[index], "the section is not where the one before ends"));
+        }
+        next = offset + length;
+        *section = (offset, length, hash_at(bytes, at + 16, part)?);
+    }
+    if next == bytes.len() { Ok(sections) } else { Err(Error::corrupt("data", "bytes follow the last section")) }
+}
+
+impl Packed {
+    /// A section, its checksum verified once.
+    fn section(&self, index: usize) -> Result<&[u8], Error> {
+        let (offset, length, expected) = self.sections[index];
+        let section = slice(&self.bytes, offset, length, SECTIONS[index])?;
+        if index != DATA {
+            let check =
+                || if checksum(section) == expected { Ok(()) } else { Err(Error::corrupt(SECTIONS[index], "the checksum does not match")) };
+            self.checked[index].get_or_init(check).clone()?;
+        }
+        Ok(section)
+    }
+
+    fn entry(&self, entry: usize) -> Result<&EntryMeta, Error> {
+        self.entries.get(entry).ok_or_else(|| Error::corrupt("meta", "an entry point is out of range"))
+    }
+
+    fn key<'a>(&self, keys: &'a [u8], set: &KeySet, index: usize) -> Result<&'a [u8], Error> {
+        let record = set.records as usize + index * RECORD_BYTES;
+        slice(keys, u32_at(keys, record, "keys")? as usize, u32_at(keys, record + 4, "keys")? as usize, "keys")
+    }
+
+    fn unit_of(&self, keys: &[u8], entry: &EntryMeta, index: usize) -> Result<u32, Error> {
+        u32_at(keys, entry.units as usize + index * 4, "keys")
+    }
+
+    /// One of the JSON texts, as a value.
+    fn text<T: DeserializeOwned>(&self, index: u32) -> Result<T, Error> {
+        if index >= self.meta.texts {
+            return Err(Error::corrupt("texts", "a number is out of range"));
+        }
+        let texts = self.section(TEXTS)?;
+        let record = index as usize * RECORD_BYTES;
+        let text = slice(texts, u32_at(texts, record, "texts")? as usize, u32_at(texts, record + 4, "texts")? as usize, "texts")?;
+        serde_json::from_slice(text).map_err(|error| Error::corrupt("texts", error.to_string()))
+    }
+
+    /// Reflection, first artifact and number of artifacts.
+    fn unit_record(&self, unit: u32) -> Result<(u32, u32, u32), Error> {
+        let units = self.section(UNITS)?;
+        let at = unit as usize * UNIT_BYTES;
+        let record = (u32_at(units, at, "units")?, u32_at(units, at + 4, "units")?, u32_at(units, at + 8, "units")?);
+        let in_range = unit < self.meta.units && record.1.checked_add(record.2).is_some_and(|end| end <= self.meta.artifacts);
+        if in_range { Ok(record) } else { Err(Error::corrupt("units", "a number is out of range")) }
+    }
+
+    /// The target, the number of its native text, and the blob.
+    fn artifact_record(&self, artifact: u32) -> Result<(&TargetMeta, u32, u32), Error> {
+        let units = self.section(UNITS)?;
+        let at = self.meta.units as usize * UNIT_BYTES + artifact as usize * ARTIFACT_BYTES;
+        let target = self.meta.targets.get(u32_at(units, at, "units")? as usize);
+        let target = target.ok_or_else(|| Error::corrupt("units", "a target is out of range"))?;
+        Ok((target, u32_at(units, at + 4, "units")?, u32_at(units, at + 8, "units")?))
+    }
+
+    /// A decompressed group, from those kept or the file.
+    fn group(&self, group: u32) -> Result<Arc<[u8]>, Error> {
+        if let Ok(kept) = self.groups.lock()
+            && let Some((_, bytes)) = kept.iter().find(|(index, _)| *index == group)
+        {
+            return Ok(bytes.clone());
+        }
+        let bytes: Arc<[u8]> = self.decompress(group)?.into();
+        if let Ok(mut kept) = self.groups.lock() {
+            kept.truncate(KEPT_GROUPS - 1);
+            kept.insert(0, (group, bytes.clone()));
+        }
+        Ok(bytes)
+    }
+
+    fn decompress(&self, group: u32) -> Result<Vec<u8>, Error> {
+        let part = format!("group {group}");
+        let (offset, packed, raw, expected) = self.group_record(group)?;
+        let packed = slice(self.section(DATA)?, offset, packed, &part)?;
+        if checksum(packed) != expected {
+            return Err(Error::corrupt(part, "the checksum does not match"));
+        }
+        let bytes = zstd::bulk::decompress(packed, raw).map_err(|error| Error::corrupt(part.as_str(), error.to_string()))?;
+        if bytes.len() == raw { Ok(bytes) } else { Err(Error::corrupt(part, "the length does not match")) }
+    }
+
+    /// Offset in DATA, length there, length decompressed, checksum.
+    fn group_record(&self, group: u32) -> Result<(usize, usize, usize, Hash), Error> {
+        let table = self.section(BLOBS)?;
+        let at = self.meta.blobs as usize * BLOB_BYTES + group as usize * GROUP_BYTES;
+        let raw = u32_at(table, at + 12, "blobs")? as usize;
+        if group >= self.meta.groups || raw > MOST_GROUP_BYTES {
+            return Err(Error::corrupt("blobs", "a group is out of range"));
+        }
+        Ok((u64_at(table, at, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize, raw, hash_at(table, at + 16, "blobs")?))
+    }
+
+    /// The groups fill DATA without a gap, so that their checksums cover it.
+    fn verify_groups(&self) -> Result<(), Error> {
+        let mut next = 0;
+        for group in 0..self.meta.groups {
+            let (offset, packed, ..) = self.group_record(group)?;
+            if offset != next {
+                return Err(Error::corrupt(format!("group {group}"), "it is not where the one before ends"));
+            }
+            next = offset.saturating_add(packed);
+            self.decompress(group)?;
+        }
+        if next == self.section(DATA)?.len() { Ok(()) } else { Err(Error::corrupt("data", "bytes follow the last group")) }
+    }
+
+    /// Keys are sorted, found by their hashes, and have units.
+    fn verify_keys(&self) -> Result<(), Error> {
+        for (number, entry) in self.entries.iter().enumerate() {
+            let mut previous: Option<String> = None;
+            let mut outcome = Ok(());
+            self.each_key(number, &mut |key, unit| {
+                let is_sorted = previous.as_deref().is_none_or(|previous| previous < key);
+                if outcome.is_ok() && (!is_sorted || unit >= self.meta.units || self.find(number, key) != Ok(Some(unit))) {
+                    outcome = Err(Error::corrupt("keys", format!("`{key}` of `{}` is not where it belongs", entry.name)));
+                }
+                previous = Some(key.to_owned());
+            })?;
+            outcome?;
+        }
+        Ok(())
+    }
+}
+
+impl Store for Packed {
+    fn programs(&self) -> &Programs {
+        &self.programs
+    }
+
+    fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error> {
+        let entry = self.entry(entry)?;
+        let set = &entry.keys;
+        let keys = self.section(KEYS)?;
+        if !set.slot_count.is_power_of_two() {
+            return Err(Error::corrupt("meta", "a number of slots is no power of two"));
+        }
+        let mask = set.slot_count as usize - 1;
+        let mut at = hash(key.as_bytes()) as usize & mask;
+        for _ in 0..=mask {
+            let slot = u32_at(keys, set.slots as usize + at * 4, "keys")? as usize;
+            if slot == 0 {
+                return Ok(None);
+            }
+            if slot <= set.count as usize && self.key(keys, set, slot - 1)? == key.as_bytes() {
+                return self.unit_of(keys, entry, slot - 1).map(Some);
+            }
+            at = (at + 1) & mask;
+        }
+        Ok(None)
+    }
+
+    fn each_key(&self, entry: usize, visit: &mut dyn FnMut(&str, u32)) -> Result<(), Error> {
+        let entry = self.entry(entry)?;
+        let keys = self.section(KEYS)?;
+        for index in 0..entry.keys.count as usize {
+            let key = std::str::from_utf8(self.key(keys, &entry.keys, index)?).map_err(|_| Error::corrupt("keys", "a key is not UTF-8"))?;
+            visit(key, self.unit_of(keys, entry, index)?);
+        }
+        Ok(())
+    }
+
+    fn unit(&self, unit: u32) -> Result<Unit, Error> {
+        let (reflection, first, count) = self.unit_record(unit)?;
+        let mut targets = BTreeMap::new();
+        for artifact in first..first + count {
+            let (target, native, blob) = self.artifact_record(artifact)?;
+            targets
+                .insert(target.name.clone(), Artifact { extension: target.extension.clone(), native: Arc::new(self.text(native)?), blob });
+        }
+        Ok(Unit { reflection: Arc::new(self.text(reflection)?), targets })
+    }
+
+    fn artifact(&self, unit: u32, target: &str) -> Result<(Arc<Reflection>, Artifact), Error> {
+        let (reflection, first, count) = self.unit_record(unit)?;
+        let mut known = Vec::new();
+        for artifact in first..first + count {
+            let (found, native, blob) = self.artifact_record(artifact)?;
+            if found.name == target {
+                let artifact = Artifact { extension: found.extension.clone(), native: Arc::new(self.text(native)?), blob };
+                return Ok((Arc::new(self.text(reflection)?), artifact));
+            }
+            known.push(found.name.clone());
+        }
+        Err(Error::NotFound { what: "target", name: target.to_owned(), known })
+    }
+
+    fn blob(&self, blob: u32) -> Result<Vec<u8>, Error> {
+        if blob >= self.meta.blobs {
+            return Err(Error::corrupt("blobs", "a number is out of range"));
+        }
+        let table = self.section(BLOBS)?;
+        let at = blob as usize * BLOB_BYTES;
+        let (offset, length) = (u32_at(table, at + 4, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize);
+        let group = self.group(u32_at(table, at, "blobs")?)?;
+        slice(&group, offset, length, "blobs").map(<[u8]>::to_vec)
+    }
+
+    fn verify(&self) -> Result<(), Error> {
+        (0..SECTIONS.len()).try_for_each(|section| self.section(section).map(|_| ()))?;
+        if self.sections[DATA].2 != [0; 16] {
+            return Err(Error::corrupt("header", "the data section has a checksum of its own"));
+        }
+        self.verify_groups()?;
+        self.verify_keys()?;
+        (0..self.meta.units).try_for_each(|unit| self.unit(unit).map(|_| ()))?;
+        let table = self.section(BLOBS)?;
+        for blob in 0..self.meta.blobs {
+            if checksum(&self.blob(blob)?) != hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs")? {
+                return Err(Error::corrupt(format!("blob {blob}"), "the checksum does not match"));
+            }
+        }
+        Ok(())
+    }
+}

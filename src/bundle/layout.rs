@@ -1,0 +1,124 @@
+//! The layout of the single file: what the writer and the reader must agree on.
+//!
+//! ```text
+//! header    magic, version, section count, file length,
+//!           per section: offset, length, checksum; checksum of all that
+//! META      JSON: programs, axes, entry points, targets, counts
+//! KEYS      per key set: records (offset, length) sorted by text, hash slots, text;
+//!           per entry point: one unit number for each key of its set
+//! UNITS     per unit: reflection, first artifact, artifact count; per artifact: target, native, blob
+//! TEXTS     (offset, length) for each, then JSON of reflections and natives
+//! BLOBS     per blob: group, offset, length, checksum; per group: offset, lengths, checksum
+//! DATA      groups, zstd, without gaps
+//! ```
+//! Integers are little-endian, of 32 bits unless said otherwise; nothing is aligned.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::contents::Hash;
+use super::{Axis, Error, Language};
+
+pub const MAGIC: &[u8; 8] = b"LAMPLGHT";
+
+/// Sections in the order of the file.
+pub const SECTIONS: [&str; 6] = ["meta", "keys", "units", "texts", "blobs", "data"];
+pub const META: usize = 0;
+pub const KEYS: usize = 1;
+pub const UNITS: usize = 2;
+pub const TEXTS: usize = 3;
+pub const BLOBS: usize = 4;
+pub const DATA: usize = 5;
+
+/// Magic, version, count, file length; then offset, length and checksum for each section.
+pub const HEADER_BYTES: usize = 24 + SECTIONS.len() * 32 + 16;
+pub const UNIT_BYTES: usize = 12;
+pub const ARTIFACT_BYTES: usize = 12;
+pub const RECORD_BYTES: usize = 8;
+pub const BLOB_BYTES: usize = 28;
+pub const GROUP_BYTES: usize = 32;
+
+/// Most bytes of a group before compression: bounds what damaged lengths can allocate.
+pub const MOST_GROUP_BYTES: usize = 64 << 20;
+
+/// The META section.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Meta {
+    pub targets: Vec<TargetMeta>,
+    pub programs: BTreeMap<String, ProgramMeta>,
+    pub units: u32,
+    pub artifacts: u32,
+    pub texts: u32,
+    pub blobs: u32,
+    pub groups: u32,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct TargetMeta {
+    pub name: String,
+    pub extension: String,
+}
+
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct ProgramMeta {
+    pub axes: Vec<Axis>,
+    pub entries: Vec<EntryMeta>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct EntryMeta {
+    pub language: Language,
+    pub name: String,
+    pub keys: KeySet,
+    /// Where its unit numbers start in KEYS.
+    pub units: u32,
+}
+
+/// A set of keys, often shared by the entry points of a program.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct KeySet {
+    pub count: u32,
+    /// Where the records start in KEYS.
+    pub records: u32,
+    /// Where the hash slots start in KEYS, and how many there are: a power of two, each the
+    /// index of a record plus one, or zero.
+    pub slots: u32,
+    pub slot_count: u32,
+}
+
+/// Mixes a key, eight bytes at a time; the multiplier is 2^64 over the golden ratio.
+pub fn hash(key: &[u8]) -> u64 {
+    const MULTIPLIER: u64 = 0x9e37_79b9_7f4a_7c15;
+    let mix = |state: u64, word: u64| (state.rotate_left(23) ^ word).wrapping_mul(MULTIPLIER);
+    let mut chunks = key.chunks_exact(8);
+    let mut state = key.len() as u64;
+    for chunk in &mut chunks {
+        state = mix(state, chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte)));
+    }
+    state = mix(state, chunks.remainder().iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte)));
+    state ^ state >> 32
+}
+
+/// `length` bytes from `at`.
+pub fn slice<'a>(bytes: &'a [u8], at: usize, length: usize, part: &str) -> Result<&'a [u8], Error> {
+    at.checked_add(length).and_then(|end| bytes.get(at..end)).ok_or_else(|| Error::corrupt(part, "a position is out of range"))
+}
+
+pub fn u32_at(bytes: &[u8], at: usize, part: &str) -> Result<u32, Error> {
+    let mut word = [0; 4];
+    word.copy_from_slice(slice(bytes, at, 4, part)?);
+    Ok(u32::from_le_bytes(word))
+}
+
+pub fn u64_at(bytes: &[u8], at: usize, part: &str) -> Result<u64, Error> {
+    let mut word = [0; 8];
+    word.copy_from_slice(slice(bytes, at, 8, part)?);
+    Ok(u64::from_le_bytes(word))
+}
+
+pub fn hash_at(bytes: &[u8], at: usize, part: &str) -> Result<Hash, Error> {
+    let mut hash = [0; 16];
+    hash.copy_from_slice(slice(bytes, at, 16, part)?);
+    Ok(hash)
+}

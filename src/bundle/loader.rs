@@ -1,0 +1,209 @@
+//! What an engine calls.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::contents::Contents;
+use super::store::{self, Store};
+use super::{
+    Artifact, Axis, EntryContents, Error, Language, Miss, Native, ProgramContents, Reflection, Target, Unit, directory, file, key,
+};
+
+/// An open bundle of either form. Cheap to share between threads.
+///
+/// ```no_run
+/// # fn main() -> Result<(), lamplight::bundle::Error> {
+/// use lamplight::bundle::{Bundle, Target};
+///
+/// let bundle = Bundle::open("shaders.lamplight")?;
+/// let shader = bundle.program("forward")?.shader("fs_main")?;
+/// let found = shader.get("shadow=hard,two_sided", Target::SPIRV)?;
+/// println!("{} bytes, entry point {}", found.bytes.len(), found.native.entry_name);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Bundle {
+    store: Box<dyn Store>,
+}
+
+/// One program of a bundle.
+pub struct Program<'a> {
+    store: &'a dyn Store,
+    name: &'a str,
+    program: &'a store::Program,
+}
+
+/// One entry point of a program, in one source language.
+#[derive(Clone, Copy)]
+pub struct Shader<'a> {
+    store: &'a dyn Store,
+    axes: &'a [Axis],
+    entry: usize,
+}
+
+/// One permutation in one target.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    pub bytes: Vec<u8>,
+    pub reflection: Arc<Reflection>,
+    pub native: Arc<Native>,
+}
+
+impl Bundle {
+    /// Opens a directory (its `manifest.json`) or a single file.
+    ///
+    /// A file is mapped and must be replaced, not changed in place, while it is open. Checksums
+    /// are verified on first use of what they cover; [`Bundle::verify`] checks all.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let store: Box<dyn Store> = if path.is_dir() { Box::new(directory::open(path)?) } else { Box::new(file::open(path)?) };
+        Ok(Self { store })
+    }
+
+    /// A single-file bundle that is in memory.
+    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, Error> {
+        Ok(Self { store: Box::new(file::from_bytes(bytes)?) })
+    }
+
+    /// Names of the programs, sorted.
+    pub fn programs(&self) -> impl Iterator<Item = &str> {
+        self.store.programs().keys().map(String::as_str)
+    }
+
+    /// The program of that name.
+    pub fn program(&self, name: &str) -> Result<Program<'_>, Error> {
+        let programs = self.store.programs();
+        let found = programs.get_key_value(name);
+        let (name, program) = found.ok_or_else(|| not_found("program", name, programs.keys()))?;
+        Ok(Program { store: &*self.store, name, program })
+    }
+
+    /// Checks every byte and every reference.
+    pub fn verify(&self) -> Result<(), Error> {
+        self.store.verify()
+    }
+
+    /// Everything, in memory: to merge, compare, or write in the other form.
+    pub fn contents(&self) -> Result<Contents, Error> {
+        let mut contents = Contents::default();
+        for (name, program) in self.store.programs() {
+            let mut copy = ProgramContents { axes: program.axes.clone(), ..ProgramContents::default() };
+            for ((language, entry), number) in &program.entries {
+                copy.languages.entry(*language).or_default().insert(entry.clone(), self.entry_contents(*number)?);
+            }
+            contents.programs.insert(name.clone(), copy);
+        }
+        Ok(contents)
+    }
+
+    fn entry_contents(&self, entry: usize) -> Result<EntryContents, Error> {
+        let mut keys = Vec::new();
+        self.store.each_key(entry, &mut |key, unit| keys.push((key.to_owned(), unit)))?;
+        let mut contents = EntryContents::default();
+        let mut hashes = BTreeMap::new();
+        for (key, number) in keys {
+            let hash = match hashes.get(&number) {
+                Some(hash) => *hash,
+                None => contents.add(self.unit(number)?)?,
+            };
+            hashes.insert(number, hash);
+            contents.keys.insert(key, hash);
+        }
+        Ok(contents)
+    }
+
+    fn unit(&self, number: u32) -> Result<Unit, Error> {
+        let unit = self.store.unit(number)?;
+        let targets = unit.targets.into_iter().map(|(target, found)| {
+            let bytes = self.store.blob(found.blob)?.into();
+            Ok((target, Artifact { bytes, extension: found.extension, native: found.native }))
+        });
+        Ok(Unit { reflection: unit.reflection, targets: targets.collect::<Result<_, Error>>()? })
+    }
+}
+
+impl<'a> Program<'a> {
+    /// Its name.
+    pub fn name(&self) -> &'a str {
+        self.name
+    }
+
+    /// Its axes, in the manifest's order.
+    pub fn axes(&self) -> &'a [Axis] {
+        &self.program.axes
+    }
+
+    /// Its entry points, by language and name.
+    pub fn entries(&self) -> impl Iterator<Item = (Language, &'a str)> {
+        self.program.entries.keys().map(|(language, name)| (*language, name.as_str()))
+    }
+
+    /// An entry point written in one language.
+    pub fn entry(&self, language: Language, name: &str) -> Result<Shader<'a>, Error> {
+        let found = self.program.entries.get(&(language, name.to_owned()));
+        let names = self.entries().filter(|(found, _)| *found == language).map(|(_, name)| name);
+        let entry = *found.ok_or_else(|| not_found("entry point", name, names))?;
+        Ok(Shader { store: self.store, axes: &self.program.axes, entry })
+    }
+
+    /// An entry point in whichever language has it; WESL where both do, which prove alike.
+    pub fn shader(&self, name: &str) -> Result<Shader<'a>, Error> {
+        let language = self.entries().find(|(_, found)| *found == name).map(|(language, _)| language);
+        let language = language.ok_or_else(|| not_found("entry point", name, self.entries().map(|(_, name)| name)))?;
+        self.entry(language, name)
+    }
+}
+
+impl Shader<'_> {
+    /// The permutation of a key, for one target. Axes may come in any order, and with defaults.
+    ///
+    /// # Errors
+    /// [`Error::Miss`] names the nearest permutation there is; [`Error::BadKey`] where the key
+    /// names an axis or a value the program does not have; [`Error::NotFound`] for the target.
+    pub fn get(&self, key: &str, target: Target) -> Result<Found, Error> {
+        let unit = self.find(key)?;
+        let (reflection, artifact) = self.store.artifact(unit, target.name())?;
+        Ok(Found { bytes: self.store.blob(artifact.blob)?, reflection, native: artifact.native })
+    }
+
+    /// The number of a key's unit: equal numbers are equal shaders, in every target.
+    pub fn find(&self, key: &str) -> Result<u32, Error> {
+        if let Some(unit) = self.store.find(self.entry, key)? {
+            return Ok(unit);
+        }
+        let asked = key::canonical(self.axes, key)?;
+        match self.store.find(self.entry, &asked)? {
+            Some(unit) => Ok(unit),
+            None => Err(Error::Miss(Box::new(Miss { nearest: self.nearest(&asked)?, asked }))),
+        }
+    }
+
+    /// Every key, sorted.
+    pub fn keys(&self) -> Result<Vec<String>, Error> {
+        let mut keys = Vec::new();
+        self.store.each_key(self.entry, &mut |key, _| keys.push(key.to_owned()))?;
+        Ok(keys)
+    }
+
+    /// Names of the targets a key was compiled for, sorted.
+    pub fn targets(&self, key: &str) -> Result<Vec<String>, Error> {
+        Ok(self.store.unit(self.find(key)?)?.targets.into_keys().collect())
+    }
+
+    fn nearest(&self, asked: &str) -> Result<Option<String>, Error> {
+        let mut best: Option<(usize, String)> = None;
+        self.store.each_key(self.entry, &mut |known, _| {
+            let distance = key::distance(asked, known);
+            // Keys come sorted, so that the first of equals stays.
+            if best.as_ref().is_none_or(|(least, _)| distance < *least) {
+                best = Some((distance, known.to_owned()));
+            }
+        })?;
+        Ok(best.map(|(_, key)| key))
+    }
+}
+
+fn not_found<T: AsRef<str>>(what: &'static str, name: &str, known: impl Iterator<Item = T>) -> Error {
+    Error::NotFound { what, name: name.to_owned(), known: known.map(|name| name.as_ref().to_owned()).collect() }
+}

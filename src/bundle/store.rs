@@ -1,0 +1,59 @@
+//! What both forms of a bundle offer the loader.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::{Axis, Error, Language, Native, Reflection};
+
+/// The small part of a bundle that is in memory once it is open.
+pub type Programs = BTreeMap<String, Program>;
+
+/// One program of an open bundle.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Program {
+    pub axes: Vec<Axis>,
+    /// Numbers of the entry points, by language and name.
+    pub entries: BTreeMap<(Language, String), usize>,
+}
+
+/// A unit as found, its bytes still where they are.
+pub struct Unit {
+    pub reflection: Arc<Reflection>,
+    pub targets: BTreeMap<String, Artifact>,
+}
+
+/// One target of a unit.
+pub struct Artifact {
+    pub extension: String,
+    pub native: Arc<Native>,
+    /// Number of the blob in its store.
+    pub blob: u32,
+}
+
+/// A form of a bundle. Numbers are indices of its own, checked on each use.
+pub trait Store: Send + Sync {
+    fn programs(&self) -> &Programs;
+
+    /// The unit of a key in canonical form.
+    fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error>;
+
+    /// Every key, sorted, with its unit.
+    fn each_key(&self, entry: usize, visit: &mut dyn FnMut(&str, u32)) -> Result<(), Error>;
+
+    fn unit(&self, unit: u32) -> Result<Unit, Error>;
+
+    /// One target of a unit and its reflection, without reading the other targets.
+    fn artifact(&self, unit: u32, target: &str) -> Result<(Arc<Reflection>, Artifact), Error> {
+        let mut unit = self.unit(unit)?;
+        match unit.targets.remove(target) {
+            Some(artifact) => Ok((unit.reflection, artifact)),
+            None => Err(Error::NotFound { what: "target", name: target.to_owned(), known: unit.targets.into_keys().collect() }),
+        }
+    }
+
+    /// The bytes of a blob, verified.
+    fn blob(&self, blob: u32) -> Result<Vec<u8>, Error>;
+
+    /// Checks every byte.
+    fn verify(&self) -> Result<(), Error>;
+}
