@@ -7,11 +7,17 @@
 pub mod bundle;
 
 #[cfg(feature = "compile")]
+pub mod catalogue;
+#[cfg(feature = "compile")]
 pub mod compose;
 #[cfg(feature = "compile")]
 pub mod diagnostic;
 #[cfg(feature = "compile")]
 pub mod emit;
+#[cfg(feature = "compile")]
+pub mod generate;
+#[cfg(feature = "compile")]
+pub mod output;
 #[cfg(feature = "compile")]
 pub mod parse;
 #[cfg(feature = "compile")]
@@ -30,3 +36,5 @@ pub mod eval;
 #[cfg(feature = "harness")]
 pub mod harness;
 
+#[cfg(feature = "cli")]
+pub mod cli;

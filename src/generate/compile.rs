@@ -1,31 +1,28 @@
 //! One text to every target.
 
-use crate::bundle::{Native, Reflection, Target};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::bundle::{Artifact, Target, Unit};
 use crate::compose::Composed;
-use crate::diagnostic::Diagnostics;
-use crate::emit::{self, Emitted};
-use crate::validate::validate;
-
-/// A compiled text.
-pub struct Unit {
-    pub reflection: Reflection,
-    pub outputs: Vec<Output>,
-}
-
-/// What one target made of it.
-pub struct Output {
-    pub target: Target,
-    pub native: Native,
-    pub bytes: Vec<u8>,
-}
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::emit::{self, targets};
+use crate::validate::{Validated, validate};
 
 /// Validates a text, reflects its entry point and writes it for each target.
 pub fn compile(composed: &Composed, entry: &str, targets: &[Target]) -> Result<Unit, Diagnostics> {
     let validated = validate(composed)?;
-    let reflection = emit::reflect(&validated, entry).map_err(|error| vec![error])?;
-    let outputs = targets.iter().map(|&target| {
-        emit::emit(&validated, entry, target).map(|Emitted { bytes, native }| Output { target, native, bytes })
-    });
-    let outputs: Result<Vec<Output>, _> = outputs.collect();
-    Ok(Unit { reflection, outputs: outputs.map_err(|error| vec![error])? })
+    unit(&validated, entry, targets).map_err(|error| vec![error])
+}
+
+fn unit(validated: &Validated, entry: &str, targets: &[Target]) -> Result<Unit, Diagnostic> {
+    let reflection = Arc::new(emit::reflect(validated, entry)?);
+    let artifacts = targets.iter().map(|&target| Ok((target.name().to_owned(), artifact(validated, entry, target)?)));
+    Ok(Unit { reflection, targets: artifacts.collect::<Result<BTreeMap<_, _>, Diagnostic>>()? })
+}
+
+fn artifact(validated: &Validated, entry: &str, target: Target) -> Result<Artifact, Diagnostic> {
+    let emitted = emit::emit(validated, entry, target)?;
+    let extension = targets::find(target).map_or("", |entry| entry.extension).to_owned();
+    Ok(Artifact { bytes: emitted.bytes.into(), extension, native: Arc::new(emitted.native) })
 }

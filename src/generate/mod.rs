@@ -13,9 +13,10 @@ mod weave;
 
 pub use summary::{EntrySummary, ProgramSummary, Summary};
 
-use std::time::Instant;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
 
-use crate::bundle::{Contents, Target};
+use crate::bundle::{Axis, Contents, EntryContents, ProgramContents, Target};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Assignment, Key, Manifest, Program, Quoted, key};
 use crate::resolve::Packages;
@@ -78,7 +79,7 @@ pub fn generate(
         })?;
         done.push(Done { program, keys: points.into_iter().map(|(key, _)| key).collect(), woven });
     }
-    Ok(summary::finish(done, start.elapsed()))
+    finish(done, start.elapsed())
 }
 
 /// A program with every entry point compiled.
@@ -86,6 +87,39 @@ struct Done<'a> {
     program: &'a Program,
     keys: Vec<Key>,
     woven: Vec<weave::Woven>,
+}
+
+fn finish(done: Vec<Done<'_>>, elapsed: Duration) -> Result<Generated, Diagnostics> {
+    let programs = done.iter().map(|done| summary::program(&done.program.name, done.keys.len(), &done.woven)).collect();
+    let warnings = done.iter().flat_map(|done| &done.woven).flat_map(|woven| woven.warnings.iter().cloned()).collect();
+    let mut contents = Contents::default();
+    for Done { program, keys, woven } in done {
+        contents.programs.insert(program.name.clone(), program_contents(program, &keys, woven)?);
+    }
+    Ok(Generated { summary: summary::summarise(programs, &contents, elapsed), contents, warnings })
+}
+
+fn program_contents(program: &Program, keys: &[Key], woven: Vec<weave::Woven>) -> Result<ProgramContents, Diagnostics> {
+    let axes = program.space.axes().iter().map(|axis| Axis {
+        name: axis.name.clone(),
+        values: axis.value_names(),
+        default: axis.values[axis.default].to_string(),
+        mode: axis.mode.name().to_owned(),
+    });
+    let mut contents = ProgramContents { axes: axes.collect(), languages: BTreeMap::new() };
+    for woven in woven {
+        let (language, label) = (woven.language.into(), woven.label.clone());
+        contents.languages.entry(language).or_default().insert(label, entry_contents(keys, woven)?);
+    }
+    Ok(contents)
+}
+
+fn entry_contents(keys: &[Key], woven: weave::Woven) -> Result<EntryContents, Diagnostics> {
+    let mut contents = EntryContents::default();
+    let failed = |error: crate::bundle::Error| vec![Diagnostic::error(codes::BUNDLE_FAILED, error.to_string())];
+    let hashes = woven.units.into_iter().map(|unit| contents.add(unit)).collect::<Result<Vec<_>, _>>().map_err(failed)?;
+    contents.keys = keys.iter().zip(&woven.unit_of).map(|(key, unit)| (key.to_string(), hashes[*unit as usize])).collect();
+    Ok(contents)
 }
 
 fn chosen<'a>(manifest: &'a Manifest, request: &Request) -> Result<Vec<&'a Program>, Diagnostics> {

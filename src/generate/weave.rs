@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use super::compile::{Unit, compile};
+use super::compile::compile;
 use super::entry::Entry;
 use super::{Progress, REPORTED};
-use crate::bundle::Target;
+use crate::bundle::{Target, Unit};
 use crate::compose::{self, Composed};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Assignment, Key, ReadTree, Space};
@@ -17,9 +17,9 @@ const BATCH: usize = 1024;
 
 /// An entry point, compiled.
 pub struct Woven {
-    pub name: String,
+    /// Its name in the bundle.
+    pub label: String,
     pub language: compose::Language,
-    pub stage: naga::ShaderStage,
     /// One for each distinct text, in the order of the first permutation that has it.
     pub units: Vec<Unit>,
     /// For each permutation, the index of its unit.
@@ -40,12 +40,13 @@ pub fn weave(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Woven, Diagnostics> {
     let mut loom = Loom::new(entry);
+    progress(Progress { stage: entry.title(), done: 0, total: points.len() });
     for batch in points.chunks(BATCH) {
         let texts = loom.compose(entry, space, batch)?;
         let units: Vec<Result<Unit, Diagnostics>> =
             texts.par_iter().map(|(key, composed)| compile(composed, &entry.name, targets).map_err(|errors| of_permutation(errors, entry, key))).collect();
         loom.woven.units.extend(collect(units)?);
-        progress(Progress { stage: format!("{} {}", entry.program, entry.name), done: loom.woven.unit_of.len(), total: points.len() });
+        progress(Progress { stage: entry.title(), done: loom.woven.unit_of.len(), total: points.len() });
     }
     Ok(loom.woven)
 }
@@ -61,9 +62,8 @@ struct Loom {
 impl Loom {
     fn new(entry: &Entry) -> Self {
         let woven = Woven {
-            name: entry.name.clone(),
+            label: entry.label.clone(),
             language: entry.language,
-            stage: entry.stage,
             units: Vec::new(),
             unit_of: Vec::new(),
             reads: BTreeSet::new(),
@@ -148,5 +148,5 @@ fn keep(errors: &mut Diagnostics, error: Diagnostic) {
 }
 
 fn of_permutation(errors: Diagnostics, entry: &Entry, key: &Key) -> Diagnostics {
-    errors.into_iter().map(|error| error.note(format!("in permutation `{key}` of `{}`, entry point `{}`", entry.program, entry.name))).collect()
+    errors.into_iter().map(|error| error.note(format!("in permutation `{key}` of {}", entry.title()))).collect()
 }

@@ -35,7 +35,8 @@ pub fn open(root: &Path, sources: SourceSet) -> Result<Project, (SourceSet, Diag
     }
 }
 
-fn packages(root: &Path, sources: &mut SourceSet) -> Result<Packages, Diagnostics> {
+/// The package of a root folder and what it may import.
+pub fn packages(root: &Path, sources: &mut SourceSet) -> Result<Packages, Diagnostics> {
     let disk = Disk::new(root).map_err(|error| vec![unreadable(root, &error)])?;
     let mut dependencies = wesl_toml::dependencies(root, sources)?;
     if !dependencies.iter().any(|package| package.name == LIBRARY) {

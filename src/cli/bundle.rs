@@ -1,0 +1,147 @@
+//! `lamplight bundle`: a look inside.
+
+use std::io::{IsTerminal, Write, stdout};
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+use super::compile::target;
+use super::failure::Failure;
+use super::input::LanguageName;
+use crate::bundle::{self, Bundle, Error, Shader, Target};
+
+/// List, fetch, verify, pack or compare bundles.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Programs, entry points and the number of their permutations; with a program, its keys.
+    List {
+        bundle: PathBuf,
+        #[arg(long, value_name = "P")]
+        program: Option<String>,
+    },
+    /// One shader, or what an engine must know of it.
+    Get(Get),
+    /// Check every byte and every reference.
+    Verify { bundle: PathBuf },
+    /// Write the single-file form of a bundle.
+    Pack {
+        bundle: PathBuf,
+        #[arg(short, long, value_name = "FILE")]
+        out: PathBuf,
+    },
+    /// What differs between two bundles; exit code 3 if anything does.
+    Diff {
+        old: PathBuf,
+        new: PathBuf,
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+#[derive(Args)]
+struct Get {
+    bundle: PathBuf,
+    program: String,
+    /// The entry point: `fs_main`.
+    entry: String,
+    /// `shadow=hard,two_sided`; `default` for the permutation of all defaults.
+    key: String,
+    #[arg(long, value_name = "T", value_parser = target)]
+    target: Target,
+    /// The source language [default: WESL where the bundle has both].
+    #[arg(long, value_enum)]
+    lang: Option<LanguageName>,
+    /// Print the reflection, as JSON.
+    #[arg(long)]
+    reflection: bool,
+    /// The file to write [default: standard output].
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    match arguments.command {
+        Command::List { bundle, program } => list(&open(&bundle)?, program.as_deref()),
+        Command::Get(get) => fetch(&get),
+        Command::Verify { bundle } => {
+            open(&bundle)?.verify().map_err(|error| Failure::check(format!("`{}`: {error}", bundle.display())))?;
+            Ok(writeln!(stdout(), "`{}` is whole", bundle.display())?)
+        }
+        Command::Pack { bundle, out } => {
+            let contents = open(&bundle)?.contents().map_err(wrong)?;
+            bundle::write_file(&contents, &out).map_err(|error| Failure::environment(error.to_string()))
+        }
+        Command::Diff { old, new, json } => compare(&open(&old)?, &open(&new)?, json),
+    }
+}
+
+fn open(path: &PathBuf) -> Result<Bundle, Failure> {
+    Bundle::open(path).map_err(|error| Failure::input(format!("`{}`: {error}", path.display())))
+}
+
+fn wrong(error: Error) -> Failure {
+    Failure::input(error.to_string())
+}
+
+fn list(bundle: &Bundle, program: Option<&str>) -> Result<(), Failure> {
+    let mut out = std::io::BufWriter::new(stdout().lock());
+    if let Some(name) = program {
+        let program = bundle.program(name).map_err(wrong)?;
+        let Some((language, entry)) = program.entries().next() else { return Ok(()) };
+        for key in program.entry(language, entry).and_then(|shader| shader.keys()).map_err(wrong)? {
+            writeln!(out, "{key}")?;
+        }
+        return Ok(out.flush()?);
+    }
+    for name in bundle.programs() {
+        let program = bundle.program(name).map_err(wrong)?;
+        for (language, entry) in program.entries() {
+            let keys = program.entry(language, entry).and_then(|shader| shader.keys()).map_err(wrong)?;
+            let targets = match keys.first() {
+                Some(key) => program.entry(language, entry).and_then(|shader| shader.targets(key)).map_err(wrong)?,
+                None => Vec::new(),
+            };
+            let language = format!("{language:?}").to_lowercase();
+            writeln!(out, "{name:12} {entry:12} {language}  {:6} permutations  {}", keys.len(), targets.join(" "))?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+fn fetch(get: &Get) -> Result<(), Failure> {
+    let bundle = open(&get.bundle)?;
+    let program = bundle.program(&get.program).map_err(wrong)?;
+    let shader: Shader<'_> = match get.lang {
+        Some(language) => program.entry(crate::compose::Language::from(language).into(), &get.entry),
+        None => program.shader(&get.entry),
+    }
+    .map_err(wrong)?;
+    let found = shader.get(&get.key, get.target).map_err(wrong)?;
+    if get.reflection {
+        return Ok(writeln!(stdout(), "{:#}", serde_json::json!({ "reflection": &*found.reflection, "native": &*found.native }))?);
+    }
+    match &get.out {
+        Some(path) => crate::output::write(path, &found.bytes).map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display()))),
+        None if get.target == Target::SPIRV && stdout().is_terminal() => Err(Failure::usage("SPIR-V is binary: name a file with `-o`")),
+        None => Ok(stdout().write_all(&found.bytes)?),
+    }
+}
+
+fn compare(old: &Bundle, new: &Bundle, json: bool) -> Result<(), Failure> {
+    let difference = bundle::diff(&old.contents().map_err(wrong)?, &new.contents().map_err(wrong)?);
+    if json {
+        writeln!(stdout(), "{:#}", serde_json::json!(difference))?;
+    } else {
+        for change in &difference.permutations {
+            let language = format!("{:?}", change.language).to_lowercase();
+            writeln!(stdout(), "{} {} {} {language} {} {}", change.kind, change.program, change.entry, change.key, change.parts.join(","))?;
+        }
+    }
+    if difference.is_empty() { Ok(()) } else { Err(Failure::check("the bundles differ")) }
+}
