@@ -52,6 +52,9 @@ fn library() -> Result<(), Failed> {
         let paths: Vec<_> = library.case_files().into_iter().filter(|path| path.contains(&only)).collect();
         let report =
             library.check(&sources, &paths, &[Language::Wesl, Language::Glsl], open).map_err(|errors| render(&sources, &errors))?;
+        if std::env::var_os("LAMPLIGHT_TABLE").is_some() {
+            println!("{}", check::table(&report));
+        }
         if report.passed() { Ok(()) } else { Err(check::failures(&report).into()) }
     })
 }

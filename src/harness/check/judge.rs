@@ -23,6 +23,8 @@ pub struct Verdict {
     /// Rows that are off.
     pub failing: Vec<usize>,
     pub laws: Vec<LawVerdict>,
+    /// Largest distance from the first language's results, in units in the last place.
+    pub parity: Option<f64>,
     /// A small failing input, as a text with a case to paste.
     pub smallest: Option<String>,
 }
@@ -135,6 +137,20 @@ fn is_indeterminate(expected: &Expected) -> bool {
 
 fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
     job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
+}
+
+/// How far two languages are apart on one executor; infinite where kinds other than f32 differ.
+pub fn parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
+    let kinds = job.kernel().result_kinds();
+    let apart = |((a, b), kind): ((&u32, &u32), &ScalarKind)| {
+        let (x, y) = (number(*a, *kind), number(*b, *kind));
+        match kind {
+            _ if a == b || x == y || (x.is_nan() && y.is_nan()) => 0.0,
+            ScalarKind::Float if x.is_finite() && y.is_finite() => (x - y).abs() / tolerance::ulp(x),
+            _ => f64::INFINITY,
+        }
+    };
+    first.iter().zip(second).zip(kinds.iter().cycle()).map(apart).fold(0.0, f64::max)
 }
 
 /// Judges one law over all rows.

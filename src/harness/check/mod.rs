@@ -93,6 +93,7 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open) -> Vec<Outcome> {
     let adapter = open.session.adapter();
     let mut outcomes = Vec::new();
     for job in jobs {
+        let mut first = None;
         for (language, kernel) in &job.kernels {
             outcomes.push(Outcome {
                 module: job.module.clone(),
@@ -100,14 +101,15 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open) -> Vec<Outcome> {
                 language: *language,
                 executor: open.executor,
                 adapter: adapter.clone(),
-                verdict: run(job, kernel, open.session.as_mut()),
+                verdict: run(job, kernel, open.session.as_mut(), &mut first),
             });
         }
     }
     outcomes
 }
 
-fn run(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session) -> Result<Verdict, Diagnostic> {
+/// One case in one language; `first` keeps the first language's results, which others are compared with.
+fn run(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, first: &mut Option<Vec<u32>>) -> Result<Verdict, Diagnostic> {
     let results = session.run(kernel, &job.rows.words)?;
     let mut verdict = judge::judge(job, &job.rows, &job.expected, &results);
     for law in &job.laws {
@@ -117,6 +119,8 @@ fn run(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session) -> Result<Verd
     if let Some(row) = verdict.failing.first() {
         verdict.smallest = Some(shrink::shrink(job, kernel, session, *row)?);
     }
+    verdict.parity = first.as_ref().map(|first| judge::parity(job, first, &results));
+    first.get_or_insert(results);
     Ok(verdict)
 }
 

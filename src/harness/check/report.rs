@@ -3,15 +3,15 @@
 use super::{Outcome, Report};
 use crate::compose::Language;
 
-const HEADINGS: [&str; 9] =
-    ["function", "language", "executor", "inputs", "worst ULP", "worst error", "allowed ULP", "headroom", "ambiguous"];
+const HEADINGS: [&str; 10] =
+    ["function", "language", "executor", "inputs", "worst ULP", "worst error", "allowed ULP", "headroom", "ambiguous", "parity ULP"];
 
 /// One line for each function, language and executor.
 pub fn table(report: &Report) -> String {
-    let rows: Vec<[String; 9]> = std::iter::once(HEADINGS.map(str::to_owned)).chain(report.outcomes.iter().map(row)).collect();
+    let rows: Vec<[String; 10]> = std::iter::once(HEADINGS.map(str::to_owned)).chain(report.outcomes.iter().map(row)).collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..HEADINGS.len()).map(width).collect();
-    let line = |row: &[String; 9]| {
+    let line = |row: &[String; 10]| {
         let cells = row.iter().enumerate().map(|(column, cell)| {
             if column < 3 { format!("{cell:<width$}", width = widths[column]) } else { format!("{cell:>width$}", width = widths[column]) }
         });
@@ -20,11 +20,11 @@ pub fn table(report: &Report) -> String {
     rows.iter().map(line).collect()
 }
 
-fn row(outcome: &Outcome) -> [String; 9] {
+fn row(outcome: &Outcome) -> [String; 10] {
     let name = format!("{}::{}", outcome.module, outcome.function);
     let head = [name, language(outcome.language).to_owned(), outcome.executor.to_owned()];
     let tail = match &outcome.verdict {
-        Err(_) => ["-", "-", "-", "-", "not run", "-"].map(str::to_owned),
+        Err(_) => ["-", "-", "-", "-", "not run", "-", "-"].map(str::to_owned),
         Ok(verdict) => {
             let share = if verdict.passed() {
                 verdict.worst.map_or("exact".to_owned(), |worst| headroom(worst.share()))
@@ -32,6 +32,7 @@ fn row(outcome: &Outcome) -> [String; 9] {
                 "FAILED".to_owned()
             };
             let number = |pick: fn(&super::Worst) -> f64| verdict.worst.as_ref().map_or("0".to_owned(), |worst| short(pick(worst)));
+            let parity = verdict.parity.map_or("-".to_owned(), short);
             let ambiguous = format!("{:.2} %", 100.0 * verdict.ambiguous as f64 / verdict.inputs.max(1) as f64);
             [
                 verdict.inputs.to_string(),
@@ -40,6 +41,7 @@ fn row(outcome: &Outcome) -> [String; 9] {
                 number(|worst| worst.allowed_ulps()),
                 share,
                 ambiguous,
+                parity,
             ]
         }
     };
