@@ -1,5 +1,5 @@
 //! The one test binary: every case is a file, found by itself.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 mod bundle;
 mod emit;
