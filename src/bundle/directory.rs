@@ -69,13 +69,16 @@ fn remove_stale(blobs: &Path, names: &BTreeSet<String>) -> Result<(), Error> {
     Ok(())
 }
 
+/// Artifacts by target, each with the number of its blob.
+type Numbered = BTreeMap<String, (ManifestArtifact, u32)>;
+
 /// An open directory; blobs are read when asked for.
 pub struct Directory {
     blobs: PathBuf,
     programs: Programs,
     /// By number of the entry point.
     keys: Vec<BTreeMap<String, u32>>,
-    units: Vec<(Arc<Reflection>, BTreeMap<String, (ManifestArtifact, u32)>)>,
+    units: Vec<(Arc<Reflection>, Numbered)>,
     natives: BTreeMap<String, Arc<Native>>,
     /// By number of the blob.
     artifacts: Vec<ManifestArtifact>,

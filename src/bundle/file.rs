@@ -122,7 +122,9 @@ impl Packed {
         if index != DATA {
             let check =
                 || if checksum(section) == expected { Ok(()) } else { Err(Error::corrupt(SECTIONS[index], "the checksum does not match")) };
-            self.checked[index].get_or_init(check).clone()?;
+            if let Err(error) = self.checked[index].get_or_init(check) {
+                return Err(error.clone());
+            }
         }
         Ok(section)
     }
@@ -251,14 +253,16 @@ impl Store for Packed {
             return Err(Error::corrupt("meta", "a number of slots is no power of two"));
         }
         let mask = set.slot_count as usize - 1;
-        let mut at = hash(key.as_bytes()) as usize & mask;
+        let hash = hash(key.as_bytes());
+        let mut at = hash as usize & mask;
         for _ in 0..=mask {
-            let slot = u32_at(keys, set.slots as usize + at * 4, "keys")? as usize;
-            if slot == 0 {
+            let slot = u64_at(keys, set.slots as usize + at * SLOT_BYTES, "keys")?;
+            let (tag, index) = (slot as u32, (slot >> 32) as usize);
+            if index == 0 {
                 return Ok(None);
             }
-            if slot <= set.count as usize && self.key(keys, set, slot - 1)? == key.as_bytes() {
-                return self.unit_of(keys, entry, slot - 1).map(Some);
+            if tag == (hash >> 32) as u32 && index <= set.count as usize && self.key(keys, set, index - 1)? == key.as_bytes() {
+                return self.unit_of(keys, entry, index - 1).map(Some);
             }
             at = (at + 1) & mask;
         }

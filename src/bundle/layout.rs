@@ -36,6 +36,7 @@ pub const HEADER_BYTES: usize = 24 + SECTIONS.len() * 32 + 16;
 pub const UNIT_BYTES: usize = 12;
 pub const ARTIFACT_BYTES: usize = 12;
 pub const RECORD_BYTES: usize = 8;
+pub const SLOT_BYTES: usize = 8;
 pub const BLOB_BYTES: usize = 28;
 pub const GROUP_BYTES: usize = 32;
 
@@ -81,8 +82,8 @@ pub struct KeySet {
     pub count: u32,
     /// Where the records start in KEYS.
     pub records: u32,
-    /// Where the hash slots start in KEYS, and how many there are: a power of two, each the
-    /// index of a record plus one, or zero.
+    /// Where the hash slots start in KEYS, and how many there are: a power of two. Each is the
+    /// upper half of a key's hash and the index of its record plus one, or zeros.
     pub slots: u32,
     pub slot_count: u32,
 }
@@ -90,14 +91,17 @@ pub struct KeySet {
 /// Mixes a key, eight bytes at a time; the multiplier is 2^64 over the golden ratio.
 pub fn hash(key: &[u8]) -> u64 {
     const MULTIPLIER: u64 = 0x9e37_79b9_7f4a_7c15;
-    let mix = |state: u64, word: u64| (state.rotate_left(23) ^ word).wrapping_mul(MULTIPLIER);
-    let mut chunks = key.chunks_exact(8);
+    let mix = |state: u64, word: [u8; 8]| (state.rotate_left(23) ^ u64::from_le_bytes(word)).wrapping_mul(MULTIPLIER);
     let mut state = key.len() as u64;
-    for chunk in &mut chunks {
-        state = mix(state, chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte)));
+    let mut rest = key;
+    while let Some((word, after)) = rest.split_first_chunk::<8>() {
+        state = mix(state, *word);
+        rest = after;
     }
-    state = mix(state, chunks.remainder().iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte)));
-    state ^ state >> 32
+    let mut last = [0; 8];
+    last[..rest.len()].copy_from_slice(rest);
+    state = mix(state, last);
+    state ^ (state >> 32)
 }
 
 /// `length` bytes from `at`.
@@ -106,19 +110,18 @@ pub fn slice<'a>(bytes: &'a [u8], at: usize, length: usize, part: &str) -> Resul
 }
 
 pub fn u32_at(bytes: &[u8], at: usize, part: &str) -> Result<u32, Error> {
-    let mut word = [0; 4];
-    word.copy_from_slice(slice(bytes, at, 4, part)?);
-    Ok(u32::from_le_bytes(word))
+    array_at(bytes, at, part).map(u32::from_le_bytes)
 }
 
 pub fn u64_at(bytes: &[u8], at: usize, part: &str) -> Result<u64, Error> {
-    let mut word = [0; 8];
-    word.copy_from_slice(slice(bytes, at, 8, part)?);
-    Ok(u64::from_le_bytes(word))
+    array_at(bytes, at, part).map(u64::from_le_bytes)
 }
 
 pub fn hash_at(bytes: &[u8], at: usize, part: &str) -> Result<Hash, Error> {
-    let mut hash = [0; 16];
-    hash.copy_from_slice(slice(bytes, at, 16, part)?);
-    Ok(hash)
+    array_at(bytes, at, part)
+}
+
+fn array_at<const N: usize>(bytes: &[u8], at: usize, part: &str) -> Result<[u8; N], Error> {
+    let found = bytes.get(at..).and_then(|rest| rest.first_chunk::<N>());
+    found.copied().ok_or_else(|| Error::corrupt(part, "a position is out of range"))
 }

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use super::contents::{checksum, json};
 use super::directory::replace;
-use super::layout::{EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, ProgramMeta, TargetMeta, hash};
+use super::layout::{
+    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, ProgramMeta, RECORD_BYTES, SLOT_BYTES, TargetMeta, hash,
+};
 use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
 
 /// A group is closed at so many blobs or bytes: large enough for neighbours to share their
@@ -99,10 +101,10 @@ impl Packer {
         let set = KeySet {
             count: number(keys.len())?,
             records: number(self.keys.len())?,
-            slots: number(self.keys.len() + keys.len() * 8)?,
+            slots: number(self.keys.len() + keys.len() * RECORD_BYTES)?,
             slot_count: number(slot_count)?,
         };
-        let mut text_at = self.keys.len() + keys.len() * 8 + slot_count * 4;
+        let mut text_at = self.keys.len() + keys.len() * RECORD_BYTES + slot_count * SLOT_BYTES;
         for key in &keys {
             put(&mut self.keys, &[number(text_at)?, number(key.len())?]);
             text_at += key.len();
@@ -192,14 +194,17 @@ fn in_key_order(entry: &EntryContents) -> impl Iterator<Item = &Unit> {
     entry.keys.values().filter_map(|hash| entry.units.get(hash))
 }
 
+/// The hash table of a key set: upper half of the hash and index plus one, for each slot.
 fn slots(keys: &[&str], count: usize) -> Result<Vec<u32>, Error> {
-    let mut slots = vec![0; count];
+    let mut slots = vec![0; count * 2];
     for (index, key) in keys.iter().enumerate() {
-        let mut at = hash(key.as_bytes()) as usize & (count - 1);
-        while slots[at] != 0 {
+        let hash = hash(key.as_bytes());
+        let mut at = hash as usize & (count - 1);
+        while slots[at * 2 + 1] != 0 {
             at = (at + 1) & (count - 1);
         }
-        slots[at] = number(index + 1)?;
+        slots[at * 2] = (hash >> 32) as u32;
+        slots[at * 2 + 1] = number(index + 1)?;
     }
     Ok(slots)
 }

@@ -90,7 +90,7 @@ fn describe(info: &panic::PanicHookInfo<'_>) -> String {
 }
 
 fn quote(text: &str) -> String {
-    let end = text.floor_char_boundary(QUOTED_BYTES);
+    let end = (0..=QUOTED_BYTES.min(text.len())).rev().find(|end| text.is_char_boundary(*end)).unwrap_or_default();
     let rest = if end < text.len() { format!("\n[{} more bytes]", text.len() - end) } else { String::new() };
     format!("the composed text:\n{}{rest}", &text[..end])
 }

@@ -51,10 +51,7 @@ fn place(diagnostic: Diagnostic, composed: &Composed, range: Option<Range<usize>
     if let Some(span) = composed.map.lookup(range.clone()) {
         return diagnostic.at(span, label);
     }
-    let text = &composed.text;
-    let start = text.floor_char_boundary(range.start.min(text.len()));
-    let end = text.floor_char_boundary(range.end.clamp(start, text.len()));
-    let quoted = text[start..end].lines().next().unwrap_or_default();
+    let quoted = composed.text.get(range).and_then(|text| text.lines().next()).unwrap_or_default();
     diagnostic.note(format!("{label}: in text the composer wrote, `{quoted}`"))
 }
 
