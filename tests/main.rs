@@ -2,9 +2,14 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
+mod bundle;
 mod compose_glsl;
 mod compose_wesl;
+mod emit;
+mod eval;
+mod harness;
 mod permute;
+mod programs;
 mod shaderlib;
 mod snapshot;
 
@@ -12,7 +17,18 @@ use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Trial};
 
-const KINDS: &[fn() -> Vec<Trial>] = &[compose_glsl::trials, compose_wesl::trials, permute::trials, shaderlib::trials, snapshot::trials];
+const KINDS: &[fn() -> Vec<Trial>] = &[
+    bundle::trials,
+    compose_glsl::trials,
+    compose_wesl::trials,
+    emit::trials,
+    eval::trials,
+    harness::trials,
+    permute::trials,
+    programs::trials,
+    shaderlib::trials,
+    snapshot::trials,
+];
 
 fn main() -> ExitCode {
     let trials = KINDS.iter().flat_map(|kind| kind()).collect();

@@ -9,7 +9,6 @@ use super::failure::Failure;
 use crate::catalogue::{self, Item};
 use crate::emit::targets;
 use crate::harness::executors;
-use crate::permute::Mode;
 use crate::project;
 
 /// List what the library and the tools offer.
@@ -66,7 +65,7 @@ fn functions() -> Table {
 fn programs() -> Result<Table, Failure> {
     let rows = manifest()?.programs.into_iter().map(|program| {
         let targets: Vec<&str> = program.targets.iter().map(|target| target.name()).collect();
-        vec![program.name.clone(), program.space.axes().len().to_string(), targets.join(" "), program.doc.clone()]
+        vec![program.name.clone(), program.space.axes().len().to_string(), targets.join(" "), program.doc.clone().unwrap_or_default()]
     });
     Ok(Table { columns: &["program", "axes", "targets", "summary"], rows: rows.collect() })
 }
@@ -75,20 +74,17 @@ fn axes() -> Result<Table, Failure> {
     let mut rows = Vec::new();
     for program in manifest()?.programs {
         for axis in program.space.axes() {
-            let values: Vec<String> = axis.values.iter().map(ToString::to_string).collect();
-            let mode = match axis.mode {
-                Mode::Static => "static",
-                Mode::Spec => "spec",
-                Mode::Dynamic => "dynamic",
-            };
-            rows.push(vec![program.name.clone(), axis.name.clone(), mode.to_owned(), axis.default_value().to_string(), values.join(" "), axis.doc.clone()]);
+            let default = axis.values[axis.default].to_string();
+            let cells = [program.name.clone(), axis.name.clone(), axis.mode.name().to_owned(), default, axis.value_names().join(" ")];
+            rows.push(cells.into_iter().chain([axis.doc.clone().unwrap_or_default()]).collect());
         }
     }
     Ok(Table { columns: &["program", "axis", "mode", "default", "values", "summary"], rows })
 }
 
 fn manifest() -> Result<crate::permute::Manifest, Failure> {
-    project::library_manifest().map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))
+    let library = project::library_manifest();
+    library.map(|(_, manifest)| manifest).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))
 }
 
 fn targets() -> Table {

@@ -66,7 +66,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Variants(arguments) => variants::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
-        Command::Eval(arguments) => eval::run(arguments),
+        Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
     }

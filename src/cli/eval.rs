@@ -1,0 +1,70 @@
+//! `lamplight eval EXPR`: values of expressions over the library's functions.
+
+use std::io::{BufRead, Write, stdin, stdout};
+use std::sync::Mutex;
+
+use clap::Args;
+
+use super::check::open;
+use super::failure::{DiagnosticForm, Failure, warn};
+use super::input::LanguageName;
+use crate::harness::expression::evaluate;
+use crate::harness::library::Library;
+use crate::harness::{Session, on_thread};
+use crate::source::SourceSet;
+
+/// Evaluate WGSL expressions, such as `lighting::spot::cone_exponent(0.9, 0.8, 4.0)`.
+#[derive(Args)]
+pub struct Arguments {
+    /// The language whose modules are called.
+    #[arg(long, value_enum, default_value = "wesl")]
+    lang: LanguageName,
+    /// What runs it: `lamplight list executors`.
+    #[arg(long, value_name = "E", default_value = "eval")]
+    executor: String,
+    /// Expressions [default: one a line from standard input].
+    #[arg(value_name = "EXPR", allow_hyphen_values = true)]
+    expressions: Vec<String>,
+}
+
+pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    on_thread(|| evaluate_all(&arguments, form)).unwrap_or_else(|| Err(Failure::environment("the evaluation stopped with an internal error")))
+}
+
+fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    let mut session = open(&arguments.executor)?.session;
+    let library = Library::embedded();
+    let mut failed = false;
+    let mut one = |text: &str, session: &mut dyn Session| -> Result<(), Failure> {
+        failed |= !print(&library, text, arguments.lang, session, form)?;
+        Ok(())
+    };
+    if arguments.expressions.is_empty() {
+        for line in stdin().lock().lines() {
+            let line = line?;
+            if !line.trim().is_empty() {
+                one(&line, session.as_mut())?;
+            }
+        }
+    }
+    for expression in &arguments.expressions {
+        one(expression, session.as_mut())?;
+    }
+    if failed { Err(Failure::input("not every expression has a value")) } else { Ok(()) }
+}
+
+/// One line out for each expression; what has no value gives an empty line, and diagnostics.
+fn print(library: &Library, text: &str, language: LanguageName, session: &mut dyn Session, form: DiagnosticForm) -> Result<bool, Failure> {
+    let sources = Mutex::new(SourceSet::default());
+    match evaluate(library, &sources, text.trim(), language.into(), session) {
+        Ok(value) => {
+            writeln!(stdout(), "{value}")?;
+            Ok(true)
+        }
+        Err(diagnostics) => {
+            writeln!(stdout())?;
+            warn(&sources.into_inner().unwrap_or_default(), &diagnostics, form);
+            Ok(false)
+        }
+    }
+}
