@@ -20,7 +20,7 @@ mod target;
 
 pub use contents::{Artifact, Axis, Contents, EntryContents, Hash, ProgramContents, Unit};
 pub use diff::{Change, Difference, diff};
-pub use directory::write_directory;
+pub use directory::{BlobFile, blob_files, write_directory};
 pub use error::{Error, Miss};
 pub use key::canonical;
 pub use loader::{Bundle, Found, Program, Shader};
