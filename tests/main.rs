@@ -7,7 +7,10 @@ mod compose_glsl;
 mod compose_wesl;
 mod emit;
 mod eval;
+#[path = "../xtask/src/external.rs"]
+mod external;
 mod harness;
+mod library;
 mod permute;
 mod programs;
 mod shaderlib;
@@ -24,10 +27,10 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     emit::trials,
     eval::trials,
     harness::trials,
+    library::trials,
     permute::trials,
     programs::trials,
     shaderlib::trials,
-    snapshot::trials,
 ];
 
 fn main() -> ExitCode {

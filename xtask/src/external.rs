@@ -5,8 +5,16 @@ use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Programs that judge outputs, with the Debian package that brings each.
-pub const VALIDATORS: &[(&str, &str)] = &[("spirv-val", "spirv-tools"), ("glslangValidator", "glslang-tools")];
+use lamplight::bundle::Stage;
+
+/// A stage as glslangValidator names it.
+pub fn stage(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Vertex => "vert",
+        Stage::Fragment => "frag",
+        Stage::Compute => "comp",
+    }
+}
 
 /// Files that one call of glslangValidator takes; spirv-val takes one.
 const BATCH: usize = 64;

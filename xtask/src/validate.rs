@@ -4,10 +4,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use lamplight::bundle::{Stage, blob_files};
+use lamplight::bundle::blob_files;
 
-use crate::external::{self, Job, VALIDATORS};
+use crate::external::{self, Job};
 use crate::{Failure, Outcome, generate, machine};
+
+/// Programs that judge outputs, with the Debian package that brings each.
+const VALIDATORS: &[(&str, &str)] = &[("spirv-val", "spirv-tools"), ("glslangValidator", "glslang-tools")];
 
 /// Outputs that passed, beside the bundle: files are named by their content, so that a name that
 /// passed once passes always.
@@ -55,15 +58,7 @@ fn judges(program: &str, job: &Job) -> bool {
 /// Every distinct output, with its stage.
 fn jobs(bundle: &Path) -> Result<Vec<Job>, Failure> {
     let files = blob_files(bundle).map_err(|error| Failure::input(format!("`{}`: {error}", bundle.display())))?;
-    Ok(files.into_iter().map(|file| Job { stage: stage(file.stage), target: file.target, file: file.path }).collect())
-}
-
-fn stage(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Vertex => "vert",
-        Stage::Fragment => "frag",
-        Stage::Compute => "comp",
-    }
+    Ok(files.into_iter().map(|file| Job { stage: external::stage(file.stage), target: file.target, file: file.path }).collect())
 }
 
 fn name(job: &Job) -> String {
