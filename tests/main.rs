@@ -5,6 +5,7 @@
 mod bundle;
 mod compose_glsl;
 mod compose_wesl;
+mod diagnostics;
 mod emit;
 mod eval;
 mod harness;
@@ -21,6 +22,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     bundle::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    diagnostics::trials,
     emit::trials,
     eval::trials,
     harness::trials,
