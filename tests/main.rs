@@ -5,6 +5,7 @@
 mod bundle;
 mod compose_glsl;
 mod compose_wesl;
+mod diagnostics;
 mod emit;
 mod eval;
 #[path = "../xtask/src/external.rs"]
@@ -24,6 +25,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     bundle::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    diagnostics::trials,
     emit::trials,
     eval::trials,
     harness::trials,

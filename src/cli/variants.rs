@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
+use crate::diagnostic::nearest;
 use crate::permute::report::{Report, report};
 use crate::project;
 use crate::source::SourceSet;
@@ -50,7 +51,11 @@ fn open(path: &std::path::Path) -> Result<(SourceSet, crate::permute::Manifest),
 }
 
 fn keys(manifest: &crate::permute::Manifest, name: &str) -> Result<(), Failure> {
-    let program = manifest.program(name).ok_or_else(|| Failure::input(format!("the manifest declares no program `{name}`")))?;
+    let program = manifest.program(name).ok_or_else(|| {
+        let known = manifest.programs.iter().map(|program| program.name.as_str());
+        let hint = nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        Failure::input(format!("the manifest declares no program `{name}`{hint}"))
+    })?;
     let mut out = std::io::BufWriter::new(stdout().lock());
     for point in program.space.enumerate() {
         writeln!(out, "{}", program.space.key(&point))?;

@@ -7,12 +7,13 @@ use crate::bundle::{Artifact, Target, Unit};
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::emit::{self, targets};
-use crate::validate::{Validated, validate};
+use crate::validate::{self, Validated, validate};
 
-/// Validates a text, reflects its entry point and writes it for each target.
-pub fn compile(composed: &Composed, entry: &str, targets: &[Target]) -> Result<Unit, Diagnostics> {
+/// Validates a text, reflects its entry point and writes it for each target; with the unit, lints.
+pub fn compile(composed: &Composed, entry: &str, targets: &[Target]) -> Result<(Unit, Diagnostics), Diagnostics> {
     let validated = validate(composed)?;
-    unit(&validated, entry, targets).map_err(|error| vec![error])
+    let unit = unit(&validated, entry, targets).map_err(|error| vec![error])?;
+    Ok((unit, validate::lint(composed, &validated)))
 }
 
 fn unit(validated: &Validated, entry: &str, targets: &[Target]) -> Result<Unit, Diagnostic> {

@@ -8,6 +8,7 @@
 
 mod compile;
 mod entry;
+mod lint;
 mod summary;
 mod weave;
 
@@ -22,6 +23,7 @@ use crate::permute::{Assignment, Key, Manifest, Program, Quoted, key};
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 use crate::validate::on_large_stack;
+use lint::Lints;
 
 /// Diagnostics of one entry point after which no more are looked for.
 const REPORTED: usize = 20;
@@ -69,6 +71,7 @@ pub fn generate(
 ) -> Result<Generated, Diagnostics> {
     let start = Instant::now();
     let mut done = Vec::new();
+    let mut lints = Lints::default();
     for program in chosen(manifest, request)? {
         let points = points(program, request)?;
         let entries = entry::entries(sources, packages, program, points.first().map(|(_, point)| point))?;
@@ -77,9 +80,17 @@ pub fn generate(
             let woven = entries.iter().map(|entry| weave::weave(entry, &program.space, &points, targets, progress));
             woven.collect::<Result<Vec<_>, _>>()
         })?;
+        // One permutation says nothing about the others.
+        if request.only.is_none() {
+            lints.see(sources, program, &entries, &points);
+            lints.see_reads(program, &woven);
+        }
         done.push(Done { program, keys: points.into_iter().map(|(key, _)| key).collect(), woven });
     }
-    finish(done, start.elapsed())
+    let mut generated = finish(done, start.elapsed())?;
+    generated.warnings.extend(lints.finish());
+    generated.warnings = lint::distinct(sources, generated.warnings);
+    Ok(generated)
 }
 
 /// A program with every entry point compiled.

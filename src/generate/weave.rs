@@ -43,12 +43,21 @@ pub fn weave(
     progress(Progress { stage: entry.title(), done: 0, total: points.len() });
     for batch in points.chunks(BATCH) {
         let texts = loom.compose(entry, space, batch)?;
-        let units: Vec<Result<Unit, Diagnostics>> =
-            texts.par_iter().map(|(key, composed)| compile(composed, &entry.name, targets).map_err(|errors| of_permutation(errors, entry, key))).collect();
-        loom.woven.units.extend(collect(units)?);
+        let units: Vec<Result<(Unit, Diagnostics), Diagnostics>> = texts.par_iter().map(|(key, composed)| compiled(entry, key, composed, targets)).collect();
+        for (unit, warnings) in collect(units)? {
+            loom.woven.units.push(unit);
+            loom.woven.warnings.extend(warnings);
+        }
         progress(Progress { stage: entry.title(), done: loom.woven.unit_of.len(), total: points.len() });
     }
     Ok(loom.woven)
+}
+
+/// A unit with what its author can mend in it; errors and warnings name the permutation.
+fn compiled(entry: &Entry, key: &Key, composed: &Composed, targets: &[Target]) -> Result<(Unit, Diagnostics), Diagnostics> {
+    let (unit, warnings) =
+        compile(composed, &entry.name, targets).map_err(|errors| of_permutation(entry.graph.traced(errors), entry, key))?;
+    Ok((unit, of_permutation(entry.graph.own(warnings), entry, key)))
 }
 
 /// What is known so far.
@@ -148,5 +157,5 @@ fn keep(errors: &mut Diagnostics, error: Diagnostic) {
 }
 
 fn of_permutation(errors: Diagnostics, entry: &Entry, key: &Key) -> Diagnostics {
-    errors.into_iter().map(|error| error.note(format!("in permutation `{key}` of {}", entry.title()))).collect()
+    errors.into_iter().map(|error| error.note(format!("in permutation `{key}` of program `{}`, entry point `{}`", entry.program, entry.label))).collect()
 }

@@ -65,6 +65,9 @@ pub fn relative(file: &Path, root: &Path) -> Result<String, Diagnostic> {
     let real = |path: &Path| if path.as_os_str().is_empty() { Path::new(".").canonicalize() } else { path.canonicalize() };
     let real_root = real(root).map_err(|error| unreadable(root, &error))?;
     let real_file = real(file).map_err(|error| unreadable(file, &error))?;
+    if real_file.is_dir() {
+        return Err(Diagnostic::error(codes::UNREADABLE, format!("`{}` is a folder, not a file", file.display())));
+    }
     match real_file.strip_prefix(&real_root) {
         Ok(below) => Ok(slashed(below)),
         Err(_) => {
@@ -86,7 +89,12 @@ fn slashed(path: &Path) -> String {
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Diagnostic {
-    Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", path.display()))
+    let shown = path.display();
+    let message = match error.kind() {
+        std::io::ErrorKind::NotFound => format!("there is no file or folder `{shown}`"),
+        _ => format!("cannot read `{shown}`: {error}"),
+    };
+    Diagnostic::error(codes::UNREADABLE, message)
 }
 
 /// File name of a manifest.
@@ -100,6 +108,9 @@ pub fn manifest(root: &Path, sources: &mut SourceSet) -> Result<Option<Manifest>
 
 /// Reads a manifest by its path.
 pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
+    if path.is_dir() {
+        return Err(vec![Diagnostic::error(codes::UNREADABLE, format!("`{}` is a folder, not a manifest", path.display()))]);
+    }
     let folder = path.parent().unwrap_or(Path::new(""));
     let disk = Disk::new(folder).map_err(|error| vec![unreadable(path, &error)])?;
     let package = Package { name: String::new(), files: Box::new(disk) };
