@@ -13,8 +13,8 @@ use crate::harness::check::{Open, Report, failures, table};
 use crate::harness::executors;
 use crate::harness::library::Library;
 use crate::harness::on_thread;
-use crate::project::{self, LIBRARY};
-use crate::source::{Disk, Embedded, SourceSet};
+use crate::project;
+use crate::source::{Disk, SourceSet};
 
 /// Run numeric cases and compare with their references.
 #[derive(Args)]
@@ -33,6 +33,8 @@ pub struct Arguments {
 /// Case files of one package.
 struct Selection {
     library: Library,
+    /// Its root folder, unless it is the embedded library.
+    root: Option<PathBuf>,
     files: Vec<String>,
     languages: Vec<Language>,
 }
@@ -68,30 +70,64 @@ fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure>
 }
 
 fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
-    let languages = |files: &[String], has: &dyn Fn(&str) -> bool| match arguments.lang {
-        Some(language) => vec![language.into()],
-        None => [(Language::Wesl, "wesl"), (Language::Glsl, "glsl")]
-            .into_iter()
-            .filter(|(_, extension)| files.iter().all(|file| has(&file.replace(".toml", &format!(".{extension}"))) || (*extension == "wesl" && has(&file.replace(".toml", ".wgsl")))))
-            .map(|(language, _)| language)
-            .collect(),
-    };
     let (own, of_library): (Vec<&String>, Vec<&String>) = arguments.path.iter().partition(|path| Path::new(path).exists());
     let mut selections = Vec::new();
-    if own.is_empty() {
+    if own.is_empty() || !of_library.is_empty() {
         let library = Library::embedded();
         let files = library_files(&library, &of_library)?;
-        let both = languages(&files, &|_| true);
-        selections.push(Selection { library, files, languages: both });
+        let languages = LANGUAGES.iter().map(|(language, _)| *language).filter(|language| asked(arguments, *language)).collect();
+        selections.push(Selection { library, root: None, files, languages });
     }
     for path in own {
-        let (root, library) = package(Path::new(path))?;
-        for file in own_files(&library, Path::new(path), &root)? {
-            let present = languages(std::slice::from_ref(&file), &|name| root.join(name).is_file());
-            selections.push(Selection { library: library.clone(), files: vec![file], languages: present });
+        for file in case_files(Path::new(path))? {
+            add_own(&mut selections, &file, arguments)?;
         }
     }
     Ok(selections)
+}
+
+/// Each language with the extensions of its modules.
+const LANGUAGES: [(Language, &[&str]); 2] = [(Language::Wesl, &["wesl", "wgsl"]), (Language::Glsl, &["glsl"])];
+
+fn asked(arguments: &Arguments, language: Language) -> bool {
+    arguments.lang.is_none_or(|name| Language::from(name) == language)
+}
+
+/// Case files of the user's: the file itself, that of a module, or all below a folder.
+fn case_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
+    if path.is_dir() {
+        let disk = Disk::new(path).map_err(|error| unreadable(path, &error))?;
+        let found: Vec<PathBuf> = Library::new("", Arc::new(disk), Vec::new()).case_files().iter().map(|file| path.join(file)).collect();
+        let none = || Failure::input(format!("there is no case file in `{}`: cases are in a `.toml` beside a module", path.display()));
+        return if found.is_empty() { Err(none()) } else { Ok(found) };
+    }
+    let file = path.with_extension("toml");
+    if file.is_file() {
+        Ok(vec![file])
+    } else {
+        Err(Failure::input(format!("`{}` has no cases: they are in `{}`, beside the module", path.display(), file.display())))
+    }
+}
+
+/// Adds a case file to the selection of its package and its languages.
+fn add_own(selections: &mut Vec<Selection>, file: &Path, arguments: &Arguments) -> Result<(), Failure> {
+    let root = project::root_of(file);
+    let path = project::relative(file, &root).map_err(|diagnostic| Failure::input(diagnostic.message))?;
+    let present = |extensions: &[&str]| extensions.iter().any(|extension| file.with_extension(extension).is_file());
+    let languages: Vec<Language> = LANGUAGES
+        .iter()
+        .filter(|(language, extensions)| asked(arguments, *language) && present(extensions))
+        .map(|(language, _)| *language)
+        .collect();
+    if languages.is_empty() {
+        return Err(Failure::input(format!("`{}` has no module beside it", file.display())));
+    }
+    let same = |selection: &&mut Selection| selection.root.as_ref() == Some(&root) && selection.languages == languages;
+    match selections.iter_mut().find(same) {
+        Some(selection) => selection.files.push(path),
+        None => selections.push(Selection { library: package(&root)?, root: Some(root), files: vec![path], languages }),
+    }
+    Ok(())
 }
 
 fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Failure> {
@@ -112,22 +148,16 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
     Ok(found)
 }
 
-/// The package that a file or folder of the user's belongs to.
-fn package(path: &Path) -> Result<(PathBuf, Library), Failure> {
-    let root = if path.is_dir() { path.to_owned() } else { project::root_of(path) };
-    let disk = Disk::new(&root).map_err(|error| Failure::input(format!("cannot read `{}`: {error}", root.display())))?;
-    let dependencies = vec![(LIBRARY.to_owned(), Arc::new(Embedded) as Arc<dyn crate::source::Files>)];
-    Ok((root, Library::new("package", Arc::new(disk), dependencies)))
+/// The user's package with what it may import.
+fn package(root: &Path) -> Result<Library, Failure> {
+    let mut sources = SourceSet::default();
+    let packages = project::packages(root, &mut sources).map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+    let name = project::declared_name(root).unwrap_or(packages.root.name);
+    let dependencies = packages.dependencies.into_iter().filter(|package| package.name != name);
+    let dependencies = dependencies.map(|package| (package.name, Arc::from(package.files))).collect();
+    Ok(Library::new(&name, Arc::from(packages.root.files), dependencies))
 }
 
-fn own_files(library: &Library, path: &Path, root: &Path) -> Result<Vec<String>, Failure> {
-    let files = library.case_files();
-    if path.is_dir() {
-        return Ok(files);
-    }
-    let name = project::relative(path, root).map_err(|diagnostic| Failure::input(diagnostic.message))?;
-    if !name.ends_with(".toml") {
-        return Err(Failure::input(format!("`{}` is no case file: cases are in the `.toml` beside a module", path.display())));
-    }
-    Ok(vec![name])
+fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::input(format!("cannot read `{}`: {error}", path.display()))
 }

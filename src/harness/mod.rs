@@ -14,6 +14,7 @@ pub mod expression;
 pub mod fixture;
 pub mod formula;
 mod gpu;
+mod interpreter;
 pub mod kernel;
 pub mod laws;
 pub mod library;

@@ -4,6 +4,8 @@
 
 mod wesl_toml;
 
+pub use wesl_toml::declared_name;
+
 use std::path::{Component, Path, PathBuf};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};

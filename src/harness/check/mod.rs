@@ -63,11 +63,35 @@ impl Report {
     }
 }
 
+/// How to check.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Whether the references of `src/harness/references/` are meant by a module's path.
+    pub references: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { references: true }
+    }
+}
+
+/// [`check_with`] the default options.
+pub fn check(files: &[(String, File)], languages: &[Language], subjects: &Subjects<'_>, open: &mut [Open]) -> Result<Report, Diagnostics> {
+    check_with(files, languages, subjects, open, &Options::default())
+}
+
 /// Checks the cases of each module (`lighting::spot` and its file).
 ///
 /// Errors are mistakes in the cases or in the modules; failing numbers are in the report.
-pub fn check(files: &[(String, File)], languages: &[Language], subjects: &Subjects<'_>, open: &mut [Open]) -> Result<Report, Diagnostics> {
-    let prepared: Vec<_> = files.par_iter().map(|(module, file)| job::prepare(module, file, languages, subjects)).collect();
+pub fn check_with(
+    files: &[(String, File)],
+    languages: &[Language],
+    subjects: &Subjects<'_>,
+    open: &mut [Open],
+    options: &Options,
+) -> Result<Report, Diagnostics> {
+    let prepared: Vec<_> = files.par_iter().map(|(module, file)| job::prepare(module, file, languages, subjects, options)).collect();
     let (mut jobs, mut errors) = (Vec::new(), Vec::new());
     for result in prepared {
         match result {
