@@ -5,9 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::cases::{self, File};
 use super::check::{self, Open, Report};
+use super::ratchet::{self, Ratchet};
 use crate::compose::{self, Composed, Keep, Language, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::Settings;
+use crate::project::LIBRARY;
 use crate::resolve::{self, Packages};
 use crate::source::{self, Embedded, Files, Memory, Package, ReadError, SourceSet};
 use crate::validate::{self, Validated};
@@ -23,7 +25,7 @@ pub struct Library {
 impl Library {
     /// The library that the binary carries.
     pub fn embedded() -> Self {
-        Self::new("lamplight", Arc::new(Embedded), Vec::new())
+        Self::new(LIBRARY, Arc::new(Embedded), Vec::new())
     }
 
     /// A package with its dependencies, by name.
@@ -62,9 +64,33 @@ impl Library {
         languages: &[Language],
         open: &mut [Open],
     ) -> Result<Report, Diagnostics> {
+        self.check_with(sources, paths, languages, open, &check::Options { references: self.has_references(), ..check::Options::default() })
+    }
+
+    /// Whether the crate's references are about this package.
+    pub fn has_references(&self) -> bool {
+        self.name == LIBRARY
+    }
+
+    /// What drivers were measured to need of the package's tolerances, if that is recorded.
+    pub fn ratchet(&self, sources: &Mutex<SourceSet>) -> Result<Option<Ratchet>, Diagnostics> {
+        let mut sources = lock(sources);
+        let id = source::read(&mut sources, &self.package(), ratchet::FILE).map_err(|error| vec![error])?;
+        id.map(|id| Ratchet::parse(&sources.get(id).text, id)).transpose().map_err(|error| vec![error])
+    }
+
+    /// As [`Self::check`], with options.
+    pub fn check_with(
+        &self,
+        sources: &Mutex<SourceSet>,
+        paths: &[String],
+        languages: &[Language],
+        open: &mut [Open],
+        options: &check::Options<'_>,
+    ) -> Result<Report, Diagnostics> {
         let files = self.read(sources, paths)?;
         let subjects = |module: &str, language: Language, functions: &[String]| self.module(sources, module, language, functions);
-        check::check(&files, languages, &subjects, open)
+        check::check_with(&files, languages, &subjects, open, options)
     }
 
     fn read(&self, sources: &Mutex<SourceSet>, paths: &[String]) -> Result<Vec<(String, File)>, Diagnostics> {

@@ -14,9 +14,11 @@ pub mod expression;
 pub mod fixture;
 pub mod formula;
 mod gpu;
+mod interpreter;
 pub mod kernel;
 pub mod laws;
 pub mod library;
+pub mod ratchet;
 pub mod references;
 pub mod tolerance;
 

@@ -16,6 +16,12 @@ pub fn declared_root(folder: &Path) -> Option<PathBuf> {
     Some(root_in(folder, &text.parse().ok()?))
 }
 
+/// The name that the root's `wesl.toml` gives its package.
+pub fn declared_name(root: &Path) -> Option<String> {
+    let table: Table = std::fs::read_to_string(home(root)?.join(NAME)).ok()?.parse().ok()?;
+    Some(table.get("package")?.get("name")?.as_str()?.to_owned())
+}
+
 /// The packages that the root's `wesl.toml` lists by path, those they list in turn included.
 pub fn dependencies(root: &Path, sources: &mut SourceSet) -> Result<Vec<Package>, Diagnostics> {
     broken(root, sources)?;
