@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
 mod bundle;
+mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
 mod diagnostics;
@@ -23,6 +24,7 @@ use libtest_mimic::{Arguments, Trial};
 
 const KINDS: &[fn() -> Vec<Trial>] = &[
     bundle::trials,
+    catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
     diagnostics::trials,

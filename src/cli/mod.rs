@@ -4,6 +4,7 @@
 //! comparison failed, 4 the environment lacks something.
 
 mod bundle;
+mod catalogue;
 mod check;
 mod compile;
 mod compose;
@@ -15,6 +16,7 @@ mod input;
 mod list;
 mod progress;
 mod show;
+mod text;
 mod variants;
 
 use std::process::ExitCode;
@@ -45,6 +47,7 @@ enum Command {
     Bundle(bundle::Arguments),
     Eval(eval::Arguments),
     Check(check::Arguments),
+    Catalogue(catalogue::Arguments),
     Explain(explain::Arguments),
 }
 
@@ -68,6 +71,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Bundle(arguments) => bundle::run(arguments),
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
+        Command::Catalogue(arguments) => catalogue::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
     }
 }

@@ -5,9 +5,10 @@
 //! [`cases`] reads what to try, [`library`] composes the modules, [`kernel`] wraps each function
 //! into a fragment shader, an executor of [`executors`] runs it, [`references`] says what should
 //! come out, [`tolerance`] how far off it may be, and [`check`] compares. [`expression`] runs one
-//! expression instead of cases.
+//! expression instead of cases, [`plots`] draws functions for the [`catalogue`].
 
 pub mod cases;
+pub mod catalogue;
 pub mod check;
 pub mod executors;
 pub mod expression;
@@ -18,6 +19,7 @@ mod interpreter;
 pub mod kernel;
 pub mod laws;
 pub mod library;
+pub mod plots;
 pub mod ratchet;
 pub mod references;
 pub mod tolerance;
