@@ -54,7 +54,14 @@ fn declaration(kind: Kind, text: &str, line: usize) -> String {
     let rest = rest.join("\n");
     match kind {
         Kind::Function => single_spaced(rest.split('{').next().unwrap_or_default()),
-        Kind::Struct => rest.split_inclusive('}').next().unwrap_or_default().lines().filter(|line| !line.trim().is_empty()).collect::<Vec<_>>().join("\n"),
+        Kind::Struct => rest
+            .split_inclusive('}')
+            .next()
+            .unwrap_or_default()
+            .lines()
+            .filter(|line| !line.trim().is_empty())
+            .collect::<Vec<_>>()
+            .join("\n"),
     }
 }
 

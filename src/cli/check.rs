@@ -72,7 +72,11 @@ fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
         Some(language) => vec![language.into()],
         None => [(Language::Wesl, "wesl"), (Language::Glsl, "glsl")]
             .into_iter()
-            .filter(|(_, extension)| files.iter().all(|file| has(&file.replace(".toml", &format!(".{extension}"))) || (*extension == "wesl" && has(&file.replace(".toml", ".wgsl")))))
+            .filter(|(_, extension)| {
+                files.iter().all(|file| {
+                    has(&file.replace(".toml", &format!(".{extension}"))) || (*extension == "wesl" && has(&file.replace(".toml", ".wgsl")))
+                })
+            })
             .map(|(language, _)| language)
             .collect(),
     };
@@ -103,7 +107,8 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
     for path in asked {
         let wanted = path.trim_start_matches("lamplight::").replace("::", "/");
         let stem = |file: &str| file.trim_end_matches(".toml").to_owned();
-        let matching: Vec<String> = files.iter().filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/"))).cloned().collect();
+        let matching: Vec<String> =
+            files.iter().filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/"))).cloned().collect();
         if matching.is_empty() {
             return Err(Failure::input(format!("`{path}` is no file, and no module of the library with numeric cases")));
         }

@@ -87,7 +87,8 @@ fn compare(contents: &bundle::Contents, out: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let changes = difference.permutations.iter().take(20);
-    let lines: Vec<String> = changes.map(|change| format!("  {} {} {} {}", change.kind, change.program, change.entry, change.key)).collect();
+    let lines: Vec<String> =
+        changes.map(|change| format!("  {} {} {} {}", change.kind, change.program, change.entry, change.key)).collect();
     let count = difference.permutations.len();
     Err(Failure::check(format!("`{}` is not up to date: {count} permutations differ\n{}", out.display(), lines.join("\n"))))
 }

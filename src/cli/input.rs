@@ -85,7 +85,8 @@ impl Input {
     /// Opens the package, chooses the settings and composes.
     pub fn compose(&self, form: DiagnosticForm) -> Result<Ready, Failure> {
         let root = self.root.clone().unwrap_or_else(|| project::root_of(&self.file));
-        let mut project = project::open(&root, SourceSet::default()).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
+        let mut project =
+            project::open(&root, SourceSet::default()).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
         match self.compose_in(&mut project, &root) {
             Ok(composed) => {
                 warn(&project.sources, &composed.warnings, form);
@@ -127,7 +128,8 @@ impl Input {
     /// where the package's manifest has one.
     fn settings(&self, project: &mut Project, root: &Path, path: &str) -> Result<(Settings, Diagnostics), Diagnostics> {
         let manifest = project::manifest(root, &mut project.sources)?;
-        let program = manifest.as_ref().and_then(|manifest| manifest.programs.iter().find(|program| program.files().any(|file| file.path == path)));
+        let program =
+            manifest.as_ref().and_then(|manifest| manifest.programs.iter().find(|program| program.files().any(|file| file.path == path)));
         let (mut settings, warnings) = match program {
             Some(program) => self.assignment(program, &mut project.sources)?,
             None => (Settings { values: self.set.iter().cloned().collect(), ..Settings::default() }, Vec::new()),

@@ -104,7 +104,8 @@ fn as_json(table: &Table) -> String {
 }
 
 fn as_text(table: &Table) -> String {
-    let width = |column: usize| table.rows.iter().map(|row| row[column].chars().count()).chain([table.columns[column].len()]).max().unwrap_or(0);
+    let width =
+        |column: usize| table.rows.iter().map(|row| row[column].chars().count()).chain([table.columns[column].len()]).max().unwrap_or(0);
     let widths: Vec<usize> = (0..table.columns.len()).map(width).collect();
     let line = |cells: Vec<&str>| {
         let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}"));

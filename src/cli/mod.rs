@@ -13,6 +13,7 @@ mod failure;
 mod generate;
 mod input;
 mod list;
+mod mutate;
 mod progress;
 mod show;
 mod variants;
@@ -45,6 +46,8 @@ enum Command {
     Bundle(bundle::Arguments),
     Eval(eval::Arguments),
     Check(check::Arguments),
+    #[command(hide = true)]
+    Mutate(mutate::Arguments),
     Explain(explain::Arguments),
 }
 
@@ -68,6 +71,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Bundle(arguments) => bundle::run(arguments),
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
+        Command::Mutate(arguments) => mutate::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
     }
 }

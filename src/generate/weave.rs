@@ -43,8 +43,10 @@ pub fn weave(
     progress(Progress { stage: entry.title(), done: 0, total: points.len() });
     for batch in points.chunks(BATCH) {
         let texts = loom.compose(entry, space, batch)?;
-        let units: Vec<Result<Unit, Diagnostics>> =
-            texts.par_iter().map(|(key, composed)| compile(composed, &entry.name, targets).map_err(|errors| of_permutation(errors, entry, key))).collect();
+        let units: Vec<Result<Unit, Diagnostics>> = texts
+            .par_iter()
+            .map(|(key, composed)| compile(composed, &entry.name, targets).map_err(|errors| of_permutation(errors, entry, key)))
+            .collect();
         loom.woven.units.extend(collect(units)?);
         progress(Progress { stage: entry.title(), done: loom.woven.unit_of.len(), total: points.len() });
     }
@@ -77,7 +79,12 @@ impl Loom {
     ///
     /// Settings that no earlier batch answered are composed in parallel, some of them to the same
     /// text: to compose is cheaper than to wait for each other.
-    fn compose<'k>(&mut self, entry: &Entry, space: &Space, batch: &'k [(Key, Assignment)]) -> Result<Vec<(&'k Key, Composed)>, Diagnostics> {
+    fn compose<'k>(
+        &mut self,
+        entry: &Entry,
+        space: &Space,
+        batch: &'k [(Key, Assignment)],
+    ) -> Result<Vec<(&'k Key, Composed)>, Diagnostics> {
         let tree = &self.tree;
         let composed: Vec<Result<Found, Diagnostics>> = batch
             .par_iter()

@@ -5,7 +5,7 @@
 //! [`cases`] reads what to try, [`library`] composes the modules, [`kernel`] wraps each function
 //! into a fragment shader, an executor of [`executors`] runs it, [`references`] says what should
 //! come out, [`tolerance`] how far off it may be, and [`check`] compares. [`expression`] runs one
-//! expression instead of cases.
+//! expression instead of cases. [`mutate`] asks how much the cases notice.
 
 pub mod cases;
 pub mod check;
@@ -17,6 +17,7 @@ mod gpu;
 pub mod kernel;
 pub mod laws;
 pub mod library;
+pub mod mutate;
 pub mod references;
 pub mod tolerance;
 

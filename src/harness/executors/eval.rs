@@ -55,13 +55,13 @@ impl Cpu {
 }
 
 /// The word of each parameter that is bound, in the order of parameters.
-fn handles(kernel: &Kernel, program: &Program) -> Result<Vec<u32>, Diagnostic> {
+pub(in crate::harness) fn handles(kernel: &Kernel, program: &Program) -> Result<Vec<u32>, Diagnostic> {
     let unbound = |binding| Diagnostic::error(codes::EVAL_UNBOUND, format!("the kernel has no binding {binding}"));
     kernel.resources().map(|resource| program.handle(0, resource.binding).ok_or_else(|| unbound(resource.binding))).collect()
 }
 
 /// One invocation's words with the handles between them, as the function declares them.
-fn flatten(kernel: &Kernel, handles: &[u32], words: &[u32], arguments: &mut Vec<u32>) {
+pub(in crate::harness) fn flatten(kernel: &Kernel, handles: &[u32], words: &[u32], arguments: &mut Vec<u32>) {
     arguments.clear();
     let mut handles = handles.iter();
     for parameter in &kernel.parameters {
@@ -75,7 +75,8 @@ fn flatten(kernel: &Kernel, handles: &[u32], words: &[u32], arguments: &mut Vec<
     }
 }
 
-fn resources(kernel: &Kernel) -> Resources {
+/// The fixtures of a kernel at their bindings.
+pub(in crate::harness) fn resources(kernel: &Kernel) -> Resources {
     let mut resources = Resources::default();
     for resource in kernel.resources() {
         let place = (0, resource.binding);
