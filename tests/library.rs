@@ -83,7 +83,11 @@ fn readable(target: Target, bytes: &[u8]) -> Result<String, Failed> {
     let file = tempfile::NamedTempFile::new()?;
     std::fs::write(file.path(), bytes)?;
     let output = Command::new("spirv-dis").args(["--no-color", "--no-header"]).arg(file.path()).output()?;
-    if output.status.success() { Ok(String::from_utf8(output.stdout)?) } else { Err(String::from_utf8_lossy(&output.stderr).into_owned().into()) }
+    if output.status.success() {
+        Ok(String::from_utf8(output.stdout)?)
+    } else {
+        Err(String::from_utf8_lossy(&output.stderr).into_owned().into())
+    }
 }
 
 /// The bundle of the whole manifest, made once.

@@ -14,6 +14,7 @@ mod failure;
 mod generate;
 mod input;
 mod list;
+mod mutate;
 mod progress;
 mod show;
 mod text;
@@ -48,6 +49,8 @@ enum Command {
     Eval(eval::Arguments),
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
+    #[command(hide = true)]
+    Mutate(mutate::Arguments),
     Explain(explain::Arguments),
 }
 
@@ -72,6 +75,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
+        Command::Mutate(arguments) => mutate::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
     }
 }

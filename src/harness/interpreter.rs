@@ -102,7 +102,29 @@ fn slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagnostic> {
     Ok(slots)
 }
 
-fn resources(kernel: &Kernel) -> Resources {
+/// The word of each parameter that is bound, in the order of parameters.
+pub fn handles(kernel: &Kernel, program: &Program) -> Result<Vec<u32>, Diagnostic> {
+    let unbound = |binding| Diagnostic::error(codes::EVAL_UNBOUND, format!("the kernel has no binding {binding}"));
+    kernel.resources().map(|resource| program.handle(0, resource.binding).ok_or_else(|| unbound(resource.binding))).collect()
+}
+
+/// One invocation's words with the handles between them, as the function declares them.
+pub fn flatten(kernel: &Kernel, handles: &[u32], words: &[u32], arguments: &mut Vec<u32>) {
+    arguments.clear();
+    let mut handles = handles.iter();
+    for parameter in &kernel.parameters {
+        match &parameter.kind {
+            ParameterKind::Words { offset, shape } => {
+                let first = *offset as usize;
+                arguments.extend_from_slice(&words[first..first + shape.words() as usize]);
+            }
+            ParameterKind::Resource(_) => arguments.extend(handles.next()),
+        }
+    }
+}
+
+/// The fixtures of a kernel at their bindings.
+pub fn resources(kernel: &Kernel) -> Resources {
     let mut resources = Resources::default();
     for resource in kernel.resources() {
         let place = (0, resource.binding);

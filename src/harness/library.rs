@@ -48,6 +48,17 @@ impl Library {
         self.files.list(&["toml"]).into_iter().filter(|path| has_module(path)).collect()
     }
 
+    /// Paths of all modules that are no programs: `lighting::spot`.
+    pub fn modules(&self) -> Vec<String> {
+        let paths = self.files.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
+        paths.map(|path| path.trim_end_matches(".wesl").replace('/', "::")).collect()
+    }
+
+    /// The text of a file of the package, if it is there.
+    pub fn text(&self, path: &str) -> Option<String> {
+        self.files.read(path).ok().flatten()
+    }
+
     /// First path components of the modules: `lighting`, `brdf`, and so on.
     pub fn folders(&self) -> Vec<String> {
         let mut folders: Vec<_> =
@@ -93,7 +104,8 @@ impl Library {
         check::check_with(&files, languages, &subjects, open, options)
     }
 
-    fn read(&self, sources: &Mutex<SourceSet>, paths: &[String]) -> Result<Vec<(String, File)>, Diagnostics> {
+    /// The case files of these paths, each with its module's path.
+    pub(super) fn read(&self, sources: &Mutex<SourceSet>, paths: &[String]) -> Result<Vec<(String, File)>, Diagnostics> {
         let mut sources = lock(sources);
         let package = self.package();
         let mut files = Vec::new();
@@ -103,6 +115,16 @@ impl Library {
             files.push((path.trim_end_matches(".toml").replace('/', "::"), cases::parse(&sources, id)?));
         }
         Ok(files)
+    }
+
+    /// A WESL module with everything it declares, and the map back to its text.
+    pub fn whole(&self, sources: &Mutex<SourceSet>, module: &str) -> Result<(Composed, Validated), Diagnostics> {
+        let packages = Packages { root: self.package(), dependencies: self.dependencies() };
+        let root = format!("{}.wesl", module.replace("::", "/"));
+        let graph = resolve::wesl::load(&mut lock(sources), &packages, &root)?;
+        let composed = compose::wesl::compose(&graph, &Settings::default(), &Options::default())?;
+        let validated = validate::validate(&composed)?;
+        Ok((composed, validated))
     }
 
     /// A module with the named functions of a module of the package.

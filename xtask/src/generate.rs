@@ -29,7 +29,8 @@ pub fn run(arguments: &[String]) -> Outcome {
     }
     let mut sources = SourceSet::default();
     let generated = library(&mut sources);
-    let Generated { contents, summary, warnings } = generated.map_err(|diagnostics| Failure::input(render(&sources, &diagnostics, Form::Human)))?;
+    let Generated { contents, summary, warnings } =
+        generated.map_err(|diagnostics| Failure::input(render(&sources, &diagnostics, Form::Human)))?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
     bundle::write_directory(&contents, bundle()).map_err(|error| Failure::environment(error.to_string()))?;
     print!("{summary}");

@@ -43,7 +43,8 @@ pub fn validate(bundle: &Path, earlier: Earlier) -> Outcome {
     let mut jobs = jobs(bundle)?;
     jobs.retain(|job| job.is_covered() && !passed.contains(&name(job)) && !missing.iter().any(|(program, _)| judges(program, job)));
     let (total, names) = (jobs.len(), jobs.iter().map(name).collect::<BTreeSet<_>>());
-    let (judged, refusals) = external::validate(jobs, &|done| show(done, total)).map_err(|error| Failure::environment(error.to_string()))?;
+    let (judged, refusals) =
+        external::validate(jobs, &|done| show(done, total)).map_err(|error| Failure::environment(error.to_string()))?;
     println!("validated {judged} outputs ({} passed before), {} refused", passed.len(), refusals.len());
     if refusals.is_empty() {
         return write_passed(bundle, &versions, passed.union(&names)).map_err(|error| Failure::environment(error.to_string()));
@@ -67,7 +68,12 @@ fn name(job: &Job) -> String {
 
 /// What the validators call themselves, in one line: another version judges anew.
 fn versions() -> String {
-    let version = |program: &str| Command::new(program).arg("--version").output().map_or(String::new(), |output| String::from_utf8_lossy(&output.stdout).replace('\n', " "));
+    let version = |program: &str| {
+        Command::new(program)
+            .arg("--version")
+            .output()
+            .map_or(String::new(), |output| String::from_utf8_lossy(&output.stdout).replace('\n', " "))
+    };
     VALIDATORS.iter().map(|(program, _)| version(program)).collect()
 }
 

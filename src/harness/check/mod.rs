@@ -1,7 +1,7 @@
 //! Runs cases of modules in each language on each executor. Prints nothing: results are data.
 
-mod job;
-mod judge;
+pub(super) mod job;
+pub(super) mod judge;
 mod profile;
 mod proof;
 mod report;
