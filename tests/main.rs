@@ -9,6 +9,7 @@ mod emit;
 mod eval;
 mod harness;
 mod permute;
+mod pipelines;
 mod programs;
 mod shaderlib;
 mod snapshot;
@@ -25,6 +26,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     eval::trials,
     harness::trials,
     permute::trials,
+    pipelines::trials,
     programs::trials,
     shaderlib::trials,
     snapshot::trials,

@@ -12,6 +12,7 @@ mod explain;
 mod failure;
 mod generate;
 mod input;
+mod keys;
 mod list;
 mod progress;
 mod show;
@@ -43,6 +44,7 @@ enum Command {
     Gen(generate::Arguments),
     Variants(variants::Arguments),
     Bundle(bundle::Arguments),
+    Keys(keys::Arguments),
     Eval(eval::Arguments),
     Check(check::Arguments),
     Explain(explain::Arguments),
@@ -66,6 +68,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Variants(arguments) => variants::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
+        Command::Keys(arguments) => keys::run(arguments, form),
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
