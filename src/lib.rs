@@ -17,6 +17,8 @@ pub mod emit;
 #[cfg(feature = "compile")]
 pub mod generate;
 #[cfg(feature = "compile")]
+pub mod keys;
+#[cfg(feature = "compile")]
 pub mod output;
 #[cfg(feature = "compile")]
 pub mod parse;

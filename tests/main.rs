@@ -14,6 +14,7 @@ mod external;
 mod harness;
 mod library;
 mod permute;
+mod pipelines;
 mod programs;
 mod shaderlib;
 mod snapshot;
@@ -33,6 +34,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     harness::trials,
     library::trials,
     permute::trials,
+    pipelines::trials,
     programs::trials,
     shaderlib::trials,
 ];

@@ -13,6 +13,7 @@ mod explain;
 mod failure;
 mod generate;
 mod input;
+mod keys;
 mod list;
 mod mutate;
 mod progress;
@@ -46,6 +47,7 @@ enum Command {
     Gen(generate::Arguments),
     Variants(variants::Arguments),
     Bundle(bundle::Arguments),
+    Keys(keys::Arguments),
     Eval(eval::Arguments),
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
@@ -72,6 +74,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Variants(arguments) => variants::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
+        Command::Keys(arguments) => keys::run(arguments, form),
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),

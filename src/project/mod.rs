@@ -9,7 +9,7 @@ pub use wesl_toml::declared_name;
 use std::path::{Component, Path, PathBuf};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::permute::{Manifest, manifest};
+use crate::permute::{Lock, Manifest, lock, manifest, usage};
 use crate::resolve::Packages;
 use crate::source::{self, Disk, Embedded, Package, SourceSet};
 
@@ -120,6 +120,25 @@ pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, D
     parse_manifest(&package, &name, sources)
 }
 
+/// File name of the lock that lies beside a manifest.
+pub const LOCK: &str = "lamplight.lock";
+
+/// Where the lock of a manifest lies.
+pub fn lock_path(manifest: &Path) -> PathBuf {
+    manifest.with_file_name(LOCK)
+}
+
+/// The lock of dense keys beside a manifest; an empty one where there is no file.
+pub fn lock(manifest: &Path, sources: &mut SourceSet) -> Result<Lock, Diagnostics> {
+    let folder = manifest.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let disk = Disk::new(folder).map_err(|error| vec![unreadable(folder, &error)])?;
+    let package = Package { name: String::new(), files: Box::new(disk) };
+    match source::read(sources, &package, LOCK).map_err(|error| vec![error])? {
+        Some(id) => lock::parse(sources, id),
+        None => Ok(Lock::default()),
+    }
+}
+
 /// The manifest of the embedded library.
 pub fn library_manifest() -> Result<(SourceSet, Manifest), (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
@@ -131,7 +150,18 @@ pub fn library_manifest() -> Result<(SourceSet, Manifest), (SourceSet, Diagnosti
 
 fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
     let id = source::read(sources, package, name).map_err(|error| vec![error])?;
-    let id =
-        id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
-    manifest::parse(sources, id)
+    let id = id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
+    let mut manifest = manifest::parse(sources, id)?;
+    for program in &mut manifest.programs {
+        let Some(file) = program.usage.clone() else { continue };
+        let list = source::read(sources, package, &file.path).map_err(|error| vec![error.at(file.span, "named here")])?;
+        let list = list.ok_or_else(|| vec![no_list(&file)])?;
+        let warnings = usage::narrow(program, sources, list)?;
+        manifest.warnings.extend(warnings);
+    }
+    Ok(manifest)
+}
+
+fn no_list(file: &manifest::File) -> Diagnostic {
+    Diagnostic::error(codes::UNREADABLE, format!("there is no usage list `{}`", file.path)).at(file.span, "named here")
 }
