@@ -76,7 +76,8 @@ fn gather(folder: &Path, text: &mut String) -> Result<(), Failed> {
         let path = entry?.path();
         if path.is_dir() {
             gather(&path, text)?;
-        } else if path.extension().is_some_and(|extension| ["snap", "err", "txt", "warnings", "rs"].iter().any(|known| extension == *known)) {
+        } else if path.extension().is_some_and(|extension| ["snap", "err", "txt", "warnings", "rs"].iter().any(|known| extension == *known))
+        {
             text.push_str(&fs::read_to_string(&path).unwrap_or_default());
         }
     }
@@ -192,10 +193,18 @@ fn hostile() -> Vec<(&'static str, &'static str, String)> {
         ("manifest nesting", "m.toml", format!("a={}{}", "[".repeat(50_000), "]".repeat(50_000))),
         ("manifest dots", "m.toml", format!("a{} = 1\n", ".a".repeat(50_000))),
         ("manifest keys", "m.toml", numbered(50_000, &|i| format!("a{i} = 1\n"))),
-        ("manifest constraint", "m.toml", format!("{axis}x = {{ values = [false, true] }}\n[[program.f.constraint]]\nrequire = \"{}x\"\n", "(".repeat(50_000))),
+        (
+            "manifest constraint",
+            "m.toml",
+            format!("{axis}x = {{ values = [false, true] }}\n[[program.f.constraint]]\nrequire = \"{}x\"\n", "(".repeat(50_000)),
+        ),
         ("manifest noise", "m.toml", numbered(100_000, &|i| char::from((i * 7919 % 94 + 33) as u8).to_string())),
         ("wesl.toml nesting", "wesl.toml", format!("a={}{}", "[".repeat(50_000), "]".repeat(50_000))),
-        ("wesl.toml dependencies", "wesl.toml", "[package]\nroot = \".\"\n[dependencies]\n".to_owned() + &numbered(20_000, &|i| format!("d{i} = {{ path = \"d{i}\" }}\n"))),
+        (
+            "wesl.toml dependencies",
+            "wesl.toml",
+            "[package]\nroot = \".\"\n[dependencies]\n".to_owned() + &numbered(20_000, &|i| format!("d{i} = {{ path = \"d{i}\" }}\n")),
+        ),
     ]
 }
 

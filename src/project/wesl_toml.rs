@@ -53,7 +53,8 @@ fn broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
 
 /// The tables of a folder's `wesl.toml`, which is there; `shown` is the folder's name in diagnostics.
 fn parse(folder: &Path, shown: &Path, sources: &mut SourceSet) -> Result<(Table, SourceId), Diagnostic> {
-    let disk = Disk::new(folder).map_err(|error| Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", shown.display())))?;
+    let disk =
+        Disk::new(folder).map_err(|error| Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", shown.display())))?;
     let package = Package { name: String::new(), files: Box::new(Shown { disk, folder: shown.to_owned() }) };
     let missing = || Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`", shown.join(NAME).display()));
     let id = source::read(sources, &package, NAME)?.ok_or_else(missing)?;
@@ -72,7 +73,8 @@ fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
     let wrong = |what: &str, expected: &str, key: &str| {
         let start = text.find(key).unwrap_or(0);
         let message = format!("{what} of `wesl.toml` is not {expected}");
-        Err(Diagnostic::error(codes::WESL_TOML, message).at(Span::new(id, start..(start + key.len()).min(text.len())), format!("expected {expected}")))
+        Err(Diagnostic::error(codes::WESL_TOML, message)
+            .at(Span::new(id, start..(start + key.len()).min(text.len())), format!("expected {expected}")))
     };
     let package = table.get("package");
     if package.is_some_and(|package| !package.is_table()) {

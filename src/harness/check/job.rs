@@ -53,6 +53,7 @@ pub enum Judge {
 }
 
 /// What a row should give.
+#[derive(Clone)]
 pub struct Target {
     pub expected: Expected,
     /// What each word may be off beside the terms of the case; none where it is empty.

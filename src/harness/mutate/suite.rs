@@ -14,12 +14,12 @@ use crate::compose::{Language, SourceMap};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::{Error, FunctionId, Machine, Program};
 use crate::harness::cases::{File, Rows};
-use crate::harness::check::job::{self, Job};
+use crate::harness::check::Options;
+use crate::harness::check::job::{self, Job, Target};
 use crate::harness::check::judge;
 use crate::harness::interpreter::{flatten, handles, resources};
 use crate::harness::kernel::Kernel;
 use crate::harness::library::Library;
-use crate::harness::references::Expected;
 use crate::source::SourceSet;
 
 /// Loop trips of one call: many times what any case needs, few enough for a mutant without end.
@@ -50,7 +50,7 @@ pub struct Subject {
 pub struct Ready<'f> {
     pub job: Job<'f>,
     order: Vec<usize>,
-    batches: Vec<(Rows, Vec<Expected>)>,
+    batches: Vec<(Rows, Vec<Target>)>,
 }
 
 /// A module's path, and its cases if it has any.
@@ -82,7 +82,7 @@ fn suite<'f>(library: &Library, sources: &Mutex<SourceSet>, module: &str, file: 
     let info = info(&whole).ok_or_else(|| vec![internal(module)])?;
     let subjects = subjects(sources, module, &composed.map, &whole);
     let jobs = match file {
-        Some(file) => job::prepare(module, file, &[Language::Wesl], &|_, _, _| Ok(parsed.clone()))?,
+        Some(file) => job::prepare(module, file, &[Language::Wesl], &|_, _, _| Ok(parsed.clone()), &Options::default())?,
         None => Vec::new(),
     };
     Ok(Suite { module: module.to_owned(), map: composed.map, whole, info, subjects, cases: jobs.into_iter().map(ready).collect() })
