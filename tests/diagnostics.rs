@@ -55,7 +55,7 @@ fn copy(from: &Path, to: &Path) -> Result<(), Failed> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {
         let (path, name) = (entry.as_ref().map(fs::DirEntry::path).map_err(ToString::to_string)?, entry?.file_name());
-        if path.is_dir() { copy(&path, &to.join(name))? } else { drop(fs::copy(&path, to.join(name))?) }
+        if path.is_dir() { copy(&path, &to.join(name))? } else { fs::copy(&path, to.join(name)).map(|_| ())? }
     }
     Ok(())
 }
