@@ -128,7 +128,8 @@ impl Input {
         self.check_usage()?;
         let language = self.language()?;
         let root = self.root.clone().unwrap_or_else(|| project::root_of(&self.file));
-        let mut project = project::open(&root, SourceSet::default()).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
+        let mut project =
+            project::open(&root, SourceSet::default()).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
         match self.compose_in(&mut project, &root, language) {
             Ok((composed, context)) => {
                 warn(&project.sources, &composed.warnings, form);
@@ -197,7 +198,8 @@ impl Input {
     /// where the package's manifest has one.
     fn settings(&self, project: &mut Project, root: &Path, path: &str) -> Result<Chosen, Diagnostics> {
         let manifest = project::manifest(root, &mut project.sources)?;
-        let program = manifest.as_ref().and_then(|manifest| manifest.programs.iter().find(|program| program.files().any(|file| file.path == path)));
+        let program =
+            manifest.as_ref().and_then(|manifest| manifest.programs.iter().find(|program| program.files().any(|file| file.path == path)));
         match program {
             Some(program) => self.of_program(program, &mut project.sources),
             None => Ok(self.free()),

@@ -82,7 +82,8 @@ impl Lints {
 /// Warnings without those that another program gave already, in the order of their places.
 pub fn distinct(sources: &SourceSet, warnings: Diagnostics) -> Diagnostics {
     let mut known = BTreeSet::new();
-    let key = |warning: &Diagnostic| (warning.labels.first().map(|label| place(sources, label.span)), warning.code.name, warning.message.clone());
+    let key =
+        |warning: &Diagnostic| (warning.labels.first().map(|label| place(sources, label.span)), warning.code.name, warning.message.clone());
     let mut kept: Diagnostics = warnings.into_iter().filter(|warning| known.insert(key(warning))).collect();
     kept.sort_by_cached_key(key);
     kept

@@ -152,9 +152,13 @@ fn points(program: &Program, request: &Request) -> Result<Vec<(Key, Assignment)>
 /// The point of a key that was asked for by name: it must satisfy the constraints.
 fn asked(program: &Program, text: &Quoted) -> Result<Assignment, Diagnostics> {
     let point = key::parse(&program.space, text)?;
-    let broken: Diagnostics = program.space.broken(&point).map(|constraint| {
-        let error = Diagnostic::error(codes::INVALID_KEY, format!("no permutation `{}` of program `{}`", text.text, program.name));
-        error.at(text.span, "asked for here").at(constraint.span, "breaks this constraint")
-    }).collect();
+    let broken: Diagnostics = program
+        .space
+        .broken(&point)
+        .map(|constraint| {
+            let error = Diagnostic::error(codes::INVALID_KEY, format!("no permutation `{}` of program `{}`", text.text, program.name));
+            error.at(text.span, "asked for here").at(constraint.span, "breaks this constraint")
+        })
+        .collect();
     if broken.is_empty() { Ok(point) } else { Err(broken) }
 }

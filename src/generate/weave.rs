@@ -43,7 +43,8 @@ pub fn weave(
     progress(Progress { stage: entry.title(), done: 0, total: points.len() });
     for batch in points.chunks(BATCH) {
         let texts = loom.compose(entry, space, batch)?;
-        let units: Vec<Result<(Unit, Diagnostics), Diagnostics>> = texts.par_iter().map(|(key, composed)| compiled(entry, key, composed, targets)).collect();
+        let units: Vec<Result<(Unit, Diagnostics), Diagnostics>> =
+            texts.par_iter().map(|(key, composed)| compiled(entry, key, composed, targets)).collect();
         for (unit, warnings) in collect(units)? {
             loom.woven.units.push(unit);
             loom.woven.warnings.extend(warnings);
@@ -86,7 +87,12 @@ impl Loom {
     ///
     /// Settings that no earlier batch answered are composed in parallel, some of them to the same
     /// text: to compose is cheaper than to wait for each other.
-    fn compose<'k>(&mut self, entry: &Entry, space: &Space, batch: &'k [(Key, Assignment)]) -> Result<Vec<(&'k Key, Composed)>, Diagnostics> {
+    fn compose<'k>(
+        &mut self,
+        entry: &Entry,
+        space: &Space,
+        batch: &'k [(Key, Assignment)],
+    ) -> Result<Vec<(&'k Key, Composed)>, Diagnostics> {
         let tree = &self.tree;
         let composed: Vec<Result<Found, Diagnostics>> = batch
             .par_iter()
@@ -157,5 +163,8 @@ fn keep(errors: &mut Diagnostics, error: Diagnostic) {
 }
 
 fn of_permutation(errors: Diagnostics, entry: &Entry, key: &Key) -> Diagnostics {
-    errors.into_iter().map(|error| error.note(format!("in permutation `{key}` of program `{}`, entry point `{}`", entry.program, entry.label))).collect()
+    errors
+        .into_iter()
+        .map(|error| error.note(format!("in permutation `{key}` of program `{}`, entry point `{}`", entry.program, entry.label)))
+        .collect()
 }

@@ -37,6 +37,9 @@ pub fn open(root: &Path, sources: SourceSet) -> Result<Project, (SourceSet, Diag
 
 /// The package of a root folder and what it may import.
 pub fn packages(root: &Path, sources: &mut SourceSet) -> Result<Packages, Diagnostics> {
+    if root.is_file() {
+        return Err(vec![Diagnostic::error(codes::UNREADABLE, format!("`{}` is a file, not a package's root folder", root.display()))]);
+    }
     let disk = Disk::new(root).map_err(|error| vec![unreadable(root, &error)])?;
     let mut dependencies = wesl_toml::dependencies(root, sources)?;
     if !dependencies.iter().any(|package| package.name == LIBRARY) {
@@ -129,6 +132,7 @@ pub fn library_manifest() -> Result<(SourceSet, Manifest), (SourceSet, Diagnosti
 
 fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
     let id = source::read(sources, package, name).map_err(|error| vec![error])?;
-    let id = id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
+    let id =
+        id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
     manifest::parse(sources, id)
 }

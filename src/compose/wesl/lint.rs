@@ -78,7 +78,8 @@ fn is_later(graph: &Graph, condition: &Condition) -> bool {
 
 /// Conditions that ask for something: `@if(true)` is meant as it stands.
 fn conditions(module: &Module) -> impl Iterator<Item = ConditionId> {
-    let asks = |(_, condition): &(usize, &crate::parse::wesl::Condition)| condition.expression.is_some_and(|root| place(module, root).is_some());
+    let asks =
+        |(_, condition): &(usize, &crate::parse::wesl::Condition)| condition.expression.is_some_and(|root| place(module, root).is_some());
     module.conditions.iter().enumerate().filter(asks).map(|(id, _)| id as ConditionId)
 }
 
