@@ -39,6 +39,9 @@ pub fn open(root: &Path, sources: SourceSet) -> Result<Project, (SourceSet, Diag
 
 /// The package of a root folder and what it may import.
 pub fn packages(root: &Path, sources: &mut SourceSet) -> Result<Packages, Diagnostics> {
+    if root.is_file() {
+        return Err(vec![Diagnostic::error(codes::UNREADABLE, format!("`{}` is a file, not a package's root folder", root.display()))]);
+    }
     let disk = Disk::new(root).map_err(|error| vec![unreadable(root, &error)])?;
     let mut dependencies = wesl_toml::dependencies(root, sources)?;
     if !dependencies.iter().any(|package| package.name == LIBRARY) {

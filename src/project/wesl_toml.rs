@@ -8,6 +8,8 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::{self, Disk, Files, Package, ReadError, SourceId, SourceSet, Span};
 
 const NAME: &str = "wesl.toml";
+/// Packages that one `wesl.toml` may list.
+const DEPENDENCIES: usize = 1000;
 const DEFAULT_ROOT: &str = "shaders";
 
 /// The root that the `wesl.toml` of `folder` declares, if it has one.
@@ -85,6 +87,9 @@ fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
     }
     let Some(dependencies) = table.get("dependencies") else { return Ok(()) };
     let Some(dependencies) = dependencies.as_table() else { return wrong("`dependencies`", "a table", "dependencies") };
+    if dependencies.len() > DEPENDENCIES {
+        return wrong("`dependencies`", &format!("a table of at most {DEPENDENCIES} packages"), "dependencies");
+    }
     match dependencies.iter().find(|(_, entry)| entry.get("path").is_some_and(|path| !path.is_str())) {
         Some((name, _)) => wrong(&format!("`path` of dependency `{name}`"), "a string", name),
         None => Ok(()),
@@ -136,11 +141,17 @@ impl Found {
         let Some(dependencies) = table.get("dependencies").and_then(|entry| entry.as_table()) else { return };
         for (name, entry) in dependencies {
             let Some(path) = entry.get("path").and_then(|path| path.as_str()) else { continue };
-            self.add(name, &folder.join(path), Span::new(id, key_range(&text, name)), sources);
+            self.add(name, (Path::new(path), &folder.join(path)), Span::new(id, key_range(&text, name)), sources);
         }
     }
 
-    fn add(&mut self, name: &str, folder: &Path, span: Span, sources: &mut SourceSet) {
+    /// Adds the dependency in `folder`, which its dependent calls `shown`.
+    fn add(&mut self, name: &str, (shown, folder): (&Path, &Path), span: Span, sources: &mut SourceSet) {
+        if folder.join(NAME).is_file()
+            && let Err(error) = parse(folder, shown, sources)
+        {
+            return self.diagnostics.push(error.at(span, "of this dependency"));
+        }
         let Some(root) = declared_root(folder) else {
             self.diagnostics
                 .push(Diagnostic::error(codes::WESL_TOML, format!("dependency `{name}` has no `wesl.toml`")).at(span, "declared here"));
@@ -168,6 +179,7 @@ impl Found {
 
 /// Where a dependency's key stands in the text.
 fn key_range(text: &str, name: &str) -> std::ops::Range<usize> {
-    let section = text.find("[dependencies]").unwrap_or(0);
+    const SECTION: &str = "[dependencies]";
+    let section = text.find(SECTION).map_or(0, |start| start + SECTION.len());
     text[section..].find(name).map_or(section..section, |start| section + start..section + start + name.len())
 }

@@ -51,13 +51,20 @@ fn search(graph: &Graph, reached: &Reached, edges: &[Dependency], start: usize, 
     }
 }
 
+/// Steps of a circle that are told.
+const TOLD: usize = 12;
+
 fn report(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) -> Diagnostic {
     let text = |thing: Thing| graph.names.text(name_of(graph, thing));
     let first = text(circle[0].0);
-    let chain = circle.iter().map(|(thing, _)| format!("`{}`", text(*thing))).collect::<Vec<_>>().join(" -> ");
+    let mut chain: Vec<String> = circle.iter().take(TOLD).map(|(thing, _)| format!("`{}`", text(*thing))).collect();
+    if circle.len() > TOLD {
+        chain.push(format!("{} more", circle.len() - TOLD));
+    }
+    let chain = chain.join(" -> ");
     let message = format!("`{first}` needs itself: {chain} -> `{first}`");
     let mut error = Diagnostic::error(codes::CYCLIC_CONSTANT, message);
-    for (thing, next) in circle {
+    for (thing, next) in circle.iter().take(TOLD) {
         let edge = &edges[next - 1];
         error = error.at(edge.span, format!("`{}` needs `{}`", text(*thing), text(edge.used)));
     }

@@ -1,5 +1,7 @@
 //! Conditions under one choice of settings, each at most once.
 
+use std::collections::HashSet;
+
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl::{Comparison, ConditionId, Event, Expression, ExpressionId, Name, Operand};
 use crate::permute::{Setting, Settings};
@@ -24,13 +26,13 @@ pub struct Evaluator<'a> {
     /// In the order of asking.
     pub reads: Vec<(String, Setting)>,
     pub errors: Diagnostics,
-    unknown: Vec<Name>,
+    unknown: HashSet<Name>,
 }
 
 impl<'a> Evaluator<'a> {
     pub fn new(graph: &'a Graph, settings: &'a Settings) -> Self {
         let states = vec![State::Unknown; graph.totals.conditions as usize];
-        Self { graph, settings, states, reads: Vec::new(), errors: Vec::new(), unknown: Vec::new() }
+        Self { graph, settings, states, reads: Vec::new(), errors: Vec::new(), unknown: HashSet::new() }
     }
 
     /// Whether a condition of a node's module holds.
@@ -101,8 +103,7 @@ impl<'a> Evaluator<'a> {
     pub fn setting(&mut self, name: Name, span: Span) -> Option<Setting> {
         let text = self.graph.names.text(name);
         let Some(value) = self.settings.values.get(text) else {
-            if !self.unknown.contains(&name) {
-                self.unknown.push(name);
+            if self.unknown.insert(name) {
                 let error = Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value")).at(span, "asked for here");
                 self.errors.push(error.suggest(text, self.settings.values.keys().map(String::as_str)));
             }

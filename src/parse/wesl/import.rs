@@ -13,8 +13,8 @@ pub fn import(module: &mut Module, tokens: Tokens<'_>, at: usize, condition: Opt
     let path = Path { origin, segments: Vec::new(), range: tokens.range(first, first) };
     let mut reader = Reader { module, tokens, condition, at: after };
     match reader.tokens.is(after, b'{') {
-        true => reader.collection(&path, first)?,
-        false => reader.path(path, first)?,
+        true => reader.collection(&path)?,
+        false => reader.path(path, Some(first))?,
     }
     let end = reader.at;
     tokens.expect(end, b';', "`;` after the import")
@@ -49,7 +49,9 @@ struct Reader<'a, 'b> {
 
 impl Reader<'_, '_> {
     /// `a::b::c`, `a::b as c` or `a::{...}`; nesting is bounded by the brackets'.
-    fn path(&mut self, mut path: Path, first: usize) -> Result<(), Diagnostic> {
+    ///
+    /// `start` is where it starts, unless in a collection.
+    fn path(&mut self, mut path: Path, start: Option<usize>) -> Result<(), Diagnostic> {
         loop {
             path.segments.push(self.tokens.identifier(self.at, "a name")?);
             self.at += 1;
@@ -58,12 +60,12 @@ impl Reader<'_, '_> {
             }
             self.at += 1;
             if self.tokens.is(self.at, b'{') {
-                return self.collection(&path, first);
+                return self.collection(&path);
             }
         }
         let last = self.at - 1;
         // In a collection the path's place is that of its last part: the rest is shared.
-        path.range = if self.module_is_flat(first, last) { self.tokens.range(first, last + 1) } else { self.tokens.range(last, last + 1) };
+        path.range = self.tokens.range(start.unwrap_or(last), last + 1);
         let mut alias_at = last;
         if self.tokens.is_word(self.at, Name::AS) {
             alias_at = self.at + 1;
@@ -75,16 +77,12 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn module_is_flat(&self, first: usize, last: usize) -> bool {
-        (first..=last).all(|at| !self.tokens.is(at, b'{') && !self.tokens.is(at, b','))
-    }
-
     /// `{ path, path, }`, with at least one.
-    fn collection(&mut self, prefix: &Path, first: usize) -> Result<(), Diagnostic> {
+    fn collection(&mut self, prefix: &Path) -> Result<(), Diagnostic> {
         let close = self.tokens.partner(self.at);
         self.at += 1;
         loop {
-            self.path(prefix.clone(), first)?;
+            self.path(prefix.clone(), None)?;
             if self.tokens.is(self.at, b',') {
                 self.at += 1;
             } else if self.at != close {
