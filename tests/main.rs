@@ -8,6 +8,7 @@ mod compose_glsl;
 mod compose_wesl;
 mod emit;
 mod eval;
+mod examples;
 mod harness;
 mod permute;
 mod programs;
@@ -25,6 +26,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     compose_wesl::trials,
     emit::trials,
     eval::trials,
+    examples::trials,
     harness::trials,
     permute::trials,
     programs::trials,

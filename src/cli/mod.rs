@@ -10,6 +10,7 @@ mod compile;
 mod compose;
 mod eval;
 mod explain;
+mod export;
 mod failure;
 mod generate;
 mod input;
@@ -48,6 +49,7 @@ enum Command {
     Eval(eval::Arguments),
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
+    Export(export::Arguments),
     Explain(explain::Arguments),
 }
 
@@ -72,6 +74,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
     }
 }
