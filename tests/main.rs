@@ -11,6 +11,7 @@ mod emit;
 mod eval;
 #[path = "../xtask/src/external.rs"]
 mod external;
+mod examples;
 mod harness;
 mod library;
 mod permute;
@@ -31,6 +32,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     diagnostics::trials,
     emit::trials,
     eval::trials,
+    examples::trials,
     harness::trials,
     library::trials,
     permute::trials,

@@ -10,6 +10,7 @@ mod compile;
 mod compose;
 mod eval;
 mod explain;
+mod export;
 mod failure;
 mod generate;
 mod input;
@@ -53,6 +54,7 @@ enum Command {
     Catalogue(catalogue::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
+    Export(export::Arguments),
     Explain(explain::Arguments),
 }
 
@@ -79,6 +81,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
         Command::Mutate(arguments) => mutate::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
     }
 }

@@ -101,9 +101,12 @@ fn captions(svg: &mut String, title: &str, plot: &Plot) {
     );
 }
 
+/// One entry for each curve; the parameter's name is on the first.
 fn legend(plot: &Plot) -> Vec<String> {
-    let curves = plot.curves.iter().flat_map(|curves| curves.values.iter().map(|value| format!("{} = {}", curves.name, number(*value))));
-    curves.collect()
+    let named = |curves: &super::Curves, index: usize, value: &f64| {
+        if index == 0 { format!("{} = {}", curves.name, number(*value)) } else { number(*value) }
+    };
+    plot.curves.iter().flat_map(|curves| curves.values.iter().enumerate().map(|(index, value)| named(curves, index, value))).collect()
 }
 
 /// The curve within the frame: broken where a value is not finite, straight where it is.

@@ -1,0 +1,30 @@
+//! Links a shader of one's own with the library by the `wesl` crate.
+//!
+//! ```text
+//! cargo run --manifest-path examples/wesl_crate/Cargo.toml
+//! ```
+//!
+//! A published package is added with `Wesl::add_package` instead of the router.
+
+use std::error::Error;
+use std::path::Path;
+
+use wesl::syntax::{ModulePath, PathOrigin};
+use wesl::{FileResolver, Router, Wesl};
+
+pub fn main() -> Result<(), Box<dyn Error>> {
+    println!("{}", link()?);
+    Ok(())
+}
+
+/// The shader with what it imports, as WGSL.
+pub fn link() -> Result<String, Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Router::new();
+    let library = ModulePath::new(PathOrigin::Package("lamplight".into()), Vec::new());
+    files.mount_resolver(library, FileResolver::new(root.join("../../shaderlib")));
+    files.mount_fallback_resolver(FileResolver::new(root.join("shaders")));
+    let compiler = Wesl::new(root).set_custom_resolver(files);
+    let module = ModulePath::new(PathOrigin::Absolute, vec!["spot".into()]);
+    Ok(compiler.compile(&module).map_err(|error| error.to_string())?.to_string())
+}
