@@ -35,6 +35,8 @@ pub mod validate;
 pub mod eval;
 #[cfg(feature = "harness")]
 pub mod harness;
+#[cfg(feature = "harness")]
+pub mod report;
 
 #[cfg(feature = "cli")]
 pub mod cli;

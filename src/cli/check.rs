@@ -9,11 +9,15 @@ use clap::Args;
 use super::failure::Failure;
 use super::input::LanguageName;
 use crate::compose::Language;
-use crate::harness::check::{Open, Report, failures, table};
+use crate::diagnostic::Diagnostics;
+use crate::harness::check::{Open, Options, Report, failures, stricter, table};
 use crate::harness::executors;
 use crate::harness::library::Library;
 use crate::harness::on_thread;
+use crate::harness::ratchet::FILE;
+use crate::output;
 use crate::project;
+use crate::report;
 use crate::source::{Disk, SourceSet};
 
 /// Run numeric cases and compare with their references.
@@ -28,6 +32,18 @@ pub struct Arguments {
     /// Only one language [default: both].
     #[arg(long, value_enum)]
     lang: Option<LanguageName>,
+    /// Write a page with plots, JSON and JUnit into this folder.
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+    /// Lower the package's `tolerances.toml` to what was measured here.
+    #[arg(long)]
+    bless: bool,
+    /// With `--bless`, also raise it.
+    #[arg(long, requires = "bless")]
+    force: bool,
+    /// List the cases that state less than WGSL allows.
+    #[arg(long)]
+    spec: bool,
 }
 
 /// Case files of one package.
@@ -59,14 +75,57 @@ fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure>
     let mut report = Report::default();
     for selection in selections {
         let sources = Mutex::new(SourceSet::default());
-        let found = selection.library.check(&sources, &selection.files, &selection.languages, &mut sessions);
-        let found = found.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))?;
-        report.outcomes.extend(found.outcomes);
+        let found = one(selection, &sources, arguments, &mut sessions);
+        report.append(found.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))??);
     }
     write!(stdout(), "{}", table(&report))?;
+    print_spec(&report, arguments.spec)?;
     let passed = report.outcomes.iter().filter(|outcome| outcome.passed()).count();
     writeln!(stdout(), "{passed} of {} pass", report.outcomes.len())?;
+    if let Some(folder) = &arguments.report {
+        for form in report::ALL {
+            output::write(&folder.join(form.file), (form.text)(&report).as_bytes())?;
+        }
+    }
     if report.passed() { Ok(()) } else { Err(Failure::check(failures(&report))) }
+}
+
+/// The check of one selection; with `--bless`, its package's recorded shares are lowered after it.
+fn one(
+    selection: &Selection,
+    sources: &Mutex<SourceSet>,
+    arguments: &Arguments,
+    sessions: &mut [Open],
+) -> Result<Result<Report, Failure>, Diagnostics> {
+    let library = &selection.library;
+    let ratchet = library.ratchet(sources)?;
+    let options = Options {
+        references: library.has_references(),
+        profile: arguments.report.is_some(),
+        prove: true,
+        ratchet: ratchet.as_ref().filter(|_| !arguments.bless),
+    };
+    let report = library.check_with(sources, &selection.files, &selection.languages, sessions, &options)?;
+    if !arguments.bless {
+        return Ok(Ok(report));
+    }
+    let Some(root) = &selection.root else {
+        return Ok(Err(Failure::usage("`--bless` needs the package on disk, such as `lamplight check shaderlib --bless`")));
+    };
+    let mut ratchet = ratchet.unwrap_or_default();
+    ratchet.bless(&report, arguments.force);
+    Ok(output::write(&root.join(FILE), ratchet.text().as_bytes()).map(|()| report).map_err(Failure::from))
+}
+
+/// What is stated below WGSL's own bounds: no failure, since a backend may well do better.
+fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
+    let lines = stricter(report);
+    match (all, lines.lines().count()) {
+        (_, 0) => {}
+        (true, _) => write!(stdout(), "{lines}")?,
+        (false, count) => writeln!(stdout(), "{count} cases state less than WGSL allows for some input (`--spec` lists them)")?,
+    }
+    Ok(())
 }
 
 fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
@@ -139,7 +198,8 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
     for path in asked {
         let wanted = path.trim_start_matches("lamplight::").replace("::", "/");
         let stem = |file: &str| file.trim_end_matches(".toml").to_owned();
-        let matching: Vec<String> = files.iter().filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/"))).cloned().collect();
+        let matching: Vec<String> =
+            files.iter().filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/"))).cloned().collect();
         if matching.is_empty() {
             return Err(Failure::input(format!("`{path}` is no file, and no module of the library with numeric cases")));
         }

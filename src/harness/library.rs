@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::cases::{self, File};
 use super::check::{self, Open, Report};
+use super::ratchet::{self, Ratchet};
 use crate::compose::{self, Composed, Keep, Language, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::Settings;
@@ -63,7 +64,19 @@ impl Library {
         languages: &[Language],
         open: &mut [Open],
     ) -> Result<Report, Diagnostics> {
-        self.check_with(sources, paths, languages, open, &check::Options { references: self.name == LIBRARY })
+        self.check_with(sources, paths, languages, open, &check::Options { references: self.has_references(), ..check::Options::default() })
+    }
+
+    /// Whether the crate's references are about this package.
+    pub fn has_references(&self) -> bool {
+        self.name == LIBRARY
+    }
+
+    /// What drivers were measured to need of the package's tolerances, if that is recorded.
+    pub fn ratchet(&self, sources: &Mutex<SourceSet>) -> Result<Option<Ratchet>, Diagnostics> {
+        let mut sources = lock(sources);
+        let id = source::read(&mut sources, &self.package(), ratchet::FILE).map_err(|error| vec![error])?;
+        id.map(|id| Ratchet::parse(&sources.get(id).text, id)).transpose().map_err(|error| vec![error])
     }
 
     /// As [`Self::check`], with options.
@@ -73,7 +86,7 @@ impl Library {
         paths: &[String],
         languages: &[Language],
         open: &mut [Open],
-        options: &check::Options,
+        options: &check::Options<'_>,
     ) -> Result<Report, Diagnostics> {
         let files = self.read(sources, paths)?;
         let subjects = |module: &str, language: Language, functions: &[String]| self.module(sources, module, language, functions);

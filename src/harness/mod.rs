@@ -18,6 +18,7 @@ mod interpreter;
 pub mod kernel;
 pub mod laws;
 pub mod library;
+pub mod ratchet;
 pub mod references;
 pub mod tolerance;
 

@@ -120,6 +120,7 @@ pub fn library_manifest() -> Result<(SourceSet, Manifest), (SourceSet, Diagnosti
 
 fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
     let id = source::read(sources, package, name).map_err(|error| vec![error])?;
-    let id = id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
+    let id =
+        id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
     manifest::parse(sources, id)
 }

@@ -222,8 +222,7 @@ fn fixture_names(node: &Node) -> Result<Vec<(String, String)>, Diagnostic> {
 }
 
 /// Names of oracles in a case file.
-const ORACLES: &[(&str, fn() -> Oracle)] =
-    &[("reference", || Oracle::Reference), ("eval", || Oracle::Eval), ("none", || Oracle::None)];
+const ORACLES: &[(&str, fn() -> Oracle)] = &[("reference", || Oracle::Reference), ("eval", || Oracle::Eval), ("none", || Oracle::None)];
 
 fn oracle(node: &Node) -> Result<Oracle, Diagnostic> {
     if let Some(formula) = node.get("formula") {

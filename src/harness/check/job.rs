@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use super::{Options, Subjects};
 use crate::compose::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::eval::{Bounded, FindingKind, Number};
 use crate::harness::cases::{self, Case, File, Oracle, Rows};
 use crate::harness::fixture::Fixture;
 use crate::harness::formula::{Formula, Scope};
-use crate::eval::{Bounded, FindingKind, Number};
 use crate::harness::interpreter::{Calls, Interpreter, value};
 use crate::harness::kernel::{self, Kernel, Shape};
 use crate::harness::laws::{self, Law};
@@ -22,6 +22,8 @@ use naga::ScalarKind;
 pub struct Job<'a> {
     pub module: String,
     pub case: &'a Case,
+    /// Index of the case in its file.
+    pub index: usize,
     pub kernels: Vec<(Language, Kernel)>,
     pub rows: Rows,
     /// For each row; empty where the case has laws alone.
@@ -86,7 +88,13 @@ impl Job<'_> {
 }
 
 /// The jobs of a module's case file.
-pub fn prepare<'a>(module: &str, file: &'a File, languages: &[Language], subjects: &Subjects<'_>, options: &Options) -> Result<Vec<Job<'a>>, Diagnostics> {
+pub fn prepare<'a>(
+    module: &str,
+    file: &'a File,
+    languages: &[Language],
+    subjects: &Subjects<'_>,
+    options: &Options<'_>,
+) -> Result<Vec<Job<'a>>, Diagnostics> {
     let mut functions: Vec<String> = file.cases.iter().map(|case| case.function.clone()).collect();
     functions.sort();
     functions.dedup();
@@ -95,7 +103,7 @@ pub fn prepare<'a>(module: &str, file: &'a File, languages: &[Language], subject
         .map(|language| Ok((*language, subjects(module, *language, &functions)?)))
         .collect::<Result<_, Diagnostics>>()
         .map_err(|errors| errors.into_iter().map(|error| placed(error, file)).collect::<Vec<_>>())?;
-    let jobs: Vec<_> = file.cases.par_iter().map(|case| job(module, case, &modules, options)).collect();
+    let jobs: Vec<_> = file.cases.par_iter().enumerate().map(|(index, case)| job(module, (index, case), &modules, options)).collect();
     let (mut done, mut errors) = (Vec::new(), Vec::new());
     for result in jobs {
         match result {
@@ -120,7 +128,12 @@ fn placed_at(error: Diagnostic, case: &Case) -> Diagnostic {
     if error.labels.is_empty() { error.at(case.span, "in this case") } else { error }
 }
 
-fn job<'a>(module: &str, case: &'a Case, modules: &[(Language, Arc<naga::Module>)], options: &Options) -> Result<Job<'a>, Diagnostic> {
+fn job<'a>(
+    module: &str,
+    (index, case): (usize, &'a Case),
+    modules: &[(Language, Arc<naga::Module>)],
+    options: &Options<'_>,
+) -> Result<Job<'a>, Diagnostic> {
     let placed = |error: Diagnostic| placed_at(error, case);
     let kernels: Vec<(Language, Kernel)> = modules
         .iter()
@@ -143,6 +156,7 @@ fn job<'a>(module: &str, case: &'a Case, modules: &[(Language, Arc<naga::Module>
     let mut job = Job {
         module: module.to_owned(),
         case,
+        index,
         terms,
         near: case.near.as_ref().map(|(text, margin)| Ok::<_, Diagnostic>((text.bind(&scope)?, *margin))).transpose()?,
         filter: case.filter().map(|text| text.bind(&scope)).transpose()?,
@@ -171,7 +185,7 @@ fn agree(kernels: &[(Language, Kernel)]) -> Result<(), Diagnostic> {
     }
 }
 
-fn judge(module: &str, case: &Case, scope: &Scope<'_>, kernel: &Kernel, options: &Options) -> Result<Judge, Diagnostic> {
+fn judge(module: &str, case: &Case, scope: &Scope<'_>, kernel: &Kernel, options: &Options<'_>) -> Result<Judge, Diagnostic> {
     let reference = || references::find(module, &case.function).filter(|_| options.references).map(Judge::Reference);
     let eval = || Interpreter::new(kernel).map(|interpreter| Judge::Eval(Box::new(interpreter)));
     match &case.oracle {

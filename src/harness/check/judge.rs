@@ -1,6 +1,7 @@
 //! Compares what an executor returned with what was expected.
 
 use super::job::{BoundLaw, Job, Target};
+use super::profile::Profile;
 use crate::harness::cases::{Rows, number};
 use crate::harness::laws;
 use crate::harness::tolerance;
@@ -26,6 +27,8 @@ pub struct Verdict {
     pub parity: Option<f64>,
     /// A small failing input, as a text with a case to paste.
     pub smallest: Option<String>,
+    /// How the error runs over the inputs, where it was asked for.
+    pub profile: Option<Box<Profile>>,
 }
 
 /// One component of one row.
@@ -51,7 +54,12 @@ pub struct LawVerdict {
 impl Verdict {
     /// Whether every row and every law holds.
     pub fn passed(&self) -> bool {
-        self.failing.is_empty() && !self.too_ambiguous && !self.proves_nothing() && self.laws.iter().all(|law| law.broken == 0)
+        self.failing.is_empty() && self.passed_but_for_values()
+    }
+
+    /// Whether all but the values themselves holds.
+    pub fn passed_but_for_values(&self) -> bool {
+        !self.too_ambiguous && !self.proves_nothing() && self.laws.iter().all(|law| law.broken == 0)
     }
 
     /// Whether every value would have been right.
@@ -106,7 +114,7 @@ pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Target], results: &[u32]) -
 }
 
 /// The worst component of the alternative that fits best.
-fn compare(job: &Job<'_>, row: &[f64], target: &Target, found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
+pub fn compare(job: &Job<'_>, row: &[f64], target: &Target, found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
     let values = std::iter::once(&target.expected.value).chain(&target.expected.alternatives);
     let one = |value: &Vec<f64>| compare_one(job, row, (value, &target.errors), found, kinds, index);
     values.filter_map(one).min_by(|a, b| a.share().total_cmp(&b.share()))
@@ -138,12 +146,14 @@ fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
     }
 }
 
-fn is_indeterminate(target: &Target) -> bool {
+/// Whether anything is right.
+pub fn is_indeterminate(target: &Target) -> bool {
     let held = |value: &f64| value.is_finite() && value.abs() <= f64::from(f32::MAX);
     !target.expected.value.iter().all(held) || !target.errors.iter().all(|error| error.is_finite())
 }
 
-fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
+/// Whether a comparison that the case names is too close to call.
+pub fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
     job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
 }
 

@@ -1,10 +1,11 @@
 //! Runs kernels through wgpu, without a surface. What the GPU executors share.
 
+mod emitted;
 mod fixtures;
 mod open;
 mod pipeline;
 
-pub use open::open;
+pub use open::{Named, Shaders, Wanted, open};
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -22,6 +23,7 @@ const TARGET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// An open device.
 pub struct Gpu {
     adapter: String,
+    shaders: Shaders,
     device: wgpu::Device,
     queue: wgpu::Queue,
     /// Errors that no scope caught, and the loss of the device.
@@ -63,7 +65,11 @@ impl Gpu {
 
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
         if !self.prepared.contains_key(&kernel.id) {
-            let prepared = self.guarded(|gpu| Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel))?;
+            let emitted = match self.shaders {
+                Shaders::Translated => None,
+                Shaders::Emitted(target) => Some(emitted::emit(kernel, target)?),
+            };
+            let prepared = self.guarded(|gpu| Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref()))?;
             self.prepared.insert(kernel.id, prepared);
         }
         Ok(())
