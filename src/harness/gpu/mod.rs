@@ -1,10 +1,12 @@
 //! Runs kernels through wgpu, without a surface. What the GPU executors share.
 
+mod direct;
 mod emitted;
 mod fixtures;
 mod open;
 mod pipeline;
 
+pub use direct::Direct;
 pub use open::{Named, Shaders, Wanted, open};
 
 use std::collections::HashMap;
@@ -39,16 +41,25 @@ impl Session for Gpu {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        if kernel.input_words() == 0 {
-            return self.draw(kernel, &[], 1);
-        }
-        let stride = kernel.input_words() as usize;
-        let mut results = Vec::new();
-        for batch in inputs.chunks(kernel.batch() as usize * stride) {
-            results.extend(self.draw(kernel, batch, (batch.len() / stride) as u32)?);
-        }
-        Ok(results)
+        batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
     }
+}
+
+/// The results of as many draws as the inputs take; `draw` is given the words and the count of one.
+fn batched(
+    kernel: &Kernel,
+    inputs: &[u32],
+    mut draw: impl FnMut(&[u32], u32) -> Result<Vec<u32>, Diagnostic>,
+) -> Result<Vec<u32>, Diagnostic> {
+    if kernel.input_words() == 0 {
+        return draw(&[], 1);
+    }
+    let stride = kernel.input_words() as usize;
+    let mut results = Vec::new();
+    for batch in inputs.chunks(kernel.batch() as usize * stride) {
+        results.extend(draw(batch, (batch.len() / stride) as u32)?);
+    }
+    Ok(results)
 }
 
 impl Gpu {
