@@ -102,7 +102,7 @@ fn one(
     let options = Options {
         references: library.has_references(),
         profile: arguments.report.is_some(),
-        prove: true,
+        prove: !arguments.bless,
         ratchet: ratchet.as_ref().filter(|_| !arguments.bless),
     };
     let report = library.check_with(sources, &selection.files, &selection.languages, sessions, &options)?;

@@ -1,6 +1,7 @@
 //! Everything that can run a kernel: one file of `executors/` each.
 
 use super::Session;
+use super::gpu;
 
 /// An executor, closed.
 pub struct Entry {
@@ -26,6 +27,14 @@ impl Entry {
         let install =
             if self.needs.is_empty() { String::new() } else { format!("\ninstall it with: apt-get install {}", self.needs.join(" ")) };
         format!("the executor `{}` is not available: {}{install}", self.name, unavailable.reason)
+    }
+}
+
+/// A session on a device of wgpu.
+fn opened(wanted: gpu::Wanted) -> Result<Box<dyn Session>, Unavailable> {
+    match gpu::open(wanted) {
+        Ok(gpu) => Ok(Box::new(gpu)),
+        Err(reason) => Err(Unavailable { reason }),
     }
 }
 

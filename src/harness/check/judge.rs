@@ -152,7 +152,8 @@ pub fn is_indeterminate(target: &Target) -> bool {
     !target.expected.value.iter().all(held) || !target.errors.iter().all(|error| error.is_finite())
 }
 
-fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
+/// Whether a comparison that the case names is too close to call.
+pub fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
     job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
 }
 

@@ -123,6 +123,8 @@ pub fn profile(job: &Job<'_>, results: &[u32]) -> Profile {
             judge::compare(job, job.rows.row(index), target, found, &kinds, index)
         })
         .collect();
+    let is_doubtful = |row: usize| job.expected[row].doubtful || judge::is_ambiguous(job, job.rows.row(row));
+    let found: Vec<Worst> = found.into_iter().filter(|worst| worst.share() <= 1.0 || !is_doubtful(worst.row)).collect();
     let names = columns(job);
     let varying: Vec<(usize, Scale)> =
         (0..names.len().min(job.rows.stride)).filter_map(|column| Some((column, varies(job, column)?))).collect();

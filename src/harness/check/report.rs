@@ -151,7 +151,7 @@ fn headroom(share: f64) -> String {
 pub fn short(value: f64) -> String {
     if value == 0.0 {
         "0".to_owned()
-    } else if (0.01..10_000.0).contains(&value) {
+    } else if (0.01..10_000.0).contains(&value.abs()) {
         format!("{value:.2}")
     } else {
         format!("{value:.2e}")

@@ -1,14 +1,11 @@
 //! wgpu on OpenGL through EGL without a surface: llvmpipe where there is no GPU.
 
-use super::{Entry, Unavailable};
-use crate::harness::gpu;
+use super::{Entry, swiftshader};
+use crate::harness::gpu::{Named, Shaders, Wanted};
 
 pub const EXECUTOR: Entry = Entry {
     name: "gl",
-    about: "wgpu on OpenGL ES over EGL, Mesa's llvmpipe preferred",
+    about: "wgpu on OpenGL over EGL, Mesa's llvmpipe preferred",
     needs: &["libegl1", "libgles2", "libgl1-mesa-dri"],
-    open: || match gpu::open(wgpu::Backends::GL) {
-        Ok(gpu) => Ok(Box::new(gpu)),
-        Err(reason) => Err(Unavailable { reason }),
-    },
+    open: || super::opened(Wanted { backend: wgpu::Backends::GL, named: Named::Without(swiftshader::NAME), shaders: Shaders::Translated }),
 };

@@ -1,14 +1,11 @@
 //! wgpu on a Vulkan driver: lavapipe where it is installed.
 
-use super::{Entry, Unavailable};
-use crate::harness::gpu;
+use super::{Entry, swiftshader};
+use crate::harness::gpu::{Named, Shaders, Wanted};
 
 pub const EXECUTOR: Entry = Entry {
     name: "vulkan",
     about: "wgpu on Vulkan, Mesa's lavapipe preferred",
     needs: &["mesa-vulkan-drivers", "libvulkan1"],
-    open: || match gpu::open(wgpu::Backends::VULKAN) {
-        Ok(gpu) => Ok(Box::new(gpu)),
-        Err(reason) => Err(Unavailable { reason }),
-    },
+    open: || super::opened(Wanted { backend: wgpu::Backends::VULKAN, named: Named::Without(swiftshader::NAME), shaders: Shaders::Translated }),
 };

@@ -1,10 +1,13 @@
 //! Runs kernels through wgpu, without a surface. What the GPU executors share.
 
+mod direct;
+mod emitted;
 mod fixtures;
 mod open;
 mod pipeline;
 
-pub use open::open;
+pub use direct::Direct;
+pub use open::{Named, Shaders, Wanted, open};
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -22,6 +25,7 @@ const TARGET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// An open device.
 pub struct Gpu {
     adapter: String,
+    shaders: Shaders,
     device: wgpu::Device,
     queue: wgpu::Queue,
     /// Errors that no scope caught, and the loss of the device.
@@ -37,16 +41,25 @@ impl Session for Gpu {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        if kernel.input_words() == 0 {
-            return self.draw(kernel, &[], 1);
-        }
-        let stride = kernel.input_words() as usize;
-        let mut results = Vec::new();
-        for batch in inputs.chunks(kernel.batch() as usize * stride) {
-            results.extend(self.draw(kernel, batch, (batch.len() / stride) as u32)?);
-        }
-        Ok(results)
+        batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
     }
+}
+
+/// The results of as many draws as the inputs take; `draw` is given the words and the count of one.
+fn batched(
+    kernel: &Kernel,
+    inputs: &[u32],
+    mut draw: impl FnMut(&[u32], u32) -> Result<Vec<u32>, Diagnostic>,
+) -> Result<Vec<u32>, Diagnostic> {
+    if kernel.input_words() == 0 {
+        return draw(&[], 1);
+    }
+    let stride = kernel.input_words() as usize;
+    let mut results = Vec::new();
+    for batch in inputs.chunks(kernel.batch() as usize * stride) {
+        results.extend(draw(batch, (batch.len() / stride) as u32)?);
+    }
+    Ok(results)
 }
 
 impl Gpu {
@@ -63,7 +76,11 @@ impl Gpu {
 
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
         if !self.prepared.contains_key(&kernel.id) {
-            let prepared = self.guarded(|gpu| Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel))?;
+            let emitted = match self.shaders {
+                Shaders::Translated => None,
+                Shaders::Emitted(target) => Some(emitted::emit(kernel, target)?),
+            };
+            let prepared = self.guarded(|gpu| Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref()))?;
             self.prepared.insert(kernel.id, prepared);
         }
         Ok(())

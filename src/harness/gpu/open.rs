@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use super::{Gpu, lock};
+use crate::bundle::Target;
 
 /// The full-screen triangle.
 const VERTEX: &str = "
@@ -12,21 +13,60 @@ const VERTEX: &str = "
     return vec4f(vec2f(corner) * 2.0 - 1.0, 0.0, 1.0);
 }";
 
+/// Which device to open, and what it is given.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    pub backend: wgpu::Backends,
+    /// Part of the adapter's name that it must have, or must not have.
+    pub named: Named,
+    pub shaders: Shaders,
+}
+
+/// A condition on an adapter's name.
+#[derive(Debug, Clone, Copy)]
+pub enum Named {
+    With(&'static str),
+    Without(&'static str),
+}
+
+/// Where a kernel's shader comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shaders {
+    /// wgpu translates naga's module.
+    Translated,
+    /// What the crate emits, as it is.
+    Emitted(Target),
+}
+
+impl Named {
+    fn allows(self, name: &str) -> bool {
+        match self {
+            Self::With(part) => name.contains(part),
+            Self::Without(part) => !name.contains(part),
+        }
+    }
+}
+
 /// Opens the preferred adapter of a backend: a software one where there is one, since its
 /// numbers are the same on every machine. The error is in words.
-pub fn open(backend: wgpu::Backends) -> Result<Gpu, String> {
-    let descriptor = wgpu::InstanceDescriptor { backends: backend, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+pub fn open(wanted: Wanted) -> Result<Gpu, String> {
+    let descriptor = wgpu::InstanceDescriptor { backends: wanted.backend, ..wgpu::InstanceDescriptor::new_without_display_handle() };
     let instance = wgpu::Instance::new(descriptor);
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(backend));
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wanted.backend));
+    adapters.retain(|adapter| wanted.named.allows(&adapter.get_info().name));
     adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
     let adapter = adapters.into_iter().next().ok_or("no adapter was found")?;
-    let wanted = wgpu::Features::FLOAT32_FILTERABLE & adapter.features();
-    let descriptor = wgpu::DeviceDescriptor { required_features: wanted, required_limits: adapter.limits(), ..Default::default() };
+    let mut features = wgpu::Features::FLOAT32_FILTERABLE & adapter.features();
+    if wanted.shaders != Shaders::Translated {
+        features |= wgpu::Features::PASSTHROUGH_SHADERS;
+    }
+    let descriptor = wgpu::DeviceDescriptor { required_features: features, required_limits: adapter.limits(), ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| error.to_string())?;
     let faults = watch(&device);
     let source = wgpu::ShaderSource::Wgsl(VERTEX.into());
     let vertex = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-    Ok(Gpu { adapter: describe(&adapter.get_info()), device, queue, faults, vertex, prepared: HashMap::new(), runs: 0 })
+    let adapter = describe(&adapter.get_info());
+    Ok(Gpu { adapter, shaders: wanted.shaders, device, queue, faults, vertex, prepared: HashMap::new(), runs: 0 })
 }
 
 /// Collects what would otherwise be a panic.

@@ -1,6 +1,7 @@
 //! A kernel's pipeline and the bindings that stay the same over its draws.
 
-use super::{TARGET_FORMAT, fixtures};
+use super::{TARGET_FORMAT, emitted, fixtures};
+use crate::emit::Emitted;
 use crate::harness::fixture::Fixture;
 use crate::harness::kernel::{ENTRY, Kernel, ResourceClass};
 
@@ -18,10 +19,21 @@ enum Bound {
 
 impl Prepared {
     /// Compiles the kernel and uploads its fixtures. Errors go to the device's error scopes.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, vertex: &wgpu::ShaderModule, kernel: &Kernel) -> Self {
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        vertex: &wgpu::ShaderModule,
+        kernel: &Kernel,
+        emitted: Option<&Emitted>,
+    ) -> Self {
         let layout = layout(device, kernel);
-        let source = wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(kernel.module.clone()));
-        let fragment = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(&kernel.name), source });
+        let fragment = match emitted {
+            Some(emitted) => emitted::module(device, kernel, emitted),
+            None => {
+                let source = wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(kernel.module.clone()));
+                device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(&kernel.name), source })
+            }
+        };
         let pipeline = pipeline(device, &layout, vertex, (&fragment, ENTRY), Some(TARGET_FORMAT), None);
         let resources = kernel.resources().map(|resource| (resource.binding, bound(device, queue, &resource.fixture))).collect();
         Self { pipeline, layout, resources }
