@@ -18,6 +18,7 @@ pub mod kernel;
 pub mod laws;
 pub mod library;
 pub mod references;
+mod sampling;
 pub mod tolerance;
 
 use crate::diagnostic::Diagnostic;
