@@ -24,6 +24,7 @@ pub mod mutate;
 pub mod plots;
 pub mod ratchet;
 pub mod references;
+mod sampling;
 pub mod tolerance;
 
 use crate::diagnostic::Diagnostic;
