@@ -9,6 +9,7 @@ mod emit;
 mod eval;
 #[path = "../xtask/src/external.rs"]
 mod external;
+mod frames;
 mod harness;
 mod library;
 mod permute;
@@ -26,6 +27,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     compose_wesl::trials,
     emit::trials,
     eval::trials,
+    frames::trials,
     harness::trials,
     library::trials,
     permute::trials,

@@ -5,7 +5,8 @@
 //! [`cases`] reads what to try, [`library`] composes the modules, [`kernel`] wraps each function
 //! into a fragment shader, an executor of [`executors`] runs it, [`references`] says what should
 //! come out, [`tolerance`] how far off it may be, and [`check`] compares. [`expression`] runs one
-//! expression instead of cases. [`mutate`] asks how much the cases notice.
+//! expression instead of cases. [`mutate`] asks how much the cases notice,
+//! and [`frame`] draws whole programs.
 
 pub mod cases;
 pub mod check;
@@ -13,6 +14,7 @@ pub mod executors;
 pub mod expression;
 pub mod fixture;
 pub mod formula;
+pub mod frame;
 mod gpu;
 pub mod kernel;
 pub mod laws;

@@ -1,5 +1,6 @@
 //! Runs kernels through wgpu, without a surface. What the GPU executors share.
 
+pub mod draw;
 mod fixtures;
 mod open;
 mod pipeline;
