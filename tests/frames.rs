@@ -56,7 +56,7 @@ pub fn trials() -> Vec<Trial> {
 fn run(backend: &'static str) -> Result<(), Failed> {
     let outcome = on_thread(|| {
         let renderer = Renderer::open(backend).map_err(|unavailable| unavailable.reason)?;
-        let one = |key: &&str| scene(key).and_then(|scene| agrees(&renderer, &scene)).map_err(|error| format!("[{key}] {error}"));
+        let one = |key: &&str| { eprintln!("KEY {key}"); scene(key).and_then(|scene| agrees(&renderer, &scene)).map_err(|error| format!("[{key}] {error}")) };
         let failures: Vec<String> = KEYS.iter().filter_map(|key| one(key).err()).collect();
         if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
     });
@@ -153,9 +153,9 @@ fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
             let texels = 8 * 8 * kind.layers() as usize;
             let value = |index: usize| {
                 let (x, y) = ((index % 8) as f32, (index / 8 % 8) as f32);
-                if kind.is_depth() { if x < 4.0 { 0.25 } else { 0.9 } } else { 0.3 + 0.05 * x + 0.03 * y }
+                if kind.is_depth() { if x < 4.0 { 0.25 } else { 0.9 } } else { (20.0 + 3.0 * x + 2.0 * y) / 64.0 }
             };
-            let channel = |index: usize| (0..kind.channels()).map(move |channel| value(index) + 0.05 * channel as f32);
+            let channel = |index: usize| (0..kind.channels()).map(move |channel| value(index) + channel as f32 / 16.0);
             Fixture::Texture(Texture { kind, width: 8, height: 8, texels: (0..texels).flat_map(channel).collect() })
         }
     }
