@@ -21,6 +21,7 @@ pub mod laws;
 pub mod library;
 pub mod mutate;
 pub mod references;
+mod sampling;
 pub mod tolerance;
 
 use crate::diagnostic::Diagnostic;

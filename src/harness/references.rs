@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 use super::fixture::{Fixture, Sampler, Texture};
 
@@ -52,6 +52,11 @@ impl<'a> Arguments<'a> {
 
     pub fn vec4(&mut self) -> DVec4 {
         DVec4::new(self.f64(), self.f64(), self.f64(), self.f64())
+    }
+
+    /// Column by column.
+    pub fn mat3(&mut self) -> DMat3 {
+        DMat3::from_cols(self.vec3(), self.vec3(), self.vec3())
     }
 
     /// Column by column.
@@ -118,9 +123,27 @@ impl From<bool> for Expected {
     }
 }
 
+impl From<DVec2> for Expected {
+    fn from(value: DVec2) -> Self {
+        Self::words(value.to_array())
+    }
+}
+
 impl From<DVec3> for Expected {
     fn from(value: DVec3) -> Self {
         Self::words(value.to_array())
+    }
+}
+
+impl From<DVec4> for Expected {
+    fn from(value: DVec4) -> Self {
+        Self::words(value.to_array())
+    }
+}
+
+impl From<DMat3> for Expected {
+    fn from(value: DMat3) -> Self {
+        Self::words(value.to_cols_array())
     }
 }
 

@@ -103,7 +103,7 @@ fn keys(kind: &Kind) -> Vec<&'static str> {
 
 fn domain(node: &Node) -> Result<Domain, Diagnostic> {
     match &node.value {
-        Value::Array(elements) => elements.iter().map(domain).collect::<Result<_, _>>().map(Domain::Union),
+        Value::Array(elements) => elements.iter().map(part).collect::<Result<_, _>>().map(Domain::Union),
         Value::Table(_) => match KINDS.iter().find(|kind| node.get(kind.key).is_some()) {
             Some(kind) => (kind.read)(node.required(kind.key)?, node),
             None => Err(node
@@ -111,6 +111,14 @@ fn domain(node: &Node) -> Result<Domain, Diagnostic> {
                 .note(format!("domains are {}", KINDS.iter().map(|kind| kind.key).collect::<Vec<_>>().join(", ")))),
         },
         _ => node.number().map(|number| Domain::Values(vec![vec![number]])),
+    }
+}
+
+/// An element of a union: an array there lists values, a vector each.
+fn part(node: &Node) -> Result<Domain, Diagnostic> {
+    match &node.value {
+        Value::Array(values) => values.iter().map(Node::numbers).collect::<Result<_, _>>().map(Domain::Values),
+        _ => domain(node),
     }
 }
 

@@ -15,6 +15,7 @@ const PATTERNS: &[(&str, Pattern)] = &[
     ("gradient", |_, x, y, layer| (x + y + f64::from(layer) / 6.0) / 3.0),
     ("checker", |settings, x, y, layer| f64::from(((x * settings.cells) as u32 + (y * settings.cells) as u32 + layer) % 2)),
     ("half_plane", |settings, x, _, _| if x < settings.edge { 0.0 } else { 1.0 }),
+    ("box", |settings, x, y, _| if x.min(y).min(1.0 - x).min(1.0 - y) > settings.edge { 0.0 } else { 1.0 }),
 ];
 
 struct Settings {

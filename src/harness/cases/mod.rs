@@ -6,7 +6,7 @@
 //! [fixture.step]                           # textures and samplers, by name
 //! kind = "depth_2d"                        # depth_2d, depth_cube, color_2d, color_cube, sampler
 //! size = [8, 8]
-//! pattern = "half_plane"                   # constant, gradient, checker, half_plane; or `texels`
+//! pattern = "half_plane"                   # constant, gradient, checker, half_plane, box; or `texels`
 //! low = 0.25
 //! high = 1.0
 //!
@@ -30,7 +30,7 @@
 //! `count`); `random` (also `seed`); `unit = COUNT` (the axes first); `hemisphere = "n"` (unit, on
 //! the side of the parameter `n`), `grazing = "n"` (unit, nearly at right angles to it), both with
 //! `count`; `same = "n"`; `around = VALUE` with `ulps`; `special = "plain" | "small" | "all"`; and
-//! arrays of these. Fields of structs are named by path (`light.kind = 3`); those not named are 0.
+//! arrays of these, in which an array lists values: `n = [{ unit = 8 }, [[0, 0, 0], [0, 0, 1]]]`. Fields of structs are named by path (`light.kind = 3`); those not named are 0.
 //!
 //! Oracles: without more, the f64 reference of `src/harness/references/` with the function's path;
 //! `formula = "max(dot(n, l), 0)"` (see [`super::formula`]), which needs no Rust; `rows`, a table

@@ -42,9 +42,9 @@ impl Rows {
         self.words.is_empty()
     }
 
-    /// One row as numbers.
+    /// One row as numbers; none for a function without parameters.
     pub fn row(&self, index: usize) -> &[f64] {
-        &self.numbers[index * self.stride..(index + 1) * self.stride]
+        self.numbers.get(index * self.stride..(index + 1) * self.stride).unwrap_or(&[])
     }
 
     /// One row as words.

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::cases::File;
 use super::{Session, kernel::Kernel};
 use crate::compose::Language;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use job::Job;
 
 /// Gives the module that holds functions of a library module, in a language: composed, parsed
@@ -80,13 +80,19 @@ pub fn check(files: &[(String, File)], languages: &[Language], subjects: &Subjec
     }
     let columns: Vec<Vec<Outcome>> = std::thread::scope(|scope| {
         let jobs = &jobs;
+        let names: Vec<_> = open.iter().map(|open| open.executor).collect();
         let threads: Vec<_> = open
             .iter_mut()
             .map(|open| std::thread::Builder::new().stack_size(super::STACK).spawn_scoped(scope, move || run_all(jobs, open)))
             .collect();
-        threads.into_iter().filter_map(|thread| thread.ok()?.join().ok()).collect()
-    });
+        let columns = threads.into_iter().map(|thread| thread.ok()?.join().ok());
+        columns.zip(names).map(|(column, name)| column.ok_or_else(|| vec![stopped(name)])).collect::<Result<_, Diagnostics>>()
+    })?;
     Ok(Report { outcomes: interleaved(columns) })
+}
+
+fn stopped(executor: &str) -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, format!("the executor `{executor}` stopped with an internal error"))
 }
 
 fn run_all(jobs: &[Job<'_>], open: &mut Open) -> Vec<Outcome> {

@@ -18,6 +18,16 @@ pub enum Shape {
     Struct { members: Vec<(String, Shape)> },
 }
 
+/// Columns of two to four rows.
+static COLUMNS: [Shape; 3] = [column(2), column(3), column(4)];
+static SCALARS: [Shape; 4] =
+    [Shape::Scalar(ScalarKind::Float), Shape::Scalar(ScalarKind::Sint), Shape::Scalar(ScalarKind::Uint), Shape::Scalar(ScalarKind::Bool)];
+const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
+
+const fn column(size: u32) -> Shape {
+    Shape::Vector { size, kind: ScalarKind::Float }
+}
+
 impl Shape {
     /// The shape of a naga type; `None` for what no words can hold.
     pub fn of(module: &Module, ty: Handle<Type>) -> Option<Self> {
@@ -60,7 +70,8 @@ impl Shape {
         }
     }
 
-    /// The part named by a path of member names and array indices, with its first word.
+    /// The part named by a path of member names, array indices, numbers of matrix columns and
+    /// letters of vector components, with its first word.
     pub fn part(&self, path: &[String]) -> Option<(u32, &Self)> {
         let Some((first, rest)) = path.split_first() else { return Some((0, self)) };
         let (skipped, inner) = match self {
@@ -72,7 +83,15 @@ impl Shape {
                 let index: u32 = first.parse().ok().filter(|index| index < count)?;
                 (index * base.words(), &**base)
             }
-            _ => return None,
+            Self::Matrix { columns, rows } => {
+                let index: u32 = first.parse().ok().filter(|index| index < columns)?;
+                (index * rows, COLUMNS.get(*rows as usize - 2)?)
+            }
+            Self::Vector { size, kind } => {
+                let index = COMPONENTS.iter().position(|name| name == first).filter(|index| *index < *size as usize)?;
+                (index as u32, SCALARS.iter().find(|scalar| **scalar == Self::Scalar(*kind))?)
+            }
+            Self::Scalar(_) => return None,
         };
         let (offset, part) = inner.part(rest)?;
         Some((skipped + offset, part))

@@ -1,40 +1,152 @@
 //! Sources: OpenGL Programming Guide, example 7.21 (one comparison, linear filter); OpenGL: Build
-//! High Performance Graphics, recipe 6 (3x3 and 5x5 taps, two texels apart).
+//! High Performance Graphics, recipe 6 (3x3 and 5x5 taps two texels apart, 16 random taps);
+//! Castaño, 2013 (the 1-2-1 and 1-3-4-3-1 bells); Vogel, 1979 (the disk); Fernando, 2005 (blockers
+//! and penumbra); Gerasimov, GPU Gems, chapter 12 (the cube).
 
+use super::math_noise::{hash, pixel_seed, unit, vogel_disk};
 use super::{Arguments, Entry, Expected};
 use crate::harness::fixture::{Sampler, Texture};
+use crate::harness::sampling;
 use glam::DVec2;
 
-pub const REFERENCES: Entry =
-    Entry { module: "shadow::compare", functions: &[("hard", |a| grid(a, 0)), ("pcf_3x3", |a| grid(a, 1)), ("pcf_5x5", |a| grid(a, 2))] };
+pub const REFERENCES: Entry = Entry {
+    module: "shadow::compare",
+    functions: &[
+        ("compare_tap", compare_tap),
+        ("hard", |a| averaged(a, |_, _| vec![(1.0, DVec2::ZERO)])),
+        ("pcf_grid", |a| averaged(a, |a, _| bell(&vec![1.0; 2 * a.f64() as usize + 1], 2.0))),
+        ("pcf_3x3", |a| averaged(a, |_, _| bell(&[1.0; 3], 2.0))),
+        ("pcf_5x5", |a| averaged(a, |_, _| bell(&[1.0; 5], 2.0))),
+        ("pcf_castano_3", |a| averaged(a, |_, _| bell(&[1.0, 2.0, 1.0], 1.0))),
+        ("castano_row", castano_row),
+        ("pcf_castano_5", |a| averaged(a, |_, _| bell(&[1.0, 3.0, 4.0, 3.0, 1.0], 1.0))),
+        ("pcf_random16", |a| averaged(a, random16)),
+        ("pcf_vogel", |a| averaged(a, |a, _| disk(a.f64(), a.f64(), a.f64()))),
+        ("mean_blocker", mean_blocker),
+        ("pcss", pcss),
+        ("cube_compare", cube_compare),
+    ],
+};
 
-/// The mean of comparisons two texels apart; outside the map is lit.
-fn grid(a: &mut Arguments<'_>, reach: i32) -> Expected {
-    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
-    let (uv, depth, inside) = (a.vec2(), a.f64(), a.bool());
-    if !inside {
-        return 1.0.into();
+/// Weight and offset in texels.
+type Taps = Vec<(f64, DVec2)>;
+
+/// A place in the map.
+#[derive(Clone, Copy)]
+struct At {
+    uv: DVec2,
+    depth: f64,
+    inside: bool,
+}
+
+impl At {
+    fn read(a: &mut Arguments<'_>) -> Self {
+        Self { uv: a.vec2(), depth: a.f64(), inside: a.bool() }
     }
-    let step = 2.0 / DVec2::new(f64::from(map.width), f64::from(map.height));
-    let taps = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| DVec2::new(f64::from(x), f64::from(y))));
-    let sum: f64 = taps.map(|tap| compare(map, sampler, uv + tap * step, depth)).sum();
-    (sum / f64::from((2 * reach + 1).pow(2))).into()
+}
+
+fn size(map: &Texture) -> DVec2 {
+    DVec2::new(f64::from(map.width), f64::from(map.height))
 }
 
 /// The share of the texels around a place that pass; places off the map are lit.
 fn compare(map: &Texture, sampler: Sampler, uv: DVec2, depth: f64) -> f64 {
-    if uv.min_element() < 0.0 || uv.max_element() > 1.0 {
-        return 1.0;
-    }
-    let at = uv * DVec2::new(f64::from(map.width), f64::from(map.height));
-    let passes = |x: f64, y: f64| {
-        let (x, y) = (sampler.address.wrap(x as i64, map.width), sampler.address.wrap(y as i64, map.height));
-        f64::from(u8::from(sampler.compare.is_some_and(|compare| compare.passes(depth, map.texel(x, y, 0, 0)))))
+    let is_on_map = uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
+    if is_on_map { sampling::compare(map, sampler, uv, depth) } else { 1.0 }
+}
+
+fn compare_tap(a: &mut Arguments<'_>) -> Expected {
+    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    compare(map, sampler, a.vec2(), a.f64()).into()
+}
+
+/// The weighted mean of comparisons; outside the map is lit.
+fn averaged(a: &mut Arguments<'_>, taps: fn(&mut Arguments<'_>, &At) -> Taps) -> Expected {
+    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    let at = At::read(a);
+    let taps = taps(a, &at);
+    if at.inside { mean(map, sampler, at, &taps).into() } else { 1.0.into() }
+}
+
+fn mean(map: &Texture, sampler: Sampler, at: At, taps: &Taps) -> f64 {
+    let tap = |(weight, offset): &(f64, DVec2)| weight * compare(map, sampler, at.uv + *offset / size(map), at.depth);
+    taps.iter().map(tap).sum::<f64>() / taps.iter().map(|(weight, _)| weight).sum::<f64>()
+}
+
+/// Every pair of the weights, `step` texels apart.
+fn bell(weights: &[f64], step: f64) -> Taps {
+    let place = |index: usize| (index as f64 - (weights.len() / 2) as f64) * step;
+    let row = |y: usize| weights.iter().enumerate().map(move |(x, weight)| (weight * weights[y], DVec2::new(place(x), place(y))));
+    (0..weights.len()).flat_map(row).collect()
+}
+
+/// Sixteen places of the square of half side `radius`, by the chain of hashes from the pixel on.
+fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
+    let (radius, pixel) = (a.f64(), a.vec2());
+    let mut state = pixel_seed(pixel);
+    let mut next = || {
+        state = hash(state);
+        2.0 * unit(state) - 1.0
     };
-    if !sampler.linear {
-        return passes(at.x.floor(), at.y.floor());
+    (0..16).map(|_| (1.0, radius * DVec2::new(next(), next()))).collect()
+}
+
+/// `count` places of the disk, at least one.
+fn disk(count: f64, radius: f64, phi: f64) -> Taps {
+    (0..count.max(1.0) as u32).map(|i| (1.0, radius * vogel_disk(f64::from(i), count, phi))).collect()
+}
+
+fn castano_row(a: &mut Arguments<'_>) -> Expected {
+    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    let (columns, v, weights, depth) = (a.vec3(), a.f64(), a.vec3(), a.f64());
+    let tap = |i: usize| weights[i] * compare(map, sampler, DVec2::new(columns[i], v), depth);
+    (0..3).map(tap).sum::<f64>().into()
+}
+
+/// The mean of the samples that are nearer than the point, if any.
+fn blocker(map: &Texture, sampler: Sampler, at: At, radius: f64, phi: f64) -> f64 {
+    let depths = disk(16.0, radius, phi).into_iter().map(|(_, offset)| sampling::read(map, sampler, at.uv + offset / size(map), 0));
+    let nearer: Vec<f64> = depths.filter(|depth| *depth < at.depth).collect();
+    if nearer.is_empty() { at.depth } else { nearer.iter().sum::<f64>() / nearer.len() as f64 }
+}
+
+/// The value, and those a ten-thousandth of a texel around: a sample at a texel's border may fall
+/// on either side.
+fn wobbled(at: At, map: &Texture, value: impl Fn(At) -> f64) -> Expected {
+    let around = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    let moved = |(x, y): (f64, f64)| value(At { uv: at.uv + 1e-4 * DVec2::new(x, y) / size(map), ..at });
+    around.into_iter().map(moved).fold(value(at).into(), Expected::or)
+}
+
+fn mean_blocker(a: &mut Arguments<'_>) -> Expected {
+    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    let (at, radius, phi) = (At::read(a), a.f64(), a.f64());
+    wobbled(at, map, |at| blocker(map, sampler, at, radius, phi))
+}
+
+/// penumbra = (receiver - blocker)*light/blocker, between one texel and the light's size.
+fn pcss(a: &mut Arguments<'_>) -> Expected {
+    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    let (Some(depths), Some(plain)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    let (at, light, phi) = (At::read(a), a.f64().max(1.0), a.f64());
+    if !at.inside {
+        return 1.0.into();
     }
-    let (corner, part) = ((at - 0.5).floor(), (at - 0.5).fract_gl());
-    let row = |y: f64| passes(corner.x, y) * (1.0 - part.x) + passes(corner.x + 1.0, y) * part.x;
-    row(corner.y) * (1.0 - part.y) + row(corner.y + 1.0) * part.y
+    wobbled(at, map, |at| {
+        let blocker = blocker(depths, plain, at, light, phi);
+        if blocker >= at.depth {
+            return 1.0;
+        }
+        let penumbra = (at.depth - blocker) * light / blocker.max(0.001);
+        mean(map, sampler, at, &disk(16.0, penumbra.clamp(1.0, light), phi))
+    })
+}
+
+fn cube_compare(a: &mut Arguments<'_>) -> Expected {
+    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    let (offset, depth) = (a.vec3(), a.f64());
+    if !(0.0..=1.0).contains(&depth) {
+        return 1.0.into();
+    }
+    sampling::compare_cube(map, sampler, offset, depth).into()
 }

@@ -1,5 +1,6 @@
 //! Sources: OpenGL Programming Guide, examples 7.16, 7.19 and 7.20; OpenGL: Build High Performance
-//! Graphics, recipe 5 (the guard on w); Igalia, part II (the depth view).
+//! Graphics, recipe 5 (the guard on w); Igalia, part II (the depth view); Gerasimov, GPU Gems,
+//! chapter 12 (the largest component is the distance along the face's axis).
 
 use super::{Arguments, Entry, Expected};
 use glam::DVec4;
@@ -7,11 +8,13 @@ use glam::DVec4;
 pub const REFERENCES: Entry = Entry {
     module: "shadow::coord",
     functions: &[
+        ("is_on_map", |a| [a.f64(), a.f64()].iter().all(|value| (0.0..=1.0).contains(value)).into()),
         ("shadow_coord", shadow_coord),
         ("project", |a| project(a.vec4(), a.f64())),
         ("project_gl", project_gl),
         ("linearize_depth", linearize_depth),
         ("depth_view_igl", |a| (1.0 - (1.0 - a.f64()) * 100.0).into()),
+        ("cube_depth", cube_depth),
     ],
 };
 
@@ -46,4 +49,11 @@ fn project_gl(a: &mut Arguments<'_>) -> Expected {
 fn linearize_depth(a: &mut Arguments<'_>) -> Expected {
     let (d, near, far) = (a.f64(), a.f64(), a.f64());
     (near * far / (far - d * (far - near))).into()
+}
+
+/// f/(f - n)*(z - n)/z, the perspective depth at z = max(|x|, |y|, |z|), at least n.
+fn cube_depth(a: &mut Arguments<'_>) -> Expected {
+    let (offset, near, far) = (a.vec3(), a.f64(), a.f64());
+    let z = offset.abs().max_element().max(near);
+    (far / (far - near) * (z - near) / z).into()
 }

@@ -1,0 +1,30 @@
+//! Source: the definition of the inverse; the normal matrix of every one of the books: inverse,
+//! transposed, of the upper 3x3 part.
+
+use super::{Arguments, Entry, Expected};
+use glam::DMat3;
+
+pub const REFERENCES: Entry =
+    Entry { module: "math::matrix", functions: &[("inverse3", |a| inverse(a.mat3()).into()), ("normal_matrix", normal_matrix)] };
+
+/// Zero for a matrix that has none in f32.
+fn inverse(m: DMat3) -> DMat3 {
+    if is_singular(m) { DMat3::ZERO } else { m.inverse() }
+}
+
+/// For a flattened model the matrix of cofactors, whose directions are right.
+fn normal_matrix(a: &mut Arguments<'_>) -> Expected {
+    let m = DMat3::from_mat4(a.mat4());
+    if !is_singular(m) {
+        return m.inverse().transpose().into();
+    }
+    let minor = |row: usize, column: usize| {
+        let at = |r: usize, c: usize| m.col((column + c) % 3)[(row + r) % 3];
+        at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)
+    };
+    Expected::words((0..9).map(|word| minor(word % 3, word / 3)))
+}
+
+fn is_singular(m: DMat3) -> bool {
+    m.determinant().abs() < f64::from(f32::MIN_POSITIVE)
+}

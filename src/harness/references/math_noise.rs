@@ -1,0 +1,50 @@
+//! Sources: Jimenez, 2014 (interleaved gradient noise); Jarzynski and Olano, "Hash Functions for
+//! GPU Rendering", 2020 (one step of PCG); Vogel, 1979 (the golden angle).
+
+use super::{Arguments, Entry, Expected};
+use glam::DVec2;
+use std::f64::consts::{PI, TAU};
+
+pub const REFERENCES: Entry = Entry {
+    module: "math::noise",
+    functions: &[
+        ("interleaved_gradient_noise", gradient_noise),
+        ("hash_pcg", |a| f64::from(hash(a.f64() as u32)).into()),
+        ("pixel_seed", |a| f64::from(pixel_seed(a.vec2())).into()),
+        ("unit_float", |a| unit(a.f64() as u32).into()),
+        ("vogel_disk", |a| vogel_disk(a.f64(), a.f64(), a.f64()).into()),
+    ],
+};
+
+/// fract(52.9829189*fract(dot(pixel, (0.06711056, 0.00583715)))), on the circle: near a whole
+/// number either end is right.
+fn gradient_noise(a: &mut Arguments<'_>) -> Expected {
+    let inner = a.vec2().dot(DVec2::new(0.06711056, 0.00583715));
+    let noise = |inner: f64| (52.9829189 * inner).rem_euclid(1.0);
+    let (value, part) = (noise(inner.rem_euclid(1.0)), inner.rem_euclid(1.0));
+    let expected = Expected::from(value).or(value - 1.0).or(value + 1.0);
+    if part.min(1.0 - part) < 1e-4 { expected.or(noise(1.0)).or(noise(0.0)) } else { expected }
+}
+
+/// A congruential step, then the permutation "random xorshift, multiply, xorshift".
+pub fn hash(seed: u32) -> u32 {
+    let state = seed.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let word = (state >> ((state >> 28) + 4) ^ state).wrapping_mul(277_803_737);
+    word >> 22 ^ word
+}
+
+/// Nested: the hash of x plus the hash of y, whole pixels from 0.
+pub fn pixel_seed(pixel: DVec2) -> u32 {
+    hash((pixel.x as u32).wrapping_add(hash(pixel.y as u32)))
+}
+
+/// The upper 24 bits as a fraction.
+pub fn unit(bits: u32) -> f64 {
+    f64::from(bits >> 8) / f64::from(1 << 24)
+}
+
+/// Radius sqrt((i + 1/2)/count), angle i times pi*(3 - sqrt 5), plus phi.
+pub fn vogel_disk(i: f64, count: f64, phi: f64) -> DVec2 {
+    let angle = (i * PI * (3.0 - 5f64.sqrt()) + phi).rem_euclid(TAU);
+    ((i + 0.5) / count.max(1.0)).sqrt() * DVec2::from_angle(angle)
+}

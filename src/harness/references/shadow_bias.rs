@@ -1,0 +1,34 @@
+//! Sources: OpenGL Programming Guide, example 7.18 (the slope of polygon offset); OpenGL: Build
+//! High Performance Graphics, recipe 7 (a constant); Holbert, 2011 (normal offset); Isidoro, 2006
+//! (receiver plane).
+
+use super::{Arguments, Entry, Expected};
+use glam::{DMat2, DVec2};
+
+pub const REFERENCES: Entry = Entry {
+    module: "shadow::bias",
+    functions: &[
+        ("constant_bias", |a| (a.f64() - a.f64()).into()),
+        ("slope_bias", |a| slope(a.f64(), a.f64(), a.f64()).into()),
+        ("normal_offset", normal_offset),
+        ("receiver_plane", receiver_plane),
+    ],
+};
+
+/// min(b*tan(angle), limit); the limit from the horizon on.
+fn slope(cosine: f64, b: f64, limit: f64) -> f64 {
+    if cosine > 0.0 { (b * cosine.min(1.0).acos().tan()).min(limit) } else { limit }
+}
+
+/// Along the normal by the sine of the angle to the light.
+fn normal_offset(a: &mut Arguments<'_>) -> Expected {
+    let (p, n, l, texel, scale) = (a.vec3(), a.vec3(), a.vec3(), a.f64(), a.f64());
+    (p + n * (scale * texel * n.cross(l).length())).into()
+}
+
+/// The gradient g with dot(g, duv_dx) = dz.x and dot(g, duv_dy) = dz.y.
+fn receiver_plane(a: &mut Arguments<'_>) -> Expected {
+    let (dx, dy, dz) = (a.vec2(), a.vec2(), a.vec2());
+    let rows = DMat2::from_cols(dx, dy).transpose();
+    if rows.determinant().abs() < 1e-30 { DVec2::ZERO.into() } else { (rows.inverse() * dz).into() }
+}
