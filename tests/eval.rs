@@ -7,6 +7,7 @@
 //! - `// quad: f(0 | 1 | 0 | 1) = 1 | 1 | 1 | 1` the four fragments of a quad
 
 mod constants;
+mod drivers;
 mod library;
 mod machine;
 mod speed;
@@ -26,6 +27,7 @@ pub fn trials() -> Vec<Trial> {
         trials.push(Trial::test(name, move || check(&std::fs::read_to_string(&path).unwrap())));
     }
     trials.extend(constants::trials());
+    trials.extend(drivers::trials());
     trials.extend(library::trials());
     trials.extend(machine::trials());
     trials.extend(speed::trials());

@@ -12,6 +12,7 @@ mod eval;
 #[path = "../xtask/src/external.rs"]
 mod external;
 mod examples;
+mod frames;
 mod harness;
 mod library;
 mod permute;
@@ -33,6 +34,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     emit::trials,
     eval::trials,
     examples::trials,
+    frames::trials,
     harness::trials,
     library::trials,
     permute::trials,

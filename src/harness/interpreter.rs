@@ -129,37 +129,41 @@ pub fn resources(kernel: &Kernel) -> Resources {
     for resource in kernel.resources() {
         let place = (0, resource.binding);
         match &*resource.fixture {
-            Fixture::Texture(fixture) => drop(resources.textures.insert(place, texture(fixture))),
-            Fixture::Sampler(fixture) => drop(resources.samplers.insert(place, sampler(*fixture))),
+            Fixture::Texture(fixture) => drop(resources.textures.insert(place, fixture.into())),
+            Fixture::Sampler(fixture) => drop(resources.samplers.insert(place, (*fixture).into())),
         }
     }
     resources
 }
 
-fn texture(fixture: &Texture) -> eval::Texture {
-    let shape = match fixture.kind {
-        TextureKind::Depth2d | TextureKind::Color2d => eval::Shape::D2,
-        TextureKind::DepthCube | TextureKind::ColorCube => eval::Shape::Cube,
-    };
-    let texel = |channels: &[f32]| std::array::from_fn(|channel| channels.get(channel).map_or(0.0, |value| f64::from(*value)));
-    let texels = fixture.texels.chunks(fixture.kind.channels()).map(texel).collect();
-    eval::Texture::flat(shape, fixture.width, fixture.height, fixture.kind.layers(), texels)
+impl From<&Texture> for eval::Texture {
+    fn from(fixture: &Texture) -> Self {
+        let shape = match fixture.kind {
+            TextureKind::Depth2d | TextureKind::Color2d => eval::Shape::D2,
+            TextureKind::DepthCube | TextureKind::ColorCube => eval::Shape::Cube,
+        };
+        let texel = |channels: &[f32]| std::array::from_fn(|channel| channels.get(channel).map_or(0.0, |value| f64::from(*value)));
+        let texels = fixture.texels.chunks(fixture.kind.channels()).map(texel).collect();
+        Self::flat(shape, fixture.width, fixture.height, fixture.kind.layers(), texels)
+    }
 }
 
-fn sampler(fixture: Sampler) -> eval::Sampler {
-    let address = match fixture.address {
-        Address::Clamp => eval::Address::Clamp,
-        Address::Repeat => eval::Address::Repeat,
-        Address::Mirror => eval::Address::Mirror,
-    };
-    let filter = if fixture.linear { eval::Filter::Linear } else { eval::Filter::Nearest };
-    let compare = fixture.compare.map(|compare| match compare {
-        Compare::Less => eval::Compare::Less,
-        Compare::LessEqual => eval::Compare::LessEqual,
-        Compare::Greater => eval::Compare::Greater,
-        Compare::GreaterEqual => eval::Compare::GreaterEqual,
-    });
-    eval::Sampler { address: [address; 3], mag: filter, min: filter, compare, ..eval::Sampler::default() }
+impl From<Sampler> for eval::Sampler {
+    fn from(fixture: Sampler) -> Self {
+        let address = match fixture.address {
+            Address::Clamp => eval::Address::Clamp,
+            Address::Repeat => eval::Address::Repeat,
+            Address::Mirror => eval::Address::Mirror,
+        };
+        let filter = if fixture.linear { eval::Filter::Linear } else { eval::Filter::Nearest };
+        let compare = fixture.compare.map(|compare| match compare {
+            Compare::Less => eval::Compare::Less,
+            Compare::LessEqual => eval::Compare::LessEqual,
+            Compare::Greater => eval::Compare::Greater,
+            Compare::GreaterEqual => eval::Compare::GreaterEqual,
+        });
+        Self { address: [address; 3], mag: filter, min: filter, compare, ..Self::default() }
+    }
 }
 
 /// The text naga read is the kernel's, not the author's: no place is given.

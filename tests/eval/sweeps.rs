@@ -5,10 +5,10 @@ use super::program;
 use lamplight::eval::{Bounded, Machine, Number};
 use libtest_mimic::{Failed, Trial};
 
-type One = (&'static str, fn(f64) -> f64, f64, f64);
+pub type One = (&'static str, fn(f64) -> f64, f64, f64);
 
 /// An expression of x, its meaning, and the range swept.
-const ONE: &[One] = &[
+pub const ONE: &[One] = &[
     ("-x", |x| -x, -10.0, 10.0),
     ("abs(x)", f64::abs, -10.0, 10.0),
     ("saturate(x)", |x| x.clamp(0.0, 1.0), -3.0, 3.0),

@@ -42,7 +42,11 @@ fn signed(word: u32, width: u32, index: usize) -> f64 {
 /// `floor(0.5 + scale * clamp(x, low, 1))`, with doubt where the error reaches the next one.
 fn norm<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
     let clamped = x.value().clamp(low, 1.0);
-    let moved = N::with_error(0.5 + scale * clamped, scale * x.error());
+    // The product and the sum round, unless both are f32 as they are.
+    let exact = |value: f64| f64::from(value as f32) == value;
+    let product = scale * clamped;
+    let rounding = if exact(product) && exact(product + 0.5) { 0.0 } else { (product.abs() + 0.5) * f64::from(f32::EPSILON) };
+    let moved = N::with_error(0.5 + product, scale * x.error() + rounding);
     let clamped = if clamped.is_nan() { N::default() } else { moved };
     N::unary(Unary::Floor, clamped, doubt).value() as i32 as u32
 }

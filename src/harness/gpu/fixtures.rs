@@ -1,6 +1,7 @@
 //! Fixtures as textures and samplers of a device.
 
 use super::pipeline;
+use crate::eval::{half_from, half_to};
 use crate::harness::fixture::{Address, Compare, Sampler, Texture};
 
 /// Depth cannot be copied into a texture, only drawn: the shader that draws it.
@@ -49,8 +50,26 @@ pub fn sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
 
 fn color(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    if !device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) && texture.texels.iter().all(|texel| is_half(*texel)) {
+        return half(device, queue, texture, usage);
+    }
     let created = create(device, texture, texture.kind.layers(), wgpu::TextureFormat::Rgba32Float, usage);
     write(queue, &created, texture, 0..texture.kind.layers());
+    created
+}
+
+fn is_half(texel: f32) -> bool {
+    half_to(half_from(f64::from(texel))) == f64::from(texel)
+}
+
+/// The same texels in 16 bits, which every device filters.
+fn half(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture, usage: wgpu::TextureUsages) -> wgpu::Texture {
+    let layers = texture.kind.layers();
+    let created = create(device, texture, layers, wgpu::TextureFormat::Rgba16Float, usage);
+    let bytes: Vec<u8> = texture.texels.iter().flat_map(|texel| half_from(f64::from(*texel)).to_le_bytes()).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texture.width * 8), rows_per_image: Some(texture.height) };
+    let size = wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers };
+    queue.write_texture(created.as_image_copy(), &bytes, layout, size);
     created
 }
 

@@ -2,6 +2,7 @@
 
 mod direct;
 mod emitted;
+pub mod draw;
 mod fixtures;
 mod open;
 mod pipeline;

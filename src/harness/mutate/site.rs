@@ -175,6 +175,14 @@ impl Finder<'_> {
         }
     }
 
+    /// A variable that naga made for `&&` and `||`: its branches are mistaken already.
+    fn is_unnamed(&self, pointer: Handle<Expression>) -> bool {
+        match self.function.expressions[pointer] {
+            Expression::LocalVariable(variable) => self.function.local_variables[variable].name.is_none(),
+            _ => false,
+        }
+    }
+
     fn statement(&self, statement: &Statement, span: Span, at: usize, sites: &mut Vec<Site>) {
         match statement {
             Statement::If { condition, accept, .. } => {
@@ -184,7 +192,9 @@ impl Finder<'_> {
                     sites.push(Site { span: place, edit: Edit::NoExit { statement: at, condition: *condition } });
                 }
             }
-            Statement::Store { .. } => sites.push(Site { span, edit: Edit::NoStore { statement: at } }),
+            Statement::Store { pointer, .. } if !self.is_unnamed(*pointer) => {
+                sites.push(Site { span, edit: Edit::NoStore { statement: at } })
+            }
             Statement::Call { arguments, result: Some(result), .. } => {
                 let ty = self.ty(*result);
                 let argument = arguments.iter().find(|argument| self.ty(**argument) == ty && same(ty, **argument).is_some());

@@ -63,12 +63,27 @@ impl Text<'_> {
 
     /// The author's text in single spaces.
     fn excerpt(&self, span: Span) -> String {
-        let text = author(self.map, span).map_or("?", |found| self.sources.text(found));
+        let text = author(self.map, span).map_or("?", |found| self.whole_call(found));
         let spaced = text.split_whitespace().collect::<Vec<_>>().join(" ");
         match spaced.char_indices().nth(LONGEST) {
             Some((end, _)) => format!("{}...", &spaced[..end]),
             None => spaced,
         }
+    }
+
+    /// naga places a call at the name of what is called: its arguments belong to it.
+    fn whole_call(&self, span: source::Span) -> &str {
+        let text = &self.sources.get(span.source).text;
+        let (name, rest) = (self.sources.text(span), &text[span.end as usize..]);
+        if !name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_') || !rest.starts_with('(') {
+            return name;
+        }
+        let mut depth = 0;
+        let end = rest.bytes().position(|byte| {
+            depth += i32::from(byte == b'(') - i32::from(byte == b')');
+            depth == 0
+        });
+        &text[span.start as usize..span.end as usize + end.map_or(0, |end| end + 1)]
     }
 }
 

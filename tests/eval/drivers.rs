@@ -1,0 +1,87 @@
+//! The evaluator against the drivers: over a sweep of every built-in, what a driver returns lies
+//! within the bound that value plus error gives.
+
+use std::collections::BTreeMap;
+
+use super::sweeps::{ONE, One};
+use lamplight::eval::{Bounded, Machine, Number};
+use lamplight::harness::{Session, executors, kernel, on_thread};
+use libtest_mimic::{Failed, Trial};
+
+/// Steps of a sweep.
+const STEPS: u32 = 200;
+
+/// Further expressions of x in `sin(x)`'s manner, for which Rust has no function of its own.
+const MORE: &[One] = &[
+    ("cross(vec3f(x, 1.0, 2.0), vec3f(2.0, x, -1.0)).z", |_| 0.0, -5.0, 5.0),
+    ("reflect(vec2f(x, -1.0), vec2f(0.6, 0.8)).x", |_| 0.0, -5.0, 5.0),
+    ("refract(vec2f(0.6, -0.8), vec2f(0.0, 1.0), x).x", |_| 0.0, 0.1, 1.2),
+    ("faceForward(vec2f(x, 1.0), vec2f(x, 2.0), vec2f(1.0, 0.0)).x", |_| 0.0, 0.1, 5.0),
+    ("select(x, -x, x < 0.5)", |_| 0.0, -5.0, 5.0),
+    ("(mat2x2f(x, 1.0, 2.0, x) * vec2f(x, 3.0)).x", |_| 0.0, -5.0, 5.0),
+    ("(vec2f(x, 3.0) * mat2x2f(x, 1.0, 2.0, x)).y", |_| 0.0, -5.0, 5.0),
+    ("(mat2x2f(x, 1.0, 2.0, x) * mat2x2f(1.0, x, 0.5, 2.0))[1].x", |_| 0.0, -5.0, 5.0),
+    ("transpose(mat2x3f(x, 1.0, 2.0, 3.0, x, 4.0))[2].y", |_| 0.0, -5.0, 5.0),
+    ("f32(i32(x)) + f32(u32(x + 9.0))", |_| 0.0, -5.0, 5.0),
+    ("f32(bitcast<u32>(x) >> 20u)", |_| 0.0, -5.0, 5.0),
+    ("f32(countOneBits(u32(x)) + countLeadingZeros(u32(x)) + countTrailingZeros(u32(x)))", |_| 0.0, 0.0, 500.0),
+    ("f32(firstLeadingBit(u32(x)) + firstTrailingBit(u32(x) | 8u) + reverseBits(u32(x)) % 97u)", |_| 0.0, 1.0, 500.0),
+    ("f32(extractBits(u32(x), 2u, 5u) + insertBits(u32(x), 9u, 3u, 4u))", |_| 0.0, 0.0, 500.0),
+    ("f32(i32(x) / 3 + (i32(x) << 2u) + (i32(x) >> 1u))", |_| 0.0, -500.0, 500.0),
+    // Of negative numbers GLSL leaves it open, and naga passes that on.
+    ("f32(i32(x) % 4)", |_| 0.0, 0.0, 500.0),
+    ("unpack2x16float(pack2x16float(vec2f(x, 1.0))).x", |_| 0.0, -5.0, 5.0),
+    ("f32(pack4x8unorm(vec4f(x, 0.0, 0.0, 0.0)))", |_| 0.0, -0.5, 1.5),
+    ("unpack4x8snorm(u32(x)).x", |_| 0.0, 0.0, 255.0),
+    ("unpack2x16unorm(u32(x) * 99u).x", |_| 0.0, 0.0, 600.0),
+];
+
+/// Where a driver strays further than the specification lets it: expression, executor, and the
+/// absolute error it may have on top. Mesa's arc sine is one polynomial over the whole range.
+const WAIVERS: &[(&str, &str, f64)] = &[("asin(x)", "gl", 4e-4)];
+
+pub fn trials() -> Vec<Trial> {
+    let drivers = executors::ALL.iter().filter(|executor| ["vulkan", "gl"].contains(&executor.name));
+    drivers.map(|executor| Trial::test(format!("eval/drivers/{}", executor.name), move || run(executor))).collect()
+}
+
+/// Sessions are opened, used and dropped on a thread of their own.
+fn run(executor: &'static executors::Entry) -> Result<(), Failed> {
+    let outcome = on_thread(|| {
+        let mut session = (executor.open)().map_err(|unavailable| executor.missing(&unavailable))?;
+        let cases = ONE.iter().chain(MORE);
+        let failures: Vec<String> = cases.filter_map(|case| sweep(case, executor.name, session.as_mut()).err()).collect();
+        if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
+    });
+    outcome.ok_or("panicked")?.map_err(Failed::from)
+}
+
+fn sweep((expression, _, low, high): &One, executor: &str, session: &mut dyn Session) -> Result<(), String> {
+    let fail = |text: String| format!("{expression}: {text}");
+    let text = format!("fn f(x: f32) -> f32 {{ return {expression}; }}");
+    let module = naga::front::wgsl::parse_str(&text).map_err(|error| fail(error.to_string()))?;
+    let kernel = kernel::build(&module, "f", &BTreeMap::new()).map_err(|error| fail(error.message))?;
+    let inputs: Vec<f32> = (0..=STEPS).map(|step| (low + (high - low) * f64::from(step) / f64::from(STEPS)) as f32).collect();
+    let words: Vec<u32> = inputs.iter().map(|x| x.to_bits()).collect();
+    let found = session.run(&kernel, &words).map_err(|error| fail(error.message))?;
+    let program = super::program(&text).map_err(|error| fail(error.message().unwrap_or_default().to_owned()))?;
+    let f = program.function("f").ok_or("f")?;
+    let mut machine = Machine::<Bounded>::new(&program).map_err(|error| fail(error.message))?;
+    let waived = WAIVERS.iter().find(|(waived, on, _)| waived == expression && *on == executor).map_or(0.0, |waiver| waiver.2);
+    for (x, word) in inputs.iter().zip(found) {
+        machine.forget();
+        let wanted = machine.call(f, &[Bounded::from_f64(f64::from(*x))]).map_err(|error| fail(error.message))?[0];
+        let off = (f64::from(f32::from_bits(word)) - wanted.value()).abs();
+        let doubtful = !machine.findings().is_empty();
+        if !(off <= wanted.error() + waived) && !wanted.value().is_nan() && !doubtful {
+            return Err(fail(format!(
+                "at {x} (0x{:08x}) {executor} gives {}, wanted {} within {:e}, off by {off:e}",
+                x.to_bits(),
+                f32::from_bits(word),
+                wanted.value(),
+                wanted.error() + waived
+            )));
+        }
+    }
+    Ok(())
+}
