@@ -7,9 +7,11 @@ mod compose_glsl;
 mod compose_wesl;
 mod emit;
 mod eval;
+mod generate;
 mod harness;
 mod permute;
 mod programs;
+mod scale;
 mod shaderlib;
 mod snapshot;
 
@@ -23,9 +25,11 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     compose_wesl::trials,
     emit::trials,
     eval::trials,
+    generate::trials,
     harness::trials,
     permute::trials,
     programs::trials,
+    scale::trials,
     shaderlib::trials,
     snapshot::trials,
 ];

@@ -13,9 +13,12 @@ mod failure;
 mod generate;
 mod input;
 mod list;
+mod merge;
 mod progress;
 mod show;
 mod variants;
+mod watch;
+mod work;
 
 use std::process::ExitCode;
 
@@ -41,7 +44,9 @@ enum Command {
     Compose(compose::Arguments),
     Compile(compile::Arguments),
     Gen(generate::Arguments),
+    Merge(merge::Arguments),
     Variants(variants::Arguments),
+    Watch(watch::Arguments),
     Bundle(bundle::Arguments),
     Eval(eval::Arguments),
     Check(check::Arguments),
@@ -64,7 +69,9 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Compose(arguments) => compose::run(arguments, form),
         Command::Compile(arguments) => compile::run(arguments, form),
         Command::Gen(arguments) => generate::run(arguments, form),
+        Command::Merge(arguments) => merge::run(arguments),
         Command::Variants(arguments) => variants::run(arguments, form),
+        Command::Watch(arguments) => watch::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),

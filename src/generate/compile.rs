@@ -3,15 +3,40 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::bundle::{Artifact, Target, Unit};
-use crate::compose::Composed;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use super::entry::Entry;
+use super::sink::Sink;
+use super::weave::Text;
+use crate::bundle::{Artifact, Digest, Target, Unit};
+use crate::cache::{Cache, Job};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::{self, targets};
 use crate::validate::{Validated, validate};
 
+/// Compiles texts, all for the same targets, and passes on what comes of them.
+pub struct Compiler<'a> {
+    pub targets: &'a [Target],
+    pub sink: &'a dyn Sink,
+    pub cache: Option<&'a Cache>,
+}
+
+impl Compiler<'_> {
+    /// Compiles a text, unless the cache knows what comes of it, and gives the unit to the sink.
+    pub fn make(&self, text: &Text, entry: &Entry) -> Result<Digest, Diagnostics> {
+        let job =
+            Job { text: &text.lean.text, composed: &text.composed, entry: &entry.name, options: &entry.options, targets: self.targets };
+        let result = self.cache.and_then(|cache| cache.find(job)).unwrap_or_else(|| {
+            let result = compile(text, &entry.name, self.targets);
+            self.cache.into_iter().for_each(|cache| cache.keep(job, &result));
+            result
+        });
+        self.sink.add(result?).map_err(|error| vec![Diagnostic::error(codes::BUNDLE_FAILED, error.to_string())])
+    }
+}
+
 /// Validates a text, reflects its entry point and writes it for each target.
-pub fn compile(composed: &Composed, entry: &str, targets: &[Target]) -> Result<Unit, Diagnostics> {
-    let validated = validate(composed)?;
+fn compile(text: &Text, entry: &str, targets: &[Target]) -> Result<Unit, Diagnostics> {
+    // The lean text is quick to read; the whole one knows where its mistakes are.
+    let validated = validate(&text.lean).or_else(|_| validate(&text.composed))?;
     unit(&validated, entry, targets).map_err(|error| vec![error])
 }
 

@@ -27,7 +27,12 @@ pub struct Entry {
 /// Every entry point of a program: those of the WESL root, then one for each GLSL stage.
 ///
 /// Entry points are those that the composition of `point` has.
-pub fn entries(sources: &mut SourceSet, packages: &Packages, program: &Program, point: Option<&Assignment>) -> Result<Vec<Entry>, Diagnostics> {
+pub fn entries(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    program: &Program,
+    point: Option<&Assignment>,
+) -> Result<Vec<Entry>, Diagnostics> {
     let Some(point) = point else { return Ok(Vec::new()) };
     let mut entries = Vec::new();
     for (file, language) in roots(program) {
