@@ -19,6 +19,8 @@ pub mod emit;
 #[cfg(feature = "compile")]
 pub mod generate;
 #[cfg(feature = "compile")]
+pub mod keys;
+#[cfg(feature = "compile")]
 pub mod output;
 #[cfg(feature = "compile")]
 pub mod parse;
@@ -37,6 +39,8 @@ pub mod validate;
 pub mod eval;
 #[cfg(feature = "harness")]
 pub mod harness;
+#[cfg(feature = "harness")]
+pub mod report;
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -287,10 +287,10 @@ fn differences() -> Outcome {
     changed.targets.get_mut("wgsl").ok_or("no target")?.bytes = b"other".as_slice().into();
     let hash = entry.add(changed)?;
     entry.keys.insert("shadow=hard".into(), hash);
-    entry.keys.remove("");
+    entry.keys.remove("default");
     let changes = diff(&old, &new).permutations;
     let told: Vec<String> = changes.iter().map(|change| format!("{} {} {:?}", change.kind, change.key, change.parts)).collect();
-    check(told == ["removed  []", "changed shadow=hard [\"wgsl\"]"], &format!("{told:?}"))
+    check(told == ["removed default []", "changed shadow=hard [\"wgsl\"]"], &format!("{told:?}"))
 }
 
 fn merging() -> Outcome {

@@ -127,7 +127,10 @@ const CASE_ERRORS: &[(&str, &str)] = &[
     ("[[case]]\nfunction = \"half\"\ninputs = { y = 1 }\n", "mine.toml:3:16: error[case-invalid]: the function has no parameter `y`"),
     ("[[case]]\nfunction = \"half\"\ninput = { x = 1 }\n", "mine.toml:3:1: error[case-invalid]: unknown key `input`"),
     ("[[case]]\nfunction = \"half\"\ninputs = { x = { grit = [0, 1], count = 3 } }\n", "mine.toml:3:"),
-    ("[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\n", "mine.toml:2:12: error[case-invalid]: there is no reference for `mine::half`"),
+    (
+        "[[case]]\nfunction = \"half\"\noracle = \"reference\"\ninputs = { x = 1 }\n",
+        "mine.toml:2:12: error[case-invalid]: there is no reference for `mine::half`",
+    ),
     (
         "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"0.5*z\"\n",
         "mine.toml:4:16: error[case-invalid]: there is no parameter `z`",

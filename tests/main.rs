@@ -3,13 +3,19 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
 mod bundle;
+mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod diagnostics;
 mod emit;
 mod eval;
 mod generate;
+#[path = "../xtask/src/external.rs"]
+mod external;
 mod harness;
+mod library;
 mod permute;
+mod pipelines;
 mod programs;
 mod scale;
 mod shaderlib;
@@ -21,17 +27,20 @@ use libtest_mimic::{Arguments, Trial};
 
 const KINDS: &[fn() -> Vec<Trial>] = &[
     bundle::trials,
+    catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    diagnostics::trials,
     emit::trials,
     eval::trials,
     generate::trials,
     harness::trials,
+    library::trials,
     permute::trials,
+    pipelines::trials,
     programs::trials,
     scale::trials,
     shaderlib::trials,
-    snapshot::trials,
 ];
 
 fn main() -> ExitCode {

@@ -15,7 +15,8 @@ pub fn check(folder: &str, name: &str, text: &str) -> Result<(), libtest_mimic::
     settings.set_snapshot_path(root().join("snapshots").join(folder));
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    settings.bind(|| std::panic::catch_unwind(|| insta::assert_snapshot!(name, text)))
+    settings
+        .bind(|| std::panic::catch_unwind(|| insta::assert_snapshot!(name, text)))
         .map_err(|_| format!("snapshots/{folder}/{name}.snap differs").into())
 }
 
@@ -30,9 +31,4 @@ pub fn cases(folder: &str) -> Vec<(String, PathBuf)> {
         .collect();
     found.sort();
     found
-}
-
-/// Nothing of its own yet.
-pub fn trials() -> Vec<libtest_mimic::Trial> {
-    Vec::new()
 }

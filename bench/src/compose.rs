@@ -19,7 +19,10 @@ const PERMUTATIONS: usize = 8;
 
 /// Prints every figure; the last line is the two ratios.
 pub fn run() -> Outcome {
-    println!("corpus: {MODULES} modules, {} lines, {ROOTS} roots, {PERMUTATIONS} permutations of {FLAGS} flags each", corpus::lines(Dialect::Wesl));
+    println!(
+        "corpus: {MODULES} modules, {} lines, {ROOTS} roots, {PERMUTATIONS} permutations of {FLAGS} flags each",
+        corpus::lines(Dialect::Wesl)
+    );
     let (graphs, loading) = load()?;
     println!("lamplight: corpus loaded and indexed, all roots: {}", millis(loading));
     let ours = compose(&graphs)?;
@@ -28,7 +31,12 @@ pub fn run() -> Outcome {
     let to_text = theirs.as_secs_f64() / ours.elapsed.as_secs_f64();
     println!("to text: lamplight {:.0}/s, wesl {:.1}/s", jobs / ours.elapsed.as_secs_f64(), jobs / theirs.as_secs_f64());
     let naga = parse(&ours.texts)?;
-    println!("composition adds {:.1} % to naga's parsing ({} over {})", 100.0 * ours.elapsed.as_secs_f64() / naga.parse.as_secs_f64(), millis(ours.elapsed), millis(naga.parse));
+    println!(
+        "composition adds {:.1} % to naga's parsing ({} over {})",
+        100.0 * ours.elapsed.as_secs_f64() / naga.parse.as_secs_f64(),
+        millis(ours.elapsed),
+        millis(naga.parse)
+    );
     let oil = naga_oil_modules()?;
     let whole = ours.elapsed + naga.parse + naga.validate;
     let to_module = oil.as_secs_f64() / whole.as_secs_f64();
@@ -108,7 +116,8 @@ struct Naga {
 
 fn parse(texts: &[String]) -> Result<Naga, String> {
     let start = Instant::now();
-    let modules: Result<Vec<_>, _> = texts.iter().map(|text| naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))).collect();
+    let modules: Result<Vec<_>, _> =
+        texts.iter().map(|text| naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))).collect();
     let (modules, parse) = (modules?, start.elapsed());
     let start = Instant::now();
     for module in &modules {
@@ -126,14 +135,19 @@ fn naga_oil_modules() -> Result<Duration, Box<dyn std::error::Error>> {
     let mut composer = Composer::default();
     for module in 0..MODULES {
         let source = corpus::module(module, Dialect::NagaOil);
-        composer.add_composable_module(ComposableModuleDescriptor { source: &source, file_path: &corpus::path(module).join("/"), ..Default::default() })?;
+        composer.add_composable_module(ComposableModuleDescriptor {
+            source: &source,
+            file_path: &corpus::path(module).join("/"),
+            ..Default::default()
+        })?;
     }
     let roots: Vec<String> = (0..ROOTS).map(|root| corpus::root(root, Dialect::NagaOil)).collect();
     let start = Instant::now();
     for source in &roots {
         for permutation in 0..PERMUTATIONS {
             let shader_defs = naga_oil_defs(permutation);
-            let module = composer.make_naga_module(NagaModuleDescriptor { source, file_path: "root.wgsl", shader_defs, ..Default::default() })?;
+            let module =
+                composer.make_naga_module(NagaModuleDescriptor { source, file_path: "root.wgsl", shader_defs, ..Default::default() })?;
             validator().validate(&module)?;
         }
     }

@@ -75,7 +75,8 @@ pub fn lines(dialect: Dialect) -> usize {
 }
 
 fn imports(module: usize, random: &mut Random) -> Vec<(usize, usize)> {
-    let mut found: Vec<(usize, usize)> = (0..module.min(4)).map(|_| (module - 1 - random.below(module.min(24)), random.below(FUNCTIONS))).collect();
+    let mut found: Vec<(usize, usize)> =
+        (0..module.min(4)).map(|_| (module - 1 - random.below(module.min(24)), random.below(FUNCTIONS))).collect();
     found.sort_unstable();
     found.dedup_by_key(|(imported, _)| *imported);
     found
@@ -120,8 +121,14 @@ fn write_function(text: &mut String, module: usize, function: usize, imports: &[
 fn condition(text: &mut String, flag: usize, dialect: Dialect) {
     let flag = flag_name(flag, dialect);
     let _ = match dialect {
-        Dialect::Wesl => writeln!(text, "    @if({flag}) {{\n        sum = sum * 0.5 + state.taps[1].y;\n    }} @else {{\n        sum = sum + 0.125;\n    }}"),
-        Dialect::NagaOil => writeln!(text, "#ifdef {flag}\n    {{\n        sum = sum * 0.5 + state.taps[1].y;\n    }}\n#else\n    {{\n        sum = sum + 0.125;\n    }}\n#endif"),
+        Dialect::Wesl => writeln!(
+            text,
+            "    @if({flag}) {{\n        sum = sum * 0.5 + state.taps[1].y;\n    }} @else {{\n        sum = sum + 0.125;\n    }}"
+        ),
+        Dialect::NagaOil => writeln!(
+            text,
+            "#ifdef {flag}\n    {{\n        sum = sum * 0.5 + state.taps[1].y;\n    }}\n#else\n    {{\n        sum = sum + 0.125;\n    }}\n#endif"
+        ),
     };
 }
 

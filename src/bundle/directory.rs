@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::contents::{checksum, hex};
 use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
 use super::store::{self, Artifact, Program, Programs, Store};
-use super::{Contents, Digest, Error, Native, Reflection, Unit};
+use super::{Contents, Digest, Error, Native, Reflection, Stage, Unit};
 
 const MANIFEST: &str = "manifest.json";
 const BLOBS: &str = "blobs";
@@ -196,6 +196,26 @@ pub fn open(path: &Path) -> Result<Directory, Error> {
         directory.programs.insert(name, index);
     }
     Ok(directory)
+}
+
+/// A file of a directory bundle: what wrote it, and for which stage.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct BlobFile {
+    pub target: String,
+    pub stage: Stage,
+    pub path: PathBuf,
+}
+
+/// Every distinct blob of a directory bundle: for tools that take files.
+pub fn blob_files(path: impl AsRef<Path>) -> Result<BTreeSet<BlobFile>, Error> {
+    let directory = open(path.as_ref())?;
+    let mut files = BTreeSet::new();
+    for (reflection, targets) in &directory.units {
+        for (target, (artifact, _)) in targets {
+            files.insert(BlobFile { target: target.clone(), stage: reflection.stage, path: directory.blobs.join(artifact.file()?) });
+        }
+    }
+    Ok(files)
 }
 
 impl Directory {

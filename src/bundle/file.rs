@@ -114,6 +114,11 @@ fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error>
     if next == bytes.len() { Ok(sections) } else { Err(Error::corrupt("data", "bytes follow the last section")) }
 }
 
+/// The four numbers of a slot.
+fn words(slot: &[u8; SLOT_BYTES]) -> [u32; 4] {
+    std::array::from_fn(|index| u32::from_le_bytes(std::array::from_fn(|byte| slot[index * 4 + byte])))
+}
+
 impl Packed {
     /// A section, its checksum verified once.
     fn section(&self, index: usize) -> Result<&[u8], Error> {
@@ -139,6 +144,9 @@ impl Packed {
     }
 
     fn unit_of(&self, keys: &[u8], entry: &EntryMeta, index: usize) -> Result<u32, Error> {
+        if index >= entry.keys.count as usize {
+            return Err(Error::corrupt("keys", "an index is out of range"));
+        }
         u32_at(keys, entry.units as usize + index * 4, "keys")
     }
 
@@ -252,19 +260,17 @@ impl Store for Packed {
         if !set.slot_count.is_power_of_two() {
             return Err(Error::corrupt("meta", "a number of slots is no power of two"));
         }
-        let mask = set.slot_count as usize - 1;
+        let slots = slice(keys, set.slots as usize, set.slot_count as usize * SLOT_BYTES, "keys")?.as_chunks::<SLOT_BYTES>().0;
         let hash = hash(key.as_bytes());
-        let mut at = hash as usize & mask;
-        for _ in 0..=mask {
-            let slot = u64_at(keys, set.slots as usize + at * SLOT_BYTES, "keys")?;
-            let (tag, index) = (slot as u32, (slot >> 32) as usize);
+        let mask = slots.len() - 1;
+        for step in 0..slots.len() {
+            let [tag, index, at, length] = words(&slots[(hash as usize).wrapping_add(step) & mask]);
             if index == 0 {
                 return Ok(None);
             }
-            if tag == (hash >> 32) as u32 && index <= set.count as usize && self.key(keys, set, index - 1)? == key.as_bytes() {
-                return self.unit_of(keys, entry, index - 1).map(Some);
+            if tag == (hash >> 32) as u32 && slice(keys, at as usize, length as usize, "keys")? == key.as_bytes() {
+                return self.unit_of(keys, entry, index as usize - 1).map(Some);
             }
-            at = (at + 1) & mask;
         }
         Ok(None)
     }

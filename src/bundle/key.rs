@@ -2,11 +2,14 @@
 
 use super::{Axis, Error};
 
+/// The key of the permutation with every axis at its default.
+pub const DEFAULT: &str = "default";
+
 /// The key with its axes sorted and every default left out; `axis` alone means `axis=true`.
 pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
     let bad = |reason: String| Error::BadKey { key: key.to_owned(), reason };
     let mut parts: Vec<(&str, &str)> = Vec::new();
-    for part in key.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+    for part in parts_of(key) {
         let (name, value) = split(part);
         let axis = axes
             .iter()
@@ -22,17 +25,21 @@ pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
     }
     parts.retain(|(name, value)| !axes.iter().any(|axis| axis.name == *name && axis.default == *value));
     parts.sort_unstable();
-    Ok(parts
-        .iter()
-        .map(|(name, value)| if *value == "true" { (*name).to_owned() } else { format!("{name}={value}") })
-        .collect::<Vec<_>>()
-        .join(","))
+    let parts = parts.iter().map(|(name, value)| if *value == "true" { (*name).to_owned() } else { format!("{name}={value}") });
+    let key = parts.collect::<Vec<_>>().join(",");
+    Ok(if key.is_empty() { DEFAULT.to_owned() } else { key })
+}
+
+/// The value that a canonical key gives an axis.
+pub fn value<'a>(key: &'a str, axis: &'a Axis) -> &'a str {
+    let chosen = parts_of(key).map(split).find(|(name, _)| *name == axis.name);
+    chosen.map_or(axis.default.as_str(), |(_, value)| value)
 }
 
 /// In how many axes two canonical keys differ.
 pub fn distance(a: &str, b: &str) -> usize {
-    let mut left = a.split(',').filter(|part| !part.is_empty()).peekable();
-    let mut right = b.split(',').filter(|part| !part.is_empty()).peekable();
+    let mut left = parts_of(a).peekable();
+    let mut right = parts_of(b).peekable();
     let mut differing = 0;
     // Both are sorted by axis: one walk over the two, as in merging.
     loop {
@@ -54,6 +61,12 @@ pub fn distance(a: &str, b: &str) -> usize {
             }
         }
     }
+}
+
+/// The parts between commas; none for the defaults.
+fn parts_of(key: &str) -> impl Iterator<Item = &str> {
+    let key = if key.trim() == DEFAULT { "" } else { key };
+    key.split(',').map(str::trim).filter(|part| !part.is_empty())
 }
 
 fn split(part: &str) -> (&str, &str) {

@@ -36,7 +36,7 @@ pub const HEADER_BYTES: usize = 24 + SECTIONS.len() * 32 + 16;
 pub const UNIT_BYTES: usize = 12;
 pub const ARTIFACT_BYTES: usize = 12;
 pub const RECORD_BYTES: usize = 8;
-pub const SLOT_BYTES: usize = 8;
+pub const SLOT_BYTES: usize = 16;
 pub const BLOB_BYTES: usize = 28;
 pub const GROUP_BYTES: usize = 32;
 
@@ -83,7 +83,9 @@ pub struct KeySet {
     /// Where the records start in KEYS.
     pub records: u32,
     /// Where the hash slots start in KEYS, and how many there are: a power of two. Each is the
-    /// upper half of a key's hash and the index of its record plus one, or zeros.
+    /// upper half of a key's hash, the index of its record plus one, and where its text starts and
+    /// its length, or zeros: a lookup reads a slot, the text and the unit, and nothing else that
+    /// is far apart.
     pub slots: u32,
     pub slot_count: u32,
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::contents::Contents;
 use super::store::{self, Store};
+use super::usage::{Recorder, Usage};
 use super::{
     Artifact, Axis, EntryContents, Error, Language, Miss, Native, ProgramContents, Reflection, Target, Unit, directory, file, key,
 };
@@ -25,11 +26,13 @@ use super::{
 /// ```
 pub struct Bundle {
     store: Box<dyn Store>,
+    recorder: Option<Recorder>,
 }
 
 /// One program of a bundle.
 pub struct Program<'a> {
     store: &'a dyn Store,
+    recorder: Option<&'a Recorder>,
     name: &'a str,
     program: &'a store::Program,
 }
@@ -38,6 +41,8 @@ pub struct Program<'a> {
 #[derive(Clone, Copy)]
 pub struct Shader<'a> {
     store: &'a dyn Store,
+    program: &'a str,
+    recorder: Option<&'a Recorder>,
     axes: &'a [Axis],
     entry: usize,
 }
@@ -48,6 +53,17 @@ pub struct Found {
     pub bytes: Vec<u8>,
     pub reflection: Arc<Reflection>,
     pub native: Arc<Native>,
+    /// The values that the key chooses for overrides: pass each as [`Native::choices`] says.
+    pub constants: Vec<Constant>,
+}
+
+/// The value of an override.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Constant {
+    /// As in the reflection.
+    pub name: String,
+    /// `true`, `false` or an integer.
+    pub value: String,
 }
 
 impl Bundle {
@@ -58,12 +74,12 @@ impl Bundle {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let store: Box<dyn Store> = if path.is_dir() { Box::new(directory::open(path)?) } else { Box::new(file::open(path)?) };
-        Ok(Self { store })
+        Ok(Self { store, recorder: None })
     }
 
     /// A single-file bundle that is in memory.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, Error> {
-        Ok(Self { store: Box::new(file::from_bytes(bytes)?) })
+        Ok(Self { store: Box::new(file::from_bytes(bytes)?), recorder: None })
     }
 
     /// Names of the programs, sorted.
@@ -76,7 +92,18 @@ impl Bundle {
         let programs = self.store.programs();
         let found = programs.get_key_value(name);
         let (name, program) = found.ok_or_else(|| not_found("program", name, programs.keys()))?;
-        Ok(Program { store: &*self.store, name, program })
+        Ok(Program { store: &*self.store, recorder: self.recorder.as_ref(), name, program })
+    }
+
+    /// Collects from now on which permutations are asked for, those that are missing too: write
+    /// [`Bundle::usage`] to a file that the manifest names, and the next bundle has exactly them.
+    pub fn record(&mut self) {
+        self.recorder.get_or_insert_with(Recorder::default);
+    }
+
+    /// The permutations asked for since [`Bundle::record`].
+    pub fn usage(&self) -> Usage {
+        self.recorder.as_ref().map(Recorder::usage).unwrap_or_default()
     }
 
     /// Checks every byte and every reference.
@@ -144,7 +171,7 @@ impl<'a> Program<'a> {
         let found = self.program.entries.get(&(language, name.to_owned()));
         let names = self.entries().filter(|(found, _)| *found == language).map(|(_, name)| name);
         let entry = *found.ok_or_else(|| not_found("entry point", name, names))?;
-        Ok(Shader { store: self.store, axes: &self.program.axes, entry })
+        Ok(Shader { store: self.store, program: self.name, recorder: self.recorder, axes: &self.program.axes, entry })
     }
 
     /// An entry point in whichever language has it; WESL where both do, which prove alike.
@@ -164,15 +191,31 @@ impl Shader<'_> {
     pub fn get(&self, key: &str, target: Target) -> Result<Found, Error> {
         let unit = self.find(key)?;
         let (reflection, artifact) = self.store.artifact(unit, target.name())?;
-        Ok(Found { bytes: self.store.blob(artifact.blob)?, reflection, native: artifact.native })
+        let constants = self.constants(key, &reflection)?;
+        Ok(Found { bytes: self.store.blob(artifact.blob)?, reflection, native: artifact.native, constants })
+    }
+
+    /// What the key says of the axes that are overrides of the shader.
+    fn constants(&self, key: &str, reflection: &Reflection) -> Result<Vec<Constant>, Error> {
+        let open =
+            |axis: &&Axis| axis.mode == "spec" && reflection.overrides.iter().any(|constant| constant.name.as_ref() == Some(&axis.name));
+        let open: Vec<&Axis> = self.axes.iter().filter(open).collect();
+        if open.is_empty() {
+            return Ok(Vec::new());
+        }
+        let key = key::canonical(self.axes, key)?;
+        let constant = |axis: &&Axis| Constant { name: axis.name.clone(), value: key::value(&key, axis).to_owned() };
+        Ok(open.iter().map(constant).collect())
     }
 
     /// The number of a key's unit: equal numbers are equal shaders, in every target.
     pub fn find(&self, key: &str) -> Result<u32, Error> {
         if let Some(unit) = self.store.find(self.entry, key)? {
+            self.note(key);
             return Ok(unit);
         }
         let asked = key::canonical(self.axes, key)?;
+        self.note(&asked);
         match self.store.find(self.entry, &asked)? {
             Some(unit) => Ok(unit),
             None => Err(Error::Miss(Box::new(Miss { nearest: self.nearest(&asked)?, asked }))),
@@ -196,6 +239,12 @@ impl Shader<'_> {
     /// Names of the targets a key was compiled for, sorted.
     pub fn targets(&self, key: &str) -> Result<Vec<String>, Error> {
         Ok(self.store.unit(self.find(key)?)?.targets.into_keys().collect())
+    }
+
+    fn note(&self, key: &str) {
+        if let Some(recorder) = self.recorder {
+            recorder.note(self.program, key);
+        }
     }
 
     fn nearest(&self, asked: &str) -> Result<Option<String>, Error> {

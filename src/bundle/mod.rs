@@ -18,18 +18,20 @@ mod pack;
 mod reflection;
 mod store;
 mod target;
+mod usage;
 
 pub use contents::{Artifact, Axis, Contents, Digest, EntryContents, Hash, ProgramContents, Unit};
 pub use diff::{Change, Difference, diff};
-pub use directory::{DirectoryWriter, write_directory};
+pub use directory::{BlobFile, DirectoryWriter, blob_files, write_directory};
 pub use error::{Error, Miss};
 pub use key::canonical;
-pub use loader::{Bundle, Found, Program, Shader};
+pub use loader::{Bundle, Constant, Found, Program, Shader};
 pub use manifest::SCHEMA;
 pub use merge::{merge, merge_directory, patch_directory};
 pub use pack::{pack, write_file};
-pub use reflection::{Binding, Combined, Kind, Language, Member, Native, Override, Pair, Place, Reflection, Slot, Stage, Varying};
+pub use reflection::{Binding, Choice, Combined, Kind, Language, Member, Native, Override, Pair, Place, Reflection, Slot, Stage, Varying};
 pub use target::Target;
+pub use usage::Usage;
 
 /// Version of both forms; a loader reads exactly one.
 pub const VERSION: u32 = 1;

@@ -97,7 +97,7 @@ impl Packer {
         if let Some(set) = sets.get(&keys) {
             return Ok(*set);
         }
-        let slot_count = (keys.len() * 2).next_power_of_two();
+        let slot_count = (keys.len() + keys.len() / 4 + 1).next_power_of_two();
         let set = KeySet {
             count: number(keys.len())?,
             records: number(self.keys.len())?,
@@ -109,7 +109,8 @@ impl Packer {
             put(&mut self.keys, &[number(text_at)?, number(key.len())?]);
             text_at += key.len();
         }
-        put(&mut self.keys, &slots(&keys, slot_count)?);
+        let texts_at = self.keys.len() + slot_count * SLOT_BYTES;
+        put(&mut self.keys, &slots(&keys, slot_count, texts_at)?);
         keys.iter().for_each(|key| self.keys.extend_from_slice(key.as_bytes()));
         sets.insert(keys, set);
         Ok(set)
@@ -194,19 +195,19 @@ fn in_key_order(entry: &EntryContents) -> impl Iterator<Item = &Unit> {
     entry.keys.values().filter_map(|hash| entry.units.get(hash))
 }
 
-/// The hash table of a key set: upper half of the hash and index plus one, for each slot.
-fn slots(keys: &[&str], count: usize) -> Result<Vec<u32>, Error> {
-    let mut slots = vec![0; count * 2];
+/// The hash table of a key set whose texts follow each other from `text_at`.
+fn slots(keys: &[&str], count: usize, mut text_at: usize) -> Result<Vec<u32>, Error> {
+    let mut slots = vec![[0; 4]; count];
     for (index, key) in keys.iter().enumerate() {
         let hash = hash(key.as_bytes());
         let mut at = hash as usize & (count - 1);
-        while slots[at * 2 + 1] != 0 {
+        while slots[at] != [0; 4] {
             at = (at + 1) & (count - 1);
         }
-        slots[at * 2] = (hash >> 32) as u32;
-        slots[at * 2 + 1] = number(index + 1)?;
+        slots[at] = [(hash >> 32) as u32, number(index + 1)?, number(text_at)?, number(key.len())?];
+        text_at += key.len();
     }
-    Ok(slots)
+    Ok(slots.into_iter().flatten().collect())
 }
 
 /// (offset, length) of each text in the section, then the texts.

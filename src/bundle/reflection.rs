@@ -117,7 +117,7 @@ pub struct Pair {
     pub sampler: Place,
 }
 
-/// A constant that is chosen when the pipeline is made. Targets other than WGSL have its default.
+/// A constant that is chosen when the pipeline is made: [`Native::choices`] says how.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Override {
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -141,6 +141,23 @@ pub struct Native {
     /// Names of combined samplers, in targets that have no separate ones.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub combined: Vec<Combined>,
+    /// How the overrides of the reflection are chosen here; those that are not named have their
+    /// defaults.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub choices: Vec<Choice>,
+}
+
+/// How a target takes the value of an override: in WGSL as the pipeline constant of its `@id` or
+/// else its name, in SPIR-V as the specialisation constant `id`, in MSL as the function constant
+/// `id`, elsewhere as the macro `symbol`, defined before the text (in GLSL after `#version`).
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Choice {
+    /// As in the reflection.
+    pub name: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub symbol: Option<String>,
 }
 
 /// The place of one binding in a target.

@@ -14,9 +14,10 @@ pub use trace::{Recorder, Trace};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::bundle::{Hash, Target, Unit};
+use crate::bundle::{Hash, Target};
 use crate::compose::{Composed, Options};
 use crate::diagnostic::Diagnostics;
+use crate::generate::Made;
 
 /// Changes with the sources of this crate, its dependencies' versions and the compiler's target.
 pub const BUILD: &str = env!("LAMPLIGHT_BUILD");
@@ -55,23 +56,30 @@ impl Cache {
     }
 
     /// The result of an equal job, if there was one.
-    pub fn find(&self, job: Job<'_>) -> Option<Result<Unit, Diagnostics>> {
+    pub fn find(&self, job: Job<'_>) -> Option<Result<Made, Diagnostics>> {
         let key = unit_key(job);
-        let unit = self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)).map(Ok);
-        let found = unit.or_else(|| {
-            let bytes = self.get("errors", error_key(key, job.composed))?;
-            record::decode_errors(&bytes).map(Err)
-        });
+        let told = |kind| self.get(kind, told_key(key, job.composed)).and_then(|bytes| record::decode_diagnostics(&bytes));
+        let found = match self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)) {
+            Some((unit, false)) => Some(Ok(Made { unit, warnings: Vec::new() })),
+            Some((unit, true)) => told("warnings").map(|warnings| Ok(Made { unit, warnings })),
+            None => told("errors").map(Err),
+        };
         self.hits.fetch_add(usize::from(found.is_some()), Ordering::Relaxed);
         found
     }
 
     /// Keeps a result.
-    pub fn keep(&self, job: Job<'_>, result: &Result<Unit, Diagnostics>) {
+    pub fn keep(&self, job: Job<'_>, result: &Result<Made, Diagnostics>) {
         let key = unit_key(job);
+        let tell = |kind, diagnostics| self.put(kind, told_key(key, job.composed), record::encode_diagnostics(diagnostics));
         match result {
-            Ok(unit) => self.put("units", key, record::encode_unit(unit)),
-            Err(errors) => self.put("errors", error_key(key, job.composed), record::encode_errors(errors)),
+            Ok(Made { unit, warnings }) => {
+                self.put("units", key, record::encode_unit(unit, !warnings.is_empty()));
+                if !warnings.is_empty() {
+                    tell("warnings", warnings);
+                }
+            }
+            Err(errors) => tell("errors", errors),
         }
     }
 
@@ -129,8 +137,8 @@ fn unit_key(job: Job<'_>) -> Hash {
 }
 
 /// Diagnostics have places, so they depend on where each part of the text came from too.
-fn error_key(unit: Hash, composed: &Composed) -> Hash {
-    hash(&["errors", &hex(&unit), &composed.text, &format!("{:?}", composed.map.segments())])
+fn told_key(unit: Hash, composed: &Composed) -> Hash {
+    hash(&["told", &hex(&unit), &composed.text, &format!("{:?}", composed.map.segments())])
 }
 
 /// 128 bits over parts that cannot run into each other.

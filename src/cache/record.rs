@@ -39,6 +39,8 @@ pub fn open(record: &[u8]) -> Option<Vec<u8>> {
 /// What stands before the bytes of a unit's targets.
 #[derive(Serialize, Deserialize)]
 struct Head {
+    /// Whether warnings belong to it, which have places and so a record of their own.
+    has_warnings: bool,
     reflection: Reflection,
     targets: BTreeMap<String, Part>,
 }
@@ -51,21 +53,21 @@ struct Part {
 }
 
 /// The length of the head, the head, the bytes of each target.
-pub fn encode_unit(unit: &Unit) -> Option<Vec<u8>> {
+pub fn encode_unit(unit: &Unit, has_warnings: bool) -> Option<Vec<u8>> {
     let part = |artifact: &Artifact| Part {
         extension: artifact.extension.clone(),
         native: (*artifact.native).clone(),
         bytes: artifact.bytes.len(),
     };
     let targets = unit.targets.iter().map(|(target, artifact)| (target.clone(), part(artifact))).collect();
-    let head = serde_json::to_vec(&Head { reflection: (*unit.reflection).clone(), targets }).ok()?;
+    let head = serde_json::to_vec(&Head { has_warnings, reflection: (*unit.reflection).clone(), targets }).ok()?;
     let mut payload = u32::try_from(head.len()).ok()?.to_le_bytes().to_vec();
     payload.extend_from_slice(&head);
     unit.targets.values().for_each(|artifact| payload.extend_from_slice(&artifact.bytes));
     Some(payload)
 }
 
-pub fn decode_unit(payload: &[u8]) -> Option<Unit> {
+pub fn decode_unit(payload: &[u8]) -> Option<(Unit, bool)> {
     let (length, rest) = payload.split_first_chunk::<4>()?;
     let (head, mut rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
     let head: Head = serde_json::from_slice(head).ok()?;
@@ -75,11 +77,11 @@ pub fn decode_unit(payload: &[u8]) -> Option<Unit> {
         rest = after;
         targets.insert(target, Artifact { bytes: bytes.into(), extension: part.extension, native: Arc::new(part.native) });
     }
-    rest.is_empty().then_some(Unit { reflection: Arc::new(head.reflection), targets })
+    rest.is_empty().then_some((Unit { reflection: Arc::new(head.reflection), targets }, head.has_warnings))
 }
 
 #[derive(Serialize, Deserialize)]
-struct Error {
+struct Told {
     is_warning: bool,
     code: String,
     message: String,
@@ -87,8 +89,8 @@ struct Error {
     notes: Vec<String>,
 }
 
-pub fn encode_errors(errors: &Diagnostics) -> Option<Vec<u8>> {
-    let errors = errors.iter().map(|error| Error {
+pub fn encode_diagnostics(errors: &Diagnostics) -> Option<Vec<u8>> {
+    let errors = errors.iter().map(|error| Told {
         is_warning: error.severity == Severity::Warning,
         code: error.code.name.to_owned(),
         message: error.message.clone(),
@@ -98,12 +100,12 @@ pub fn encode_errors(errors: &Diagnostics) -> Option<Vec<u8>> {
     serde_json::to_vec(&errors.collect::<Vec<_>>()).ok()
 }
 
-pub fn decode_errors(payload: &[u8]) -> Option<Diagnostics> {
-    let errors: Vec<Error> = serde_json::from_slice(payload).ok()?;
+pub fn decode_diagnostics(payload: &[u8]) -> Option<Diagnostics> {
+    let errors: Vec<Told> = serde_json::from_slice(payload).ok()?;
     errors.into_iter().map(decode_error).collect()
 }
 
-fn decode_error(error: Error) -> Option<Diagnostic> {
+fn decode_error(error: Told) -> Option<Diagnostic> {
     let labels = error
         .labels
         .into_iter()

@@ -1,8 +1,20 @@
-//! What the shader library offers, read from its modules: names, signatures, documentation.
+//! What the shader library offers: its modules, plots, presets and light probes, and the pages
+//! that show them.
+//!
+//! Everything is read from the library's own files: names, signatures and documentation from the
+//! modules, [`plot`]s from `NAME.plot.toml` beside a module, [`preset`]s from `presets.toml`,
+//! [`probe`]s from `data/sh9_probes.toml`. [`pages`] writes the catalogue from them.
 
 mod outline;
+pub mod pages;
+pub mod plot;
+pub mod preset;
+pub mod probe;
+mod reader;
 
-use crate::source::{Embedded, Files};
+use crate::diagnostic::Diagnostics;
+use crate::permute::Manifest;
+use crate::source::{Embedded, Files, SourceSet};
 
 /// Folders of the library that hold programs, not modules.
 const PROGRAMS: &str = "programs/";
@@ -12,9 +24,31 @@ const PROGRAMS: &str = "programs/";
 pub enum Kind {
     Function,
     Struct,
+    Constant,
 }
 
-/// A public function or struct of a module.
+impl Kind {
+    /// One word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Function => "function",
+            Self::Struct => "struct",
+            Self::Constant => "constant",
+        }
+    }
+}
+
+/// A parameter of a function or a field of a struct.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Member {
+    pub name: String,
+    /// Type in WESL.
+    pub ty: String,
+    /// What it is, its range and unit; empty where nothing is said.
+    pub doc: String,
+}
+
+/// A public function, struct or constant of a module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Item {
     pub kind: Kind,
@@ -27,6 +61,10 @@ pub struct Item {
     pub wesl: String,
     /// Declaration in GLSL, without its body; `None` where the twin lacks it.
     pub glsl: Option<String>,
+    /// Parameters or fields, in order.
+    pub members: Vec<Member>,
+    /// Type of a function's result in WESL.
+    pub result: Option<String>,
 }
 
 impl Item {
@@ -40,12 +78,28 @@ impl Item {
         self.doc.iter().map(String::as_str).find(|line| !line.is_empty()).unwrap_or_default()
     }
 
-    /// The paragraph that begins with `NAME:`, without that word.
+    /// The paragraphs before the first section.
+    pub fn paragraphs(&self) -> Vec<String> {
+        let lines: Vec<String> = self.doc.iter().take_while(|line| !is_heading(line)).cloned().collect();
+        paragraphs(&lines)
+    }
+
+    /// The text under the heading `NAME:`, without that word.
     pub fn section(&self, name: &str) -> Option<String> {
         let start = self.doc.iter().position(|line| line.strip_prefix(name).is_some_and(|rest| rest.starts_with(':')))?;
         let rest = self.doc[start + 1..].iter().take_while(|line| !line.is_empty() && !is_heading(line));
         let first = self.doc[start][name.len() + 1..].trim();
         Some(std::iter::once(first).chain(rest.map(|line| line.trim())).collect::<Vec<_>>().join(" ").trim().to_owned())
+    }
+
+    /// What to write in WESL to use it.
+    pub fn import(&self) -> String {
+        format!("import lamplight::{};", self.path())
+    }
+
+    /// What to write in GLSL to use it.
+    pub fn include(&self) -> String {
+        format!("#include <lamplight/{}.glsl>", self.module.replace("::", "/"))
     }
 }
 
@@ -56,19 +110,44 @@ fn is_heading(line: &str) -> bool {
     SECTIONS.iter().any(|section| line.strip_prefix(section).is_some_and(|rest| rest.starts_with(':')))
 }
 
+/// Lines joined where no blank one is between them.
+fn paragraphs(lines: &[String]) -> Vec<String> {
+    let blocks = lines.split(|line| line.is_empty()).filter(|block| !block.is_empty());
+    blocks.map(|block| block.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")).collect()
+}
+
 /// A module of the library.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Module {
     /// Path below the package, `::` between its parts.
     pub path: String,
-    /// First line of the module's own comment.
-    pub summary: String,
+    /// Paragraphs of the module's own comment.
+    pub doc: Vec<String>,
     pub items: Vec<Item>,
+}
+
+impl Module {
+    /// The first sentence of the module's comment.
+    pub fn summary(&self) -> &str {
+        let first = self.doc.first().map_or("", String::as_str);
+        first.split_inclusive(". ").next().unwrap_or_default().trim_end()
+    }
+
+    /// How many items of a kind it has.
+    pub fn count(&self, kind: Kind) -> usize {
+        self.items.iter().filter(|item| item.kind == kind).count()
+    }
 }
 
 /// Every module of the embedded library, by path.
 pub fn library() -> Vec<Module> {
     modules(&Embedded)
+}
+
+/// The library's presets and light probes, each by name.
+pub fn examples(sources: &mut SourceSet, manifest: &Manifest) -> Result<(Vec<preset::Preset>, Vec<probe::Probe>), Diagnostics> {
+    let probes = probe::library(sources)?;
+    Ok((preset::library(sources, manifest, &probes)?, probes))
 }
 
 /// Every module of a package that has the library's layout.
@@ -82,13 +161,45 @@ fn module(files: &dyn Files, stem: &str) -> Option<Module> {
     let twin = files.read(&format!("{stem}.glsl")).ok().flatten().unwrap_or_default();
     let path = stem.replace('/', "::");
     let glsl = outline::glsl(&twin);
-    let items = outline::wesl(&text).into_iter().map(|found| Item {
+    let items = outline::wesl(&text).into_iter().map(|found| item(&path, found, &glsl));
+    Some(Module { doc: paragraphs(&outline::module_doc(&text)), items: items.collect(), path })
+}
+
+fn item(module: &str, found: outline::Declaration, glsl: &[outline::Declaration]) -> Item {
+    let twin = glsl.iter().find(|twin| twin.name == found.name && twin.kind == found.kind);
+    let mut item = Item {
         kind: found.kind,
-        module: path.clone(),
-        glsl: glsl.iter().find(|twin| twin.name == found.name).map(|twin| twin.declaration.clone()),
+        module: module.to_owned(),
+        glsl: twin.map(|twin| twin.declaration.clone()),
         name: found.name,
         doc: found.doc,
         wesl: found.declaration,
-    });
-    Some(Module { summary: outline::module_summary(&text), items: items.collect(), path })
+        members: found.members,
+        result: found.result,
+    };
+    describe_parameters(&mut item);
+    item
+}
+
+/// Gives each parameter the words that the section `Parameters` has for it.
+fn describe_parameters(item: &mut Item) {
+    let Some(section) = item.section(SECTIONS[0]) else { return };
+    for entry in section.trim_end_matches('.').split("; ") {
+        let (names, words) = described(entry);
+        for member in item.members.iter_mut().filter(|member| names.contains(&member.name)) {
+            member.doc = words.clone();
+        }
+    }
+}
+
+/// The names in backticks that an entry begins with, and what it says of them.
+fn described(entry: &str) -> (Vec<String>, String) {
+    let (mut names, mut rest) = (Vec::new(), entry.trim());
+    while let Some((name, after)) = rest.strip_prefix('`').and_then(|rest| rest.split_once('`')) {
+        names.push(name.to_owned());
+        let next = after.trim_start().trim_start_matches(',').trim_start();
+        let next = next.strip_prefix("and ").filter(|next| next.starts_with('`')).unwrap_or(next);
+        rest = next;
+    }
+    (names, rest.to_owned())
 }

@@ -1,6 +1,6 @@
 //! Declarations and their doc comments, at the top level of a module's text.
 
-use super::Kind;
+use super::{Kind, Member};
 
 /// A declaration without its body.
 pub struct Declaration {
@@ -8,22 +8,24 @@ pub struct Declaration {
     pub name: String,
     pub doc: Vec<String>,
     pub declaration: String,
+    pub members: Vec<Member>,
+    pub result: Option<String>,
 }
 
-/// Functions and structs of a WESL module that have a doc comment.
+/// Functions, structs and constants of a WESL module that have a doc comment.
 pub fn wesl(text: &str) -> Vec<Declaration> {
     declarations(text, wesl_name).into_iter().filter(|found| !found.doc.is_empty()).collect()
 }
 
-/// Functions and structs of a GLSL module.
+/// Functions, structs and constants of a GLSL module.
 pub fn glsl(text: &str) -> Vec<Declaration> {
     declarations(text, glsl_name)
 }
 
-/// First line of the comment that opens a module.
-pub fn module_summary(text: &str) -> String {
-    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
-    first.trim().trim_start_matches(['/', '!', ' ']).to_owned()
+/// The comment that opens a module, without its marks.
+pub fn module_doc(text: &str) -> Vec<String> {
+    let lines = text.lines().skip_while(|line| line.trim().is_empty()).map_while(|line| line.strip_prefix("//!"));
+    lines.map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end().to_owned()).collect()
 }
 
 type Naming = fn(&str) -> Option<(Kind, String)>;
@@ -32,15 +34,15 @@ fn declarations(text: &str, name: Naming) -> Vec<Declaration> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
     let mut depth = 0i32;
-    let mut lines = text.lines().enumerate();
-    while let Some((index, line)) = lines.next() {
+    let lines: Vec<&str> = text.lines().collect();
+    for (index, line) in lines.iter().enumerate() {
         if let Some(comment) = line.strip_prefix("///") {
             doc.push(comment.strip_prefix(' ').unwrap_or(comment).trim_end().to_owned());
             continue;
         }
         let named = if depth == 0 { name(line) } else { None };
         if let Some((kind, name)) = named {
-            found.push(Declaration { kind, name, doc: std::mem::take(&mut doc), declaration: declaration(kind, text, index) });
+            found.push(declaration(kind, name, std::mem::take(&mut doc), &lines[index..]));
         }
         doc.clear();
         depth += nesting(line);
@@ -48,14 +50,51 @@ fn declarations(text: &str, name: Naming) -> Vec<Declaration> {
     found
 }
 
-/// From the line to the body's brace, or for a struct to its closing one, in single spaces.
-fn declaration(kind: Kind, text: &str, line: usize) -> String {
-    let rest: Vec<&str> = text.lines().skip(line).map(without_comment).collect();
-    let rest = rest.join("\n");
-    match kind {
-        Kind::Function => single_spaced(rest.split('{').next().unwrap_or_default()),
-        Kind::Struct => rest.split_inclusive('}').next().unwrap_or_default().lines().filter(|line| !line.trim().is_empty()).collect::<Vec<_>>().join("\n"),
+fn declaration(kind: Kind, name: String, doc: Vec<String>, lines: &[&str]) -> Declaration {
+    let code = lines.iter().map(|line| without_comment(line)).collect::<Vec<_>>().join("\n");
+    let (declaration, members) = match kind {
+        Kind::Function => {
+            let head = single_spaced(code.split('{').next().unwrap_or_default());
+            let members = parameters(&head);
+            (head, members)
+        }
+        Kind::Struct => {
+            let body = code.split_inclusive('}').next().unwrap_or_default();
+            (body.lines().filter(|line| !line.trim().is_empty()).collect::<Vec<_>>().join("\n"), fields(lines))
+        }
+        Kind::Constant => (single_spaced(code.split_inclusive(';').next().unwrap_or_default()), Vec::new()),
+    };
+    let result = declaration.rsplit_once("-> ").filter(|_| kind == Kind::Function).map(|(_, ty)| ty.to_owned());
+    Declaration { kind, name, doc, members, result, declaration }
+}
+
+/// `name: type` of each parameter; a comma within brackets belongs to a type.
+fn parameters(head: &str) -> Vec<Member> {
+    let list = head.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map_or("", |(list, _)| list);
+    let mut depth = 0i32;
+    let parts = list.split(|letter: char| {
+        depth += i32::from(letter == '<') - i32::from(letter == '>');
+        letter == ',' && depth == 0
+    });
+    parts.filter_map(|part| member(part, Vec::new())).collect()
+}
+
+/// The fields of a struct with their doc comments, up to its closing brace.
+fn fields(lines: &[&str]) -> Vec<Member> {
+    let mut found = Vec::new();
+    let mut doc = Vec::new();
+    for line in lines.iter().skip(1).map(|line| line.trim()).take_while(|line| !line.starts_with('}')) {
+        match line.strip_prefix("///") {
+            Some(comment) => doc.push(comment.trim().to_owned()),
+            None => found.extend(member(without_comment(line).trim_end_matches(','), std::mem::take(&mut doc))),
+        }
     }
+    found
+}
+
+fn member(text: &str, doc: Vec<String>) -> Option<Member> {
+    let (name, ty) = text.split_once(':')?;
+    Some(Member { name: name.trim().to_owned(), ty: ty.trim().to_owned(), doc: doc.join(" ") })
 }
 
 fn single_spaced(text: &str) -> String {
@@ -72,17 +111,16 @@ fn nesting(line: &str) -> i32 {
 }
 
 fn wesl_name(line: &str) -> Option<(Kind, String)> {
-    let (kind, rest) = match (line.strip_prefix("fn "), line.strip_prefix("struct ")) {
-        (Some(rest), _) => (Kind::Function, rest),
-        (_, Some(rest)) => (Kind::Struct, rest),
-        _ => return None,
-    };
-    Some((kind, identifier(rest)))
+    let words = [("fn ", Kind::Function), ("struct ", Kind::Struct), ("const ", Kind::Constant)];
+    words.iter().find_map(|(word, kind)| Some((*kind, identifier(line.strip_prefix(word)?))))
 }
 
 fn glsl_name(line: &str) -> Option<(Kind, String)> {
     if let Some(rest) = line.strip_prefix("struct ") {
         return Some((Kind::Struct, identifier(rest)));
+    }
+    if let Some((_, name)) = line.strip_prefix("const ").and_then(|rest| rest.split_once(' ')) {
+        return Some((Kind::Constant, identifier(name)));
     }
     let (before, _) = line.split_once('(')?;
     let (result, name) = before.rsplit_once(' ')?;

@@ -127,7 +127,8 @@ fn fetch(get: &Get) -> Result<(), Failure> {
         return Ok(writeln!(stdout(), "{:#}", serde_json::json!({ "reflection": &*found.reflection, "native": &*found.native }))?);
     }
     match &get.out {
-        Some(path) => crate::output::write(path, &found.bytes).map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display()))),
+        Some(path) => crate::output::write(path, &found.bytes)
+            .map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display()))),
         None if get.target == Target::SPIRV && stdout().is_terminal() => Err(Failure::usage("SPIR-V is binary: name a file with `-o`")),
         None => Ok(stdout().write_all(&found.bytes)?),
     }

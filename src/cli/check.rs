@@ -9,12 +9,16 @@ use clap::Args;
 use super::failure::Failure;
 use super::input::LanguageName;
 use crate::compose::Language;
-use crate::harness::check::{Open, Report, failures, table};
+use crate::diagnostic::Diagnostics;
+use crate::harness::check::{Open, Options, Report, failures, stricter, table};
 use crate::harness::executors;
 use crate::harness::library::Library;
 use crate::harness::on_thread;
-use crate::project::{self, LIBRARY};
-use crate::source::{Disk, Embedded, SourceSet};
+use crate::harness::ratchet::FILE;
+use crate::output;
+use crate::project;
+use crate::report;
+use crate::source::{Disk, SourceSet};
 
 /// Run numeric cases and compare with their references.
 #[derive(Args)]
@@ -28,11 +32,25 @@ pub struct Arguments {
     /// Only one language [default: both].
     #[arg(long, value_enum)]
     lang: Option<LanguageName>,
+    /// Write a page with plots, JSON and JUnit into this folder.
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+    /// Lower the package's `tolerances.toml` to what was measured here.
+    #[arg(long)]
+    bless: bool,
+    /// With `--bless`, also raise it.
+    #[arg(long, requires = "bless")]
+    force: bool,
+    /// List the cases that state less than WGSL allows.
+    #[arg(long)]
+    spec: bool,
 }
 
 /// Case files of one package.
 struct Selection {
     library: Library,
+    /// Its root folder, unless it is the embedded library.
+    root: Option<PathBuf>,
     files: Vec<String>,
     languages: Vec<Language>,
 }
@@ -57,41 +75,118 @@ fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure>
     let mut report = Report::default();
     for selection in selections {
         let sources = Mutex::new(SourceSet::default());
-        let found = selection.library.check(&sources, &selection.files, &selection.languages, &mut sessions);
-        let found = found.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))?;
-        report.outcomes.extend(found.outcomes);
+        let found = one(selection, &sources, arguments, &mut sessions);
+        report.append(found.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))??);
     }
     write!(stdout(), "{}", table(&report))?;
+    print_spec(&report, arguments.spec)?;
     let passed = report.outcomes.iter().filter(|outcome| outcome.passed()).count();
     writeln!(stdout(), "{passed} of {} pass", report.outcomes.len())?;
+    if let Some(folder) = &arguments.report {
+        for form in report::ALL {
+            output::write(&folder.join(form.file), (form.text)(&report).as_bytes())?;
+        }
+    }
     if report.passed() { Ok(()) } else { Err(Failure::check(failures(&report))) }
 }
 
-fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
-    let languages = |files: &[String], has: &dyn Fn(&str) -> bool| match arguments.lang {
-        Some(language) => vec![language.into()],
-        None => [(Language::Wesl, "wesl"), (Language::Glsl, "glsl")]
-            .into_iter()
-            .filter(|(_, extension)| files.iter().all(|file| has(&file.replace(".toml", &format!(".{extension}"))) || (*extension == "wesl" && has(&file.replace(".toml", ".wgsl")))))
-            .map(|(language, _)| language)
-            .collect(),
+/// The check of one selection; with `--bless`, its package's recorded shares are lowered after it.
+fn one(
+    selection: &Selection,
+    sources: &Mutex<SourceSet>,
+    arguments: &Arguments,
+    sessions: &mut [Open],
+) -> Result<Result<Report, Failure>, Diagnostics> {
+    let library = &selection.library;
+    let ratchet = library.ratchet(sources)?;
+    let options = Options {
+        references: library.has_references(),
+        profile: arguments.report.is_some(),
+        prove: true,
+        ratchet: ratchet.as_ref().filter(|_| !arguments.bless),
     };
+    let report = library.check_with(sources, &selection.files, &selection.languages, sessions, &options)?;
+    if !arguments.bless {
+        return Ok(Ok(report));
+    }
+    let Some(root) = &selection.root else {
+        return Ok(Err(Failure::usage("`--bless` needs the package on disk, such as `lamplight check shaderlib --bless`")));
+    };
+    let mut ratchet = ratchet.unwrap_or_default();
+    ratchet.bless(&report, arguments.force);
+    Ok(output::write(&root.join(FILE), ratchet.text().as_bytes()).map(|()| report).map_err(Failure::from))
+}
+
+/// What is stated below WGSL's own bounds: no failure, since a backend may well do better.
+fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
+    let lines = stricter(report);
+    match (all, lines.lines().count()) {
+        (_, 0) => {}
+        (true, _) => write!(stdout(), "{lines}")?,
+        (false, count) => writeln!(stdout(), "{count} cases state less than WGSL allows for some input (`--spec` lists them)")?,
+    }
+    Ok(())
+}
+
+fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
     let (own, of_library): (Vec<&String>, Vec<&String>) = arguments.path.iter().partition(|path| Path::new(path).exists());
     let mut selections = Vec::new();
-    if own.is_empty() {
+    if own.is_empty() || !of_library.is_empty() {
         let library = Library::embedded();
         let files = library_files(&library, &of_library)?;
-        let both = languages(&files, &|_| true);
-        selections.push(Selection { library, files, languages: both });
+        let languages = LANGUAGES.iter().map(|(language, _)| *language).filter(|language| asked(arguments, *language)).collect();
+        selections.push(Selection { library, root: None, files, languages });
     }
     for path in own {
-        let (root, library) = package(Path::new(path))?;
-        for file in own_files(&library, Path::new(path), &root)? {
-            let present = languages(std::slice::from_ref(&file), &|name| root.join(name).is_file());
-            selections.push(Selection { library: library.clone(), files: vec![file], languages: present });
+        for file in case_files(Path::new(path))? {
+            add_own(&mut selections, &file, arguments)?;
         }
     }
     Ok(selections)
+}
+
+/// Each language with the extensions of its modules.
+const LANGUAGES: [(Language, &[&str]); 2] = [(Language::Wesl, &["wesl", "wgsl"]), (Language::Glsl, &["glsl"])];
+
+fn asked(arguments: &Arguments, language: Language) -> bool {
+    arguments.lang.is_none_or(|name| Language::from(name) == language)
+}
+
+/// Case files of the user's: the file itself, that of a module, or all below a folder.
+fn case_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
+    if path.is_dir() {
+        let disk = Disk::new(path).map_err(|error| unreadable(path, &error))?;
+        let found: Vec<PathBuf> = Library::new("", Arc::new(disk), Vec::new()).case_files().iter().map(|file| path.join(file)).collect();
+        let none = || Failure::input(format!("there is no case file in `{}`: cases are in a `.toml` beside a module", path.display()));
+        return if found.is_empty() { Err(none()) } else { Ok(found) };
+    }
+    let file = path.with_extension("toml");
+    if file.is_file() {
+        Ok(vec![file])
+    } else {
+        Err(Failure::input(format!("`{}` has no cases: they are in `{}`, beside the module", path.display(), file.display())))
+    }
+}
+
+/// Adds a case file to the selection of its package and its languages.
+fn add_own(selections: &mut Vec<Selection>, file: &Path, arguments: &Arguments) -> Result<(), Failure> {
+    let root = project::root_of(file);
+    let path = project::relative(file, &root).map_err(|diagnostic| Failure::input(diagnostic.message))?;
+    let present = |extensions: &[&str]| extensions.iter().any(|extension| file.with_extension(extension).is_file());
+    let languages: Vec<Language> = LANGUAGES
+        .iter()
+        .filter(|(language, extensions)| asked(arguments, *language) && present(extensions))
+        .map(|(language, _)| *language)
+        .collect();
+    if languages.is_empty() {
+        return Err(Failure::input(format!("`{}` has no module beside it", file.display())));
+    }
+    let same = |selection: &&mut Selection| selection.root.as_ref() == Some(&root) && selection.languages == languages;
+    match selections.iter_mut().find(same) {
+        Some(selection) => selection.files.push(path),
+        None => selections.push(Selection { library: package(&root)?, root: Some(root), files: vec![path], languages }),
+    }
+    Ok(())
 }
 
 fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Failure> {
@@ -103,7 +198,8 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
     for path in asked {
         let wanted = path.trim_start_matches("lamplight::").replace("::", "/");
         let stem = |file: &str| file.trim_end_matches(".toml").to_owned();
-        let matching: Vec<String> = files.iter().filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/"))).cloned().collect();
+        let matching: Vec<String> =
+            files.iter().filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/"))).cloned().collect();
         if matching.is_empty() {
             return Err(Failure::input(format!("`{path}` is no file, and no module of the library with numeric cases")));
         }
@@ -112,22 +208,16 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
     Ok(found)
 }
 
-/// The package that a file or folder of the user's belongs to.
-fn package(path: &Path) -> Result<(PathBuf, Library), Failure> {
-    let root = if path.is_dir() { path.to_owned() } else { project::root_of(path) };
-    let disk = Disk::new(&root).map_err(|error| Failure::input(format!("cannot read `{}`: {error}", root.display())))?;
-    let dependencies = vec![(LIBRARY.to_owned(), Arc::new(Embedded) as Arc<dyn crate::source::Files>)];
-    Ok((root, Library::new("package", Arc::new(disk), dependencies)))
+/// The user's package with what it may import.
+fn package(root: &Path) -> Result<Library, Failure> {
+    let mut sources = SourceSet::default();
+    let packages = project::packages(root, &mut sources).map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+    let name = project::declared_name(root).unwrap_or(packages.root.name);
+    let dependencies = packages.dependencies.into_iter().filter(|package| package.name != name);
+    let dependencies = dependencies.map(|package| (package.name, Arc::from(package.files))).collect();
+    Ok(Library::new(&name, Arc::from(packages.root.files), dependencies))
 }
 
-fn own_files(library: &Library, path: &Path, root: &Path) -> Result<Vec<String>, Failure> {
-    let files = library.case_files();
-    if path.is_dir() {
-        return Ok(files);
-    }
-    let name = project::relative(path, root).map_err(|diagnostic| Failure::input(diagnostic.message))?;
-    if !name.ends_with(".toml") {
-        return Err(Failure::input(format!("`{}` is no case file: cases are in the `.toml` beside a module", path.display())));
-    }
-    Ok(vec![name])
+fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::input(format!("cannot read `{}`: {error}", path.display()))
 }

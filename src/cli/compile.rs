@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::failure::{DiagnosticForm, Failure};
+use super::failure::{DiagnosticForm, Failure, warn};
 use super::input::{Input, Ready};
 use crate::bundle::Target;
-use crate::diagnostic::{Diagnostics, nearest};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest};
 use crate::emit::{self, Emitted, targets};
 use crate::output;
-use crate::validate::validate;
+use crate::validate::{self, validate};
 
 /// Compose, validate and write one shader, a file for each entry point and target.
 #[derive(Args)]
@@ -42,12 +42,12 @@ struct File {
 }
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let Ready { project, composed } = arguments.input.compose(form)?;
-    let files = validate(&composed).and_then(|validated| files(&validated, &arguments));
-    let files = files.map_err(|diagnostics| Failure::Input(project.sources, diagnostics))?;
-    if files.is_empty() {
-        return Err(Failure::input(format!("`{}` has no entry point", arguments.input.file.display())));
-    }
+    let Ready { project, composed, context } = arguments.input.compose(form)?;
+    let files = validate(&composed).and_then(|validated| {
+        warn(&project.sources, &context.own(validate::lint(&composed, &validated)), form);
+        files(&validated, &arguments)
+    });
+    let files = files.map_err(|diagnostics| Failure::Input(project.sources, context.explain(diagnostics)))?;
     match &arguments.out {
         Some(folder) => write(&files, folder),
         None => print(&files),
@@ -58,6 +58,10 @@ fn files(validated: &crate::validate::Validated, arguments: &Arguments) -> Resul
     let stem = arguments.input.file.file_name().unwrap_or_default().to_string_lossy();
     let stem = stem.split('.').next().unwrap_or_default();
     let mut files = Vec::new();
+    if validated.module.entry_points.is_empty() {
+        let message = format!("`{}` has no entry point", arguments.input.file.display());
+        return Err(vec![Diagnostic::error(codes::NO_ENTRY_POINT, message)]);
+    }
     for point in &validated.module.entry_points {
         let isolated = emit::isolate(validated, &point.name)?;
         for &target in &arguments.target {

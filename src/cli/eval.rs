@@ -28,7 +28,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    on_thread(|| evaluate_all(&arguments, form)).unwrap_or_else(|| Err(Failure::environment("the evaluation stopped with an internal error")))
+    on_thread(|| evaluate_all(&arguments, form))
+        .unwrap_or_else(|| Err(Failure::environment("the evaluation stopped with an internal error")))
 }
 
 fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {

@@ -46,11 +46,19 @@ impl Failure {
                 ExitCode::from(1)
             }
             Self::Message(code, message) => {
-                let _ = writeln!(io::stderr(), "error: {message}");
+                let _ = match form {
+                    DiagnosticForm::Json => writeln!(io::stderr(), "{}", message_as_json(&message)),
+                    DiagnosticForm::Human | DiagnosticForm::Short => writeln!(io::stderr(), "error: {message}"),
+                };
                 ExitCode::from(code)
             }
         }
     }
+}
+
+/// What has neither code nor place, in the form of what has.
+fn message_as_json(message: &str) -> serde_json::Value {
+    serde_json::json!({ "severity": "error", "code": null, "message": message, "labels": [], "notes": [] })
 }
 
 /// A pipe that was closed by its reader ends the command in peace; any other failure is told.

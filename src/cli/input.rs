@@ -9,7 +9,7 @@ use crate::compose::{self, Composed, Keep, Language, Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Program, Quoted, Setting, Settings, key};
 use crate::project::{self, Project};
-use crate::resolve;
+use crate::resolve::{self, Graph};
 use crate::source::{SourceSet, Span};
 
 /// A root module with its settings.
@@ -24,10 +24,10 @@ pub struct Input {
     #[arg(long, value_enum)]
     lang: Option<LanguageName>,
     /// Choose an axis's value.
-    #[arg(long, value_name = "AXIS=VALUE", value_parser = axis_value)]
+    #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
     set: Vec<(String, Setting)>,
     /// Turn a feature on, or off with `=false`.
-    #[arg(long, value_name = "NAME[=BOOL]", value_parser = feature)]
+    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = feature)]
     feature: Vec<(String, Setting)>,
     /// How imported items are named.
     #[arg(long, value_enum, default_value_t)]
@@ -64,13 +64,18 @@ enum MangleName {
 
 fn axis_value(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').ok_or("expected AXIS=VALUE")?;
-    Ok((name.to_owned(), Setting::parse(value)))
+    Ok((named(name)?, Setting::parse(value)))
+}
+
+fn named(name: &str) -> Result<String, String> {
+    let fits = name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric()) && !name.starts_with(|c: char| c.is_ascii_digit());
+    if fits && !name.is_empty() { Ok(name.to_owned()) } else { Err(format!("`{name}` is not a name of letters, digits and `_`")) }
 }
 
 fn feature(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').unwrap_or((text, "true"));
     match Setting::parse(value) {
-        value @ Setting::Bool(_) => Ok((name.to_owned(), value)),
+        value @ Setting::Bool(_) => Ok((named(name)?, value)),
         _ => Err(format!("a feature is `true` or `false`, not `{value}`")),
     }
 }
@@ -79,40 +84,106 @@ fn feature(text: &str) -> Result<(String, Setting), String> {
 pub struct Ready {
     pub project: Project,
     pub composed: Composed,
+    pub context: Context,
+}
+
+/// What an error of a composed text is told with.
+pub struct Context {
+    graph: Graph,
+    permutation: Option<String>,
+}
+
+impl Context {
+    /// Warnings with the permutation, those aside that only a dependency's author can mend.
+    pub fn own(&self, warnings: Diagnostics) -> Diagnostics {
+        of_permutation(self.graph.own(warnings), self.permutation.as_deref())
+    }
+
+    /// With the chain of imports that led there, and the permutation.
+    pub fn explain(&self, diagnostics: Diagnostics) -> Diagnostics {
+        of_permutation(self.graph.traced(diagnostics), self.permutation.as_deref())
+    }
+}
+
+fn of_permutation(diagnostics: Diagnostics, permutation: Option<&str>) -> Diagnostics {
+    let one = |diagnostic: Diagnostic| permutation.into_iter().fold(diagnostic, Diagnostic::note);
+    diagnostics.into_iter().map(one).collect()
+}
+
+/// The settings of a composition, as chosen.
+struct Chosen {
+    settings: Settings,
+    /// A note that names them.
+    permutation: Option<String>,
+    /// The axes come from a manifest.
+    declared: bool,
+    /// Their names.
+    axes: Vec<String>,
+    warnings: Diagnostics,
 }
 
 impl Input {
     /// Opens the package, chooses the settings and composes.
     pub fn compose(&self, form: DiagnosticForm) -> Result<Ready, Failure> {
+        self.check_usage()?;
+        let language = self.language()?;
         let root = self.root.clone().unwrap_or_else(|| project::root_of(&self.file));
-        let mut project = project::open(&root, SourceSet::default()).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
-        match self.compose_in(&mut project, &root) {
-            Ok(composed) => {
+        let mut project =
+            project::open(&root, SourceSet::default()).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
+        match self.compose_in(&mut project, &root, language) {
+            Ok((composed, context)) => {
                 warn(&project.sources, &composed.warnings, form);
-                Ok(Ready { project, composed })
+                Ok(Ready { project, composed, context })
             }
             Err(diagnostics) => Err(Failure::Input(project.sources, diagnostics)),
         }
     }
 
-    fn compose_in(&self, project: &mut Project, root: &Path) -> Result<Composed, Diagnostics> {
+    fn compose_in(&self, project: &mut Project, root: &Path, language: Language) -> Result<(Composed, Context), Diagnostics> {
         let path = project::relative(&self.file, root).map_err(|diagnostic| vec![diagnostic])?;
-        let (settings, mut warnings) = self.settings(project, root, &path)?;
-        let graph = resolve::load(&mut project.sources, &project.packages, &path, self.language())?;
-        let mut composed = compose::compose(&graph, &settings, &self.options())?;
-        warnings.append(&mut composed.warnings);
-        composed.warnings = warnings;
-        Ok(composed)
+        let mut chosen = self.settings(project, root, &path)?;
+        let graph = resolve::load(&mut project.sources, &project.packages, &path, language)?;
+        let mut composed = compose::compose(&graph, &chosen.settings, &self.options())
+            .map_err(|errors| of_permutation(errors, chosen.permutation.as_deref()))?;
+        chosen.warnings.extend(self.unused(&graph, &chosen.axes));
+        if chosen.declared {
+            chosen.warnings.extend(graph.undeclared(&chosen.settings));
+        }
+        chosen.warnings.append(&mut composed.warnings);
+        composed.warnings = chosen.warnings;
+        Ok((composed, Context { graph, permutation: chosen.permutation }))
     }
 
     /// The language asked for, or else what the extension says.
-    pub fn language(&self) -> Language {
-        let glsl = self.file.extension().is_some_and(|extension| ["glsl", "vert", "frag", "comp"].iter().any(|known| extension == *known));
-        match (self.lang, glsl) {
-            (Some(name), _) => name.into(),
-            (None, true) => Language::Glsl,
-            (None, false) => Language::Wesl,
+    pub fn language(&self) -> Result<Language, Failure> {
+        let extension = self.file.extension().map(|extension| extension.to_string_lossy().into_owned()).unwrap_or_default();
+        match (self.lang, extension.as_str()) {
+            (Some(name), _) => Ok(name.into()),
+            (None, "glsl" | "vert" | "frag" | "comp") => Ok(Language::Glsl),
+            (None, "wesl" | "wgsl") => Ok(Language::Wesl),
+            (None, _) if self.file.is_dir() => Ok(Language::Wesl),
+            (None, _) => Err(Failure::usage(format!("the name of `{}` does not tell its language: add `--lang`", self.file.display()))),
         }
+    }
+
+    /// What is chosen twice is a slip, whichever is meant.
+    fn check_usage(&self) -> Result<(), Failure> {
+        let mut names: Vec<&str> = self.chosen().map(|(name, _)| name.as_str()).collect();
+        names.sort_unstable();
+        match names.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(Failure::usage(format!("`{}` is chosen twice", pair[0]))),
+            None => Ok(()),
+        }
+    }
+
+    fn chosen(&self) -> impl Iterator<Item = &(String, Setting)> {
+        self.set.iter().chain(&self.feature)
+    }
+
+    /// Settings of the command line that are no axes and that nothing can ask for.
+    fn unused(&self, graph: &Graph, axes: &[String]) -> Diagnostics {
+        let unused = self.chosen().filter(|(name, _)| !axes.contains(name) && !graph.may_ask(name));
+        unused.map(|(name, _)| Diagnostic::warning(codes::UNUSED_SETTING, format!("nothing asks for `{name}`"))).collect()
     }
 
     fn options(&self) -> Options {
@@ -125,21 +196,29 @@ impl Input {
 
     /// What the command line chooses, over the defaults of the program that the file belongs to
     /// where the package's manifest has one.
-    fn settings(&self, project: &mut Project, root: &Path, path: &str) -> Result<(Settings, Diagnostics), Diagnostics> {
+    fn settings(&self, project: &mut Project, root: &Path, path: &str) -> Result<Chosen, Diagnostics> {
         let manifest = project::manifest(root, &mut project.sources)?;
-        let program = manifest.as_ref().and_then(|manifest| manifest.programs.iter().find(|program| program.files().any(|file| file.path == path)));
-        let (mut settings, warnings) = match program {
-            Some(program) => self.assignment(program, &mut project.sources)?,
-            None => (Settings { values: self.set.iter().cloned().collect(), ..Settings::default() }, Vec::new()),
-        };
-        settings.values.extend(self.feature.iter().cloned());
-        Ok((settings, warnings))
+        let program =
+            manifest.as_ref().and_then(|manifest| manifest.programs.iter().find(|program| program.files().any(|file| file.path == path)));
+        match program {
+            Some(program) => self.of_program(program, &mut project.sources),
+            None => Ok(self.free()),
+        }
     }
 
-    /// The point of the program's space that `--set` names; broken constraints are warnings, since
-    /// the composition has a meaning all the same.
-    fn assignment(&self, program: &Program, sources: &mut SourceSet) -> Result<(Settings, Diagnostics), Diagnostics> {
-        let parts: Vec<String> = self.set.iter().map(|(axis, value)| format!("{axis}={value}")).collect();
+    fn free(&self) -> Chosen {
+        let settings = Settings { values: self.chosen().cloned().collect(), ..Settings::default() };
+        let parts: Vec<String> = settings.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let permutation = (!parts.is_empty()).then(|| format!("with the settings `{}`", parts.join(",")));
+        Chosen { settings, permutation, declared: false, axes: Vec::new(), warnings: Vec::new() }
+    }
+
+    /// The point of the program's space that the options name; broken constraints are warnings,
+    /// since the composition has a meaning all the same. A feature that is no axis is one more flag.
+    fn of_program(&self, program: &Program, sources: &mut SourceSet) -> Result<Chosen, Diagnostics> {
+        let is_axis = |name: &str| program.space.axis(name).is_some();
+        let features = self.feature.iter().filter(|(name, _)| is_axis(name));
+        let parts: Vec<String> = self.set.iter().chain(features).map(|(axis, value)| format!("{axis}={value}")).collect();
         let id = sources.add("--set", parts.join(","));
         let point = key::parse(&program.space, &Quoted::whole(sources, id))?;
         let span = Span::new(id, 0..sources.get(id).text.len());
@@ -147,6 +226,10 @@ impl Input {
             let warning = Diagnostic::warning(codes::INVALID_KEY, format!("program `{}` has no such permutation", program.name));
             warning.at(span, "these values").at(constraint.span, "break this constraint")
         });
-        Ok((program.space.settings(&point), broken.collect()))
+        let mut settings = program.space.settings(&point);
+        settings.values.extend(self.feature.iter().filter(|(name, _)| !is_axis(name)).cloned());
+        let permutation = Some(format!("in permutation `{}` of program `{}`", program.space.key(&point), program.name));
+        let axes = program.space.axes().iter().map(|axis| axis.name.clone()).collect();
+        Ok(Chosen { settings, permutation, declared: true, axes, warnings: broken.collect() })
     }
 }

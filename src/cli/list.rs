@@ -6,10 +6,13 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::failure::Failure;
-use crate::catalogue::{self, Item};
+use super::text;
+use crate::catalogue::{self, Kind, probe};
 use crate::emit::targets;
 use crate::harness::executors;
+use crate::permute::{Manifest, Setting};
 use crate::project;
+use crate::source::SourceSet;
 
 /// List what the library and the tools offer.
 #[derive(Args)]
@@ -17,7 +20,7 @@ pub struct Arguments {
     /// What to list.
     #[arg(value_enum, default_value_t)]
     what: What,
-    /// As a JSON array of objects.
+    /// As a JSON array of objects, which have more than the table.
     #[arg(long)]
     json: bool,
 }
@@ -27,88 +30,139 @@ enum What {
     Modules,
     #[default]
     Functions,
+    Structs,
+    Constants,
     Programs,
     Axes,
+    Presets,
+    Probes,
     Targets,
     Executors,
 }
 
-/// A table: its columns, and a row of texts for each thing.
+/// Things, each an object; the table shows some of their keys, the last one wrapped.
 struct Table {
-    columns: &'static [&'static str],
-    rows: Vec<Vec<String>>,
+    shown: &'static [&'static str],
+    things: Vec<Value>,
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let table = match arguments.what {
         What::Modules => modules(),
-        What::Functions => functions(),
+        What::Functions => items(Kind::Function, &["function", "summary"]),
+        What::Structs => items(Kind::Struct, &["struct", "summary"]),
+        What::Constants => items(Kind::Constant, &["constant", "wesl", "summary"]),
         What::Programs => programs()?,
         What::Axes => axes()?,
+        What::Presets => presets()?,
+        What::Probes => probes()?,
         What::Targets => targets(),
         What::Executors => executors(),
     };
-    let text = if arguments.json { as_json(&table) } else { as_text(&table) };
+    let text = if arguments.json { format!("{:#}\n", Value::Array(table.things)) } else { as_text(&table) };
     Ok(stdout().write_all(text.as_bytes())?)
 }
 
 fn modules() -> Table {
-    let rows = catalogue::library().into_iter().map(|module| vec![module.path, module.items.len().to_string(), module.summary]);
-    Table { columns: &["module", "items", "summary"], rows: rows.collect() }
+    let thing = |module: catalogue::Module| {
+        json!({
+            "module": module.path,
+            "functions": module.count(Kind::Function),
+            "structs": module.count(Kind::Struct),
+            "constants": module.count(Kind::Constant),
+            "summary": module.summary(),
+        })
+    };
+    Table { shown: &["module", "functions", "structs", "summary"], things: catalogue::library().into_iter().map(thing).collect() }
 }
 
-fn functions() -> Table {
-    let rows = catalogue::library().into_iter().flat_map(|module| module.items).filter(|item| item.kind == catalogue::Kind::Function);
-    Table { columns: &["function", "summary"], rows: rows.map(|item: Item| vec![item.path(), item.summary().to_owned()]).collect() }
+fn items(kind: Kind, shown: &'static [&'static str]) -> Table {
+    let items = catalogue::library().into_iter().flat_map(|module| module.items).filter(|item| item.kind == kind);
+    let thing = |item: catalogue::Item| {
+        json!({
+            kind.name(): item.path(),
+            "summary": item.summary(),
+            "wesl": item.wesl,
+            "glsl": item.glsl,
+            "import": item.import(),
+            "include": item.include(),
+        })
+    };
+    Table { shown, things: items.map(thing).collect() }
 }
 
 fn programs() -> Result<Table, Failure> {
-    let rows = manifest()?.programs.into_iter().map(|program| {
-        let targets: Vec<&str> = program.targets.iter().map(|target| target.name()).collect();
-        vec![program.name.clone(), program.space.axes().len().to_string(), targets.join(" "), program.doc.clone().unwrap_or_default()]
+    let things = manifest()?.1.programs.into_iter().map(|program| {
+        json!({
+            "program": program.name,
+            "axes": program.space.axes().len(),
+            "permutations": count(program.space.count()),
+            "targets": program.targets.iter().map(|target| target.name()).collect::<Vec<_>>(),
+            "files": program.files().map(|file| file.path.clone()).collect::<Vec<_>>(),
+            "summary": program.doc,
+        })
     });
-    Ok(Table { columns: &["program", "axes", "targets", "summary"], rows: rows.collect() })
+    Ok(Table { shown: &["program", "axes", "permutations", "targets"], things: things.collect() })
 }
 
 fn axes() -> Result<Table, Failure> {
-    let mut rows = Vec::new();
-    for program in manifest()?.programs {
-        for axis in program.space.axes() {
-            let default = axis.values[axis.default].to_string();
-            let cells = [program.name.clone(), axis.name.clone(), axis.mode.name().to_owned(), default, axis.value_names().join(" ")];
-            rows.push(cells.into_iter().chain([axis.doc.clone().unwrap_or_default()]).collect());
-        }
-    }
-    Ok(Table { columns: &["program", "axis", "mode", "default", "values", "summary"], rows })
+    let programs = manifest()?.1.programs;
+    let things = programs.iter().flat_map(|program| program.space.axes().iter().map(|axis| super::show::axis_json(&program.name, axis)));
+    Ok(Table { shown: &["program", "axis", "mode", "default", "values"], things: things.collect() })
 }
 
-fn manifest() -> Result<crate::permute::Manifest, Failure> {
-    let library = project::library_manifest();
-    library.map(|(_, manifest)| manifest).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))
+fn presets() -> Result<Table, Failure> {
+    let (mut sources, manifest) = manifest()?;
+    let (presets, _) = catalogue::examples(&mut sources, &manifest).map_err(|problems| Failure::Input(sources, problems))?;
+    let things = presets.iter().map(super::show::preset_json).collect();
+    Ok(Table { shown: &["preset", "program", "scene", "key"], things })
+}
+
+fn probes() -> Result<Table, Failure> {
+    let mut sources = SourceSet::default();
+    let probes = probe::library(&mut sources).map_err(|problems| Failure::Input(sources, problems))?;
+    Ok(Table { shown: &["probe", "title"], things: probes.iter().map(super::show::probe_json).collect() })
+}
+
+fn manifest() -> Result<(SourceSet, Manifest), Failure> {
+    project::library_manifest().map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))
 }
 
 fn targets() -> Table {
-    let rows = targets::ALL.iter().map(|entry| vec![entry.target.name().to_owned(), entry.extension.to_owned(), entry.about.to_owned()]);
-    Table { columns: &["target", "extension", "summary"], rows: rows.collect() }
+    let things =
+        targets::ALL.iter().map(|entry| json!({ "target": entry.target.name(), "extension": entry.extension, "summary": entry.about }));
+    Table { shown: &["target", "extension", "summary"], things: things.collect() }
 }
 
 fn executors() -> Table {
-    let rows = executors::ALL.iter().map(|entry| vec![entry.name.to_owned(), entry.needs.join(" "), entry.about.to_owned()]);
-    Table { columns: &["executor", "needs", "summary"], rows: rows.collect() }
+    let things = executors::ALL.iter().map(|entry| json!({ "executor": entry.name, "needs": entry.needs, "summary": entry.about }));
+    Table { shown: &["executor", "summary", "needs"], things: things.collect() }
 }
 
-fn as_json(table: &Table) -> String {
-    let row = |row: &Vec<String>| table.columns.iter().zip(row).map(|(column, cell)| ((*column).to_owned(), json!(cell))).collect();
-    let rows: Vec<Value> = table.rows.iter().map(|cells| Value::Object(row(cells))).collect();
-    format!("{:#}\n", Value::Array(rows))
+/// A count as a number, or as text beyond what JSON's readers keep exact.
+pub fn count(count: u128) -> Value {
+    u64::try_from(count).map_or_else(|_| json!(count.to_string()), |count| json!(count))
+}
+
+/// A value of an axis, as what it is.
+pub fn setting(setting: &Setting) -> Value {
+    match setting {
+        Setting::Bool(value) => json!(value),
+        Setting::Int(value) => json!(value),
+        Setting::Name(name) => json!(name),
+    }
 }
 
 fn as_text(table: &Table) -> String {
-    let width = |column: usize| table.rows.iter().map(|row| row[column].chars().count()).chain([table.columns[column].len()]).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..table.columns.len()).map(width).collect();
-    let line = |cells: Vec<&str>| {
-        let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}"));
-        padded.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
-    };
-    std::iter::once(table.columns.to_vec()).chain(table.rows.iter().map(|row| row.iter().map(String::as_str).collect())).map(line).collect()
+    let rows: Vec<Vec<String>> = table.things.iter().map(|thing| table.shown.iter().map(|key| cell(&thing[key])).collect()).collect();
+    text::table(table.shown, &rows)
+}
+
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Array(values) => values.iter().map(cell).collect::<Vec<_>>().join(" "),
+        other => other.to_string(),
+    }
 }

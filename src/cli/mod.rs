@@ -4,6 +4,7 @@
 //! comparison failed, 4 the environment lacks something.
 
 mod bundle;
+mod catalogue;
 mod check;
 mod compile;
 mod compose;
@@ -12,10 +13,13 @@ mod explain;
 mod failure;
 mod generate;
 mod input;
+mod keys;
 mod list;
 mod merge;
+mod mutate;
 mod progress;
 mod show;
+mod text;
 mod variants;
 mod watch;
 mod work;
@@ -48,8 +52,12 @@ enum Command {
     Variants(variants::Arguments),
     Watch(watch::Arguments),
     Bundle(bundle::Arguments),
+    Keys(keys::Arguments),
     Eval(eval::Arguments),
     Check(check::Arguments),
+    Catalogue(catalogue::Arguments),
+    #[command(hide = true)]
+    Mutate(mutate::Arguments),
     Explain(explain::Arguments),
 }
 
@@ -73,8 +81,11 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Variants(arguments) => variants::run(arguments, form),
         Command::Watch(arguments) => watch::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
+        Command::Keys(arguments) => keys::run(arguments, form),
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
+        Command::Catalogue(arguments) => catalogue::run(arguments),
+        Command::Mutate(arguments) => mutate::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
     }
 }

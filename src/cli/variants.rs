@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::progress::Bar;
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostics, nearest};
 use crate::generate::{self, Discard, Request, Tools};
 use crate::permute::report::{Report, StageCount, report};
 use crate::permute::{Manifest, Program};
@@ -105,7 +105,11 @@ fn compose(
 }
 
 fn keys(manifest: &Manifest, name: &str) -> Result<(), Failure> {
-    let program = manifest.program(name).ok_or_else(|| Failure::input(format!("the manifest declares no program `{name}`")))?;
+    let program = manifest.program(name).ok_or_else(|| {
+        let known = manifest.programs.iter().map(|program| program.name.as_str());
+        let hint = nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        Failure::input(format!("the manifest declares no program `{name}`{hint}"))
+    })?;
     let mut out = std::io::BufWriter::new(stdout().lock());
     for point in program.space.enumerate() {
         writeln!(out, "{}", program.space.key(&point))?;

@@ -3,6 +3,7 @@
 //! Adding a diagnostic is adding a Markdown file to `codes/`: its name is the code, its first
 //! line the title, the rest what `lamplight explain` prints.
 
+mod excerpt;
 pub mod render;
 
 use crate::source::Span;
@@ -89,13 +90,22 @@ impl Diagnostic {
     }
 }
 
+/// Characters of a name from which on it is no slip of the finger.
+const LONGEST_MISSPELT: usize = 100;
+
 /// The known name nearest to a misspelt one; ties go to the alphabetically first.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let allowed = 1 + wrong.chars().count() / 4;
+    let length = wrong.chars().count();
+    if length > LONGEST_MISSPELT {
+        return None;
+    }
+    // A name that shares no letter with another is not a misspelling of it.
+    let allowed = (1 + length / 4).min(length.saturating_sub(1));
     known
         .into_iter()
+        .filter(|name| *name != wrong && name.chars().count().abs_diff(length) <= allowed)
         .map(|name| (strsim::damerau_levenshtein(wrong, name), name))
-        .filter(|(distance, name)| *distance <= allowed && *name != wrong)
+        .filter(|(distance, _)| *distance <= allowed)
         .min()
         .map(|(_, name)| name)
 }

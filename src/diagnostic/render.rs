@@ -1,11 +1,11 @@
 //! Diagnostics as text for people, one line each, or JSON. Alone in knowing codespan-reporting.
 
 use codespan_reporting::diagnostic as codespan;
-use codespan_reporting::files::SimpleFiles;
 use codespan_reporting::term;
 
-use super::{Diagnostic, Severity};
-use crate::source::SourceSet;
+use super::excerpt::{Excerpts, tidy};
+use super::{Diagnostic, Severity, codes};
+use crate::source::{SourceSet, Span};
 
 /// How diagnostics are printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,44 +19,52 @@ pub enum Form {
     Json,
 }
 
+/// Diagnostics printed in one go: what comes after says no more.
+const SHOWN: usize = 100;
+
 /// The diagnostics in one of the forms, without colour, ending in a newline.
+///
+/// After a hundred of them only their number is told.
 pub fn render(sources: &SourceSet, diagnostics: &[Diagnostic], form: Form) -> String {
-    match form {
-        Form::Human => human(sources, diagnostics),
-        Form::Short => diagnostics.iter().map(|diagnostic| short(sources, diagnostic) + "\n").collect(),
-        Form::Json => diagnostics.iter().map(|diagnostic| json(sources, diagnostic).to_string() + "\n").collect(),
-    }
+    let one = |diagnostic: &Diagnostic| match form {
+        Form::Human => human(sources, diagnostic),
+        Form::Short => short(sources, diagnostic) + "\n",
+        Form::Json => json(sources, diagnostic).to_string() + "\n",
+    };
+    let shown = diagnostics.iter().take(SHOWN).map(one);
+    shown.chain(rest(diagnostics).map(|diagnostic| one(&diagnostic))).collect()
 }
 
-fn human(sources: &SourceSet, diagnostics: &[Diagnostic]) -> String {
-    let mut files = SimpleFiles::new();
-    for (_, source) in sources.iter() {
-        files.add(source.path.clone(), source.text.to_string());
-    }
+fn rest(diagnostics: &[Diagnostic]) -> Option<Diagnostic> {
+    let hidden = diagnostics.get(SHOWN..).filter(|hidden| !hidden.is_empty())?;
+    let severity = hidden.iter().map(|diagnostic| diagnostic.severity).min()?;
+    Some(Diagnostic { severity, ..Diagnostic::error(codes::NOT_SHOWN, format!("{} more are not shown", hidden.len())) })
+}
+
+fn human(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
+    let spans: Vec<Span> = diagnostic.labels.iter().map(|label| label.span).collect();
+    let excerpts = Excerpts::new(sources, &spans);
     let mut text = String::new();
-    for diagnostic in diagnostics {
-        // Writing to a string fails only for spans outside the files; then the short form serves.
-        if term::emit_to_string(&mut text, &term::Config::default(), &files, &to_codespan(diagnostic)).is_err() {
-            text.push_str(&short(sources, diagnostic));
-            text.push('\n');
-        }
+    // Writing to a string fails only for spans outside the files; then the short form serves.
+    match term::emit_to_string(&mut text, &term::Config::default(), &excerpts, &to_codespan(diagnostic, &excerpts)) {
+        Ok(()) => text,
+        Err(_) => short(sources, diagnostic) + "\n",
     }
-    text
 }
 
-fn to_codespan(diagnostic: &Diagnostic) -> codespan::Diagnostic<usize> {
+fn to_codespan(diagnostic: &Diagnostic, excerpts: &Excerpts<'_>) -> codespan::Diagnostic<usize> {
     let labels = diagnostic.labels.iter().enumerate().map(|(index, label)| {
         let style = if index == 0 { codespan::LabelStyle::Primary } else { codespan::LabelStyle::Secondary };
-        codespan::Label::new(style, label.span.source.0 as usize, label.span.range()).with_message(&label.message)
+        codespan::Label::new(style, label.span.source.0 as usize, excerpts.range(label.span)).with_message(tidy(&label.message))
     });
     codespan::Diagnostic::new(match diagnostic.severity {
         Severity::Error => codespan::Severity::Error,
         Severity::Warning => codespan::Severity::Warning,
     })
     .with_code(diagnostic.code.name)
-    .with_message(&diagnostic.message)
+    .with_message(tidy(&diagnostic.message))
     .with_labels(labels.collect())
-    .with_notes(diagnostic.notes.clone())
+    .with_notes(diagnostic.notes.iter().map(|note| tidy(note)).collect())
 }
 
 fn short(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
@@ -64,7 +72,7 @@ fn short(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
         let (line, column) = sources.position(label.span.source, label.span.start as usize);
         format!("{}:{line}:{column}: ", sources.get(label.span.source).path)
     });
-    format!("{place}{}[{}]: {}", severity_name(diagnostic.severity), diagnostic.code.name, diagnostic.message)
+    tidy(&format!("{place}{}[{}]: {}", severity_name(diagnostic.severity), diagnostic.code.name, diagnostic.message.replace('\n', " ")))
 }
 
 fn json(sources: &SourceSet, diagnostic: &Diagnostic) -> serde_json::Value {

@@ -14,6 +14,7 @@ mod isolate;
 mod names;
 mod reflect;
 mod slots;
+mod specialise;
 
 pub use isolate::{fingerprint, isolate};
 pub use reflect::reflect;
@@ -68,7 +69,8 @@ pub struct Emitted {
     pub native: Native,
 }
 
-/// Writes one entry point for one target; overrides become their defaults, except in WGSL.
+/// Writes one entry point for one target. Overrides stay open: [`Native::choices`] says how each
+/// is chosen; where one depends on another, all become their defaults, except in WGSL.
 ///
 /// # Errors
 /// `emit-failed` with the writer's words; `naga-internal` where it panicked;
@@ -89,6 +91,10 @@ fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted,
     if writer.target == Target::WGSL || validated.module.overrides.is_empty() {
         let source = Source { module: &validated.module, info: &validated.info, stage: point.stage, entry: &point.name, index };
         return (writer.write)(&source).map_err(failed);
+    }
+    let source = Source { module: &validated.module, info: &validated.info, stage: point.stage, entry: &point.name, index };
+    if let Some(written) = specialise::write(&source, writer) {
+        return written.map_err(failed);
     }
     let chosen = Some((point.stage, point.name.as_str()));
     let (module, info) = naga::back::pipeline_constants::process_overrides(&validated.module, &validated.info, chosen, &Default::default())

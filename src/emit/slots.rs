@@ -44,7 +44,7 @@ pub fn native(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native 
             name: None,
         })
         .collect();
-    Native { entry_name: entry.to_owned(), slots, combined: Vec::new() }
+    Native { entry_name: entry.to_owned(), slots, combined: Vec::new(), choices: Vec::new() }
 }
 
 fn number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -> Option<u32> {

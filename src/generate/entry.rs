@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::compose::{self, Keep, Language, Options};
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::manifest::File;
 use crate::permute::{Assignment, Program};
 use crate::resolve::{self, Graph, Packages};
 use crate::source::SourceSet;
@@ -36,9 +37,19 @@ pub fn entries(
     let Some(point) = point else { return Ok(Vec::new()) };
     let mut entries = Vec::new();
     for (file, language) in roots(program) {
-        let graph = Arc::new(resolve::load(sources, packages, file, language)?);
-        let composed = compose::compose(&graph, &program.space.settings(point), &Options::default())?;
-        for found in validate(&composed)?.module.entry_points {
+        let graph = resolve::load(sources, packages, &file.path, language).map_err(|errors| named_by(errors, file))?;
+        let graph = Arc::new(graph);
+        let here = |errors| of_permutation(graph.traced(errors), program, point);
+        // Errors of the composer bring their chain of imports along.
+        let composed = compose::compose(&graph, &program.space.settings(point), &Options::default())
+            .map_err(|errors| of_permutation(errors, program, point))?;
+        let points = validate(&composed).map_err(here)?.module.entry_points;
+        if points.is_empty() {
+            let message = format!("`{}` has no entry point", file.path);
+            let error = Diagnostic::error(codes::NO_ENTRY_POINT, message).at(file.span, "named here");
+            return Err(of_permutation(vec![error], program, point));
+        }
+        for found in points {
             let keep = match language {
                 Language::Wesl => Keep::Items(vec![found.name.clone()]),
                 Language::Glsl => Keep::EntryPoints,
@@ -63,6 +74,17 @@ impl Entry {
     }
 }
 
+/// A root that cannot be found is a mistake of the manifest.
+fn named_by(errors: Diagnostics, file: &File) -> Diagnostics {
+    let one = |error: Diagnostic| if error.labels.is_empty() { error.at(file.span, "named here") } else { error };
+    errors.into_iter().map(one).collect()
+}
+
+fn of_permutation(errors: Diagnostics, program: &Program, point: &Assignment) -> Diagnostics {
+    let note = format!("in permutation `{}` of program `{}`", program.space.key(point), program.name);
+    errors.into_iter().map(|error| error.note(note.as_str())).collect()
+}
+
 fn label(before: &[Entry], language: Language, point: &naga::EntryPoint) -> String {
     let twin = before.iter().find(|entry| entry.language != language && entry.stage == point.stage);
     match (language, twin) {
@@ -72,8 +94,8 @@ fn label(before: &[Entry], language: Language, point: &naga::EntryPoint) -> Stri
     }
 }
 
-fn roots(program: &Program) -> Vec<(&str, Language)> {
+fn roots(program: &Program) -> Vec<(&File, Language)> {
     let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
-    let wesl = program.wesl.iter().map(|file| (file.path.as_str(), Language::Wesl));
-    wesl.chain(glsl.map(|file| (file.path.as_str(), Language::Glsl))).collect()
+    let wesl = program.wesl.iter().map(|file| (file, Language::Wesl));
+    wesl.chain(glsl.map(|file| (file, Language::Glsl))).collect()
 }

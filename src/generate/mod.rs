@@ -10,6 +10,7 @@
 mod compile;
 mod entry;
 mod lean;
+mod lint;
 mod shard;
 mod sink;
 mod summary;
@@ -29,8 +30,10 @@ use crate::permute::{Assignment, Manifest, Program, Quoted, key};
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 use crate::validate::on_large_stack;
-use compile::Compiler;
+pub use compile::Made;
+use compile::{Compiled, Compiler};
 use entry::Entry;
+use lint::Lints;
 use summary::Outputs;
 use weave::Text;
 
@@ -93,6 +96,7 @@ pub fn generate(
     let start = Instant::now();
     let mut generated = Generated { contents: Contents::default(), summary: Summary::default(), warnings: Vec::new() };
     let mut outputs = Outputs::default();
+    let mut lints = Lints::default();
     for program in chosen(manifest, request)? {
         let points = points(program, request)?;
         let entries = entry::entries(sources, packages, program, points.first())?;
@@ -103,11 +107,18 @@ pub fn generate(
         let compiler = Compiler { targets: &targets, sink: tools.sink, cache: tools.cache };
         let make = |text: &Text, entry: &Entry| compiler.make(text, entry);
         let woven = on_large_stack(|| weave::weave(&entries, &program.space, points, &make, tools.progress))?;
+        // One permutation says nothing about the others, and a part of them not enough.
+        if request.only.is_none() && request.shard.is_none() {
+            lints.see(sources, program, &entries, points);
+            lints.see_reads(program, &woven);
+        }
         outputs.add(&targets, &woven);
         generated.summary.programs.push(summary::program(&program.name, points.len(), &woven));
         generated.warnings.extend(woven.iter().flat_map(|woven| woven.warnings.iter().cloned()));
         generated.contents.programs.insert(program.name.clone(), contents(program, points, &woven));
     }
+    generated.warnings.extend(lints.finish());
+    generated.warnings = lint::distinct(sources, generated.warnings);
     generated.summary.targets = outputs.summaries();
     generated.summary.cached = tools.cache.map_or(0, Cache::hits);
     generated.summary.seconds = start.elapsed().as_secs_f64();
@@ -127,7 +138,7 @@ pub fn survey(
 ) -> Result<ProgramSummary, Diagnostics> {
     let points = points(program, &Request::default())?;
     let entries = entry::entries(sources, packages, program, points.first())?;
-    let nothing = |_: &Text, _: &Entry| Ok(Digest { unit: [0; 16], blobs: Box::default() });
+    let nothing = |_: &Text, _: &Entry| Ok(Compiled { digest: Digest { unit: [0; 16], blobs: Box::default() }, warnings: Vec::new() });
     let woven = on_large_stack(|| weave::weave(&entries, &program.space, &points, &nothing, progress))?;
     Ok(summary::program(&program.name, points.len(), &woven))
 }

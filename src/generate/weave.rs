@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::compile::Compiled;
 use super::entry::Entry;
 use super::lean::lean;
 use super::{Progress, REPORTED};
@@ -32,7 +33,7 @@ pub struct Woven {
 }
 
 /// Makes something of a text that is new.
-pub type Make<'a> = dyn Fn(&Text, &Entry) -> Result<Digest, Diagnostics> + Sync + 'a;
+pub type Make<'a> = dyn Fn(&Text, &Entry) -> Result<Compiled, Diagnostics> + Sync + 'a;
 
 /// Composes every entry point for every permutation, and makes something of each text, a batch of permutations at a time.
 pub fn weave(
@@ -50,8 +51,9 @@ pub fn weave(
         let batch = start..points.len().min(start + BATCH);
         let jobs = compose_batch(&mut looms, space, &points[batch.clone()])?;
         let made = jobs.into_par_iter().map(|job| job.run(entries, space, &points[batch.clone()], make));
-        for (entry, made) in collect(made.collect())? {
-            looms[entry].woven.made.push(made);
+        for (entry, Compiled { digest, warnings }) in collect(made.collect())? {
+            looms[entry].woven.made.push(digest);
+            looms[entry].woven.warnings.extend(warnings);
         }
         at(batch.end);
     }
@@ -73,10 +75,12 @@ pub struct Text {
 }
 
 impl Job {
-    fn run(self, entries: &[Entry], space: &Space, batch: &[Assignment], make: &Make<'_>) -> Result<(usize, Digest), Diagnostics> {
+    /// Errors and warnings name the permutation.
+    fn run(self, entries: &[Entry], space: &Space, batch: &[Assignment], make: &Make<'_>) -> Result<(usize, Compiled), Diagnostics> {
         let entry = &entries[self.entry];
-        let made = make(&self.text, entry).map_err(|errors| of_permutation(errors, entry, &space.key(&batch[self.point])))?;
-        Ok((self.entry, made))
+        let named = |diagnostics| of_permutation(diagnostics, entry, &space.key(&batch[self.point]));
+        let Compiled { digest, warnings } = make(&self.text, entry).map_err(|errors| named(entry.graph.traced(errors)))?;
+        Ok((self.entry, Compiled { digest, warnings: named(entry.graph.own(warnings)) }))
     }
 }
 

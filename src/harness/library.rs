@@ -5,9 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::cases::{self, File};
 use super::check::{self, Open, Report};
+use super::ratchet::{self, Ratchet};
 use crate::compose::{self, Composed, Keep, Language, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::Settings;
+use crate::project::LIBRARY;
 use crate::resolve::{self, Packages};
 use crate::source::{self, Embedded, Files, Memory, Package, ReadError, SourceSet};
 use crate::validate::{self, Validated};
@@ -23,7 +25,7 @@ pub struct Library {
 impl Library {
     /// The library that the binary carries.
     pub fn embedded() -> Self {
-        Self::new("lamplight", Arc::new(Embedded), Vec::new())
+        Self::new(LIBRARY, Arc::new(Embedded), Vec::new())
     }
 
     /// A package with its dependencies, by name.
@@ -46,6 +48,17 @@ impl Library {
         self.files.list(&["toml"]).into_iter().filter(|path| has_module(path)).collect()
     }
 
+    /// Paths of all modules that are no programs: `lighting::spot`.
+    pub fn modules(&self) -> Vec<String> {
+        let paths = self.files.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
+        paths.map(|path| path.trim_end_matches(".wesl").replace('/', "::")).collect()
+    }
+
+    /// The text of a file of the package, if it is there.
+    pub fn text(&self, path: &str) -> Option<String> {
+        self.files.read(path).ok().flatten()
+    }
+
     /// First path components of the modules: `lighting`, `brdf`, and so on.
     pub fn folders(&self) -> Vec<String> {
         let mut folders: Vec<_> =
@@ -62,12 +75,37 @@ impl Library {
         languages: &[Language],
         open: &mut [Open],
     ) -> Result<Report, Diagnostics> {
-        let files = self.read(sources, paths)?;
-        let subjects = |module: &str, language: Language, functions: &[String]| self.module(sources, module, language, functions);
-        check::check(&files, languages, &subjects, open)
+        self.check_with(sources, paths, languages, open, &check::Options { references: self.has_references(), ..check::Options::default() })
     }
 
-    fn read(&self, sources: &Mutex<SourceSet>, paths: &[String]) -> Result<Vec<(String, File)>, Diagnostics> {
+    /// Whether the crate's references are about this package.
+    pub fn has_references(&self) -> bool {
+        self.name == LIBRARY
+    }
+
+    /// What drivers were measured to need of the package's tolerances, if that is recorded.
+    pub fn ratchet(&self, sources: &Mutex<SourceSet>) -> Result<Option<Ratchet>, Diagnostics> {
+        let mut sources = lock(sources);
+        let id = source::read(&mut sources, &self.package(), ratchet::FILE).map_err(|error| vec![error])?;
+        id.map(|id| Ratchet::parse(&sources.get(id).text, id)).transpose().map_err(|error| vec![error])
+    }
+
+    /// As [`Self::check`], with options.
+    pub fn check_with(
+        &self,
+        sources: &Mutex<SourceSet>,
+        paths: &[String],
+        languages: &[Language],
+        open: &mut [Open],
+        options: &check::Options<'_>,
+    ) -> Result<Report, Diagnostics> {
+        let files = self.read(sources, paths)?;
+        let subjects = |module: &str, language: Language, functions: &[String]| self.module(sources, module, language, functions);
+        check::check_with(&files, languages, &subjects, open, options)
+    }
+
+    /// The case files of these paths, each with its module's path.
+    pub(super) fn read(&self, sources: &Mutex<SourceSet>, paths: &[String]) -> Result<Vec<(String, File)>, Diagnostics> {
         let mut sources = lock(sources);
         let package = self.package();
         let mut files = Vec::new();
@@ -77,6 +115,16 @@ impl Library {
             files.push((path.trim_end_matches(".toml").replace('/', "::"), cases::parse(&sources, id)?));
         }
         Ok(files)
+    }
+
+    /// A WESL module with everything it declares, and the map back to its text.
+    pub fn whole(&self, sources: &Mutex<SourceSet>, module: &str) -> Result<(Composed, Validated), Diagnostics> {
+        let packages = Packages { root: self.package(), dependencies: self.dependencies() };
+        let root = format!("{}.wesl", module.replace("::", "/"));
+        let graph = resolve::wesl::load(&mut lock(sources), &packages, &root)?;
+        let composed = compose::wesl::compose(&graph, &Settings::default(), &Options::default())?;
+        let validated = validate::validate(&composed)?;
+        Ok((composed, validated))
     }
 
     /// A module with the named functions of a module of the package.

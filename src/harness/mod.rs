@@ -5,18 +5,24 @@
 //! [`cases`] reads what to try, [`library`] composes the modules, [`kernel`] wraps each function
 //! into a fragment shader, an executor of [`executors`] runs it, [`references`] says what should
 //! come out, [`tolerance`] how far off it may be, and [`check`] compares. [`expression`] runs one
-//! expression instead of cases.
+//! expression instead of cases, [`plots`] draws functions for the [`catalogue`], and [`mutate`]
+//! asks how much the cases notice.
 
 pub mod cases;
+pub mod catalogue;
 pub mod check;
 pub mod executors;
 pub mod expression;
 pub mod fixture;
 pub mod formula;
 mod gpu;
+mod interpreter;
 pub mod kernel;
 pub mod laws;
 pub mod library;
+pub mod mutate;
+pub mod plots;
+pub mod ratchet;
 pub mod references;
 pub mod tolerance;
 

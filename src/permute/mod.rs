@@ -16,6 +16,7 @@ pub mod report;
 mod setting;
 pub mod space;
 pub mod tree;
+pub mod usage;
 
 pub use axis::{Axis, Kind, Mode};
 pub use key::{Assignment, Key};

@@ -21,6 +21,11 @@ impl Quoted {
         Self { span: Span::new(id, 0..text.len()), places: (0..=text.len() as u32).collect(), text }
     }
 
+    /// A part of a source, which means what it says.
+    pub fn plain(sources: &SourceSet, span: Span) -> Self {
+        Self { text: sources.text(span).to_owned(), span, places: (span.start..=span.end).collect() }
+    }
+
     /// A TOML string whose literal, quotes included, covers `span` and means `text`.
     pub fn toml(sources: &SourceSet, span: Span, text: &str) -> Self {
         let places = places(sources.text(span), text).into_iter().map(|place| span.start + place as u32).collect();

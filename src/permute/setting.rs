@@ -44,4 +44,7 @@ pub struct Settings {
     pub enums: BTreeMap<String, Vec<String>>,
     /// Declared integer axes: those that conditions may compare.
     pub integers: std::collections::BTreeSet<String>,
+    /// Axes whose numbers are left open for the pipeline to choose, with their defaults:
+    /// `constants::NAME` is an override then. Conditions see the value all the same.
+    pub open: BTreeMap<String, Setting>,
 }

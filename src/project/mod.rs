@@ -4,10 +4,12 @@
 
 mod wesl_toml;
 
+pub use wesl_toml::declared_name;
+
 use std::path::{Component, Path, PathBuf};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::permute::{Manifest, manifest};
+use crate::permute::{Lock, Manifest, lock, manifest, usage};
 use crate::resolve::Packages;
 use crate::source::{self, Disk, Embedded, Package, SourceSet};
 
@@ -65,6 +67,9 @@ pub fn relative(file: &Path, root: &Path) -> Result<String, Diagnostic> {
     let real = |path: &Path| if path.as_os_str().is_empty() { Path::new(".").canonicalize() } else { path.canonicalize() };
     let real_root = real(root).map_err(|error| unreadable(root, &error))?;
     let real_file = real(file).map_err(|error| unreadable(file, &error))?;
+    if real_file.is_dir() {
+        return Err(Diagnostic::error(codes::UNREADABLE, format!("`{}` is a folder, not a file", file.display())));
+    }
     match real_file.strip_prefix(&real_root) {
         Ok(below) => Ok(slashed(below)),
         Err(_) => {
@@ -86,7 +91,12 @@ fn slashed(path: &Path) -> String {
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Diagnostic {
-    Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", path.display()))
+    let shown = path.display();
+    let message = match error.kind() {
+        std::io::ErrorKind::NotFound => format!("there is no file or folder `{shown}`"),
+        _ => format!("cannot read `{shown}`: {error}"),
+    };
+    Diagnostic::error(codes::UNREADABLE, message)
 }
 
 /// File name of a manifest.
@@ -100,6 +110,9 @@ pub fn manifest(root: &Path, sources: &mut SourceSet) -> Result<Option<Manifest>
 
 /// Reads a manifest by its path.
 pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
+    if path.is_dir() {
+        return Err(vec![Diagnostic::error(codes::UNREADABLE, format!("`{}` is a folder, not a manifest", path.display()))]);
+    }
     let folder = path.parent().unwrap_or(Path::new(""));
     let disk = Disk::new(folder).map_err(|error| vec![unreadable(path, &error)])?;
     let package = Package { name: String::new(), files: Box::new(disk) };
@@ -111,6 +124,25 @@ pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, D
 pub fn declared(path: &Path, sources: &mut SourceSet) -> Result<(Manifest, Packages), Diagnostics> {
     let manifest = read_manifest(path, sources)?;
     Ok((manifest, packages(path.parent().unwrap_or(Path::new("")), sources)?))
+}
+
+/// File name of the lock that lies beside a manifest.
+pub const LOCK: &str = "lamplight.lock";
+
+/// Where the lock of a manifest lies.
+pub fn lock_path(manifest: &Path) -> PathBuf {
+    manifest.with_file_name(LOCK)
+}
+
+/// The lock of dense keys beside a manifest; an empty one where there is no file.
+pub fn lock(manifest: &Path, sources: &mut SourceSet) -> Result<Lock, Diagnostics> {
+    let folder = manifest.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let disk = Disk::new(folder).map_err(|error| vec![unreadable(folder, &error)])?;
+    let package = Package { name: String::new(), files: Box::new(disk) };
+    match source::read(sources, &package, LOCK).map_err(|error| vec![error])? {
+        Some(id) => lock::parse(sources, id),
+        None => Ok(Lock::default()),
+    }
 }
 
 /// The manifest of the embedded library.
@@ -139,5 +171,17 @@ fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Res
     let id = source::read(sources, package, name).map_err(|error| vec![error])?;
     let id =
         id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
-    manifest::parse(sources, id)
+    let mut manifest = manifest::parse(sources, id)?;
+    for program in &mut manifest.programs {
+        let Some(file) = program.usage.clone() else { continue };
+        let list = source::read(sources, package, &file.path).map_err(|error| vec![error.at(file.span, "named here")])?;
+        let list = list.ok_or_else(|| vec![no_list(&file)])?;
+        let warnings = usage::narrow(program, sources, list)?;
+        manifest.warnings.extend(warnings);
+    }
+    Ok(manifest)
+}
+
+fn no_list(file: &manifest::File) -> Diagnostic {
+    Diagnostic::error(codes::UNREADABLE, format!("there is no usage list `{}`", file.path)).at(file.span, "named here")
 }

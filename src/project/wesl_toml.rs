@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::Table;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::source::{Disk, Package, SourceSet, Span};
+use crate::source::{self, Disk, Files, Package, ReadError, SourceId, SourceSet, Span};
 
 const NAME: &str = "wesl.toml";
 const DEFAULT_ROOT: &str = "shaders";
@@ -16,8 +16,15 @@ pub fn declared_root(folder: &Path) -> Option<PathBuf> {
     Some(root_in(folder, &text.parse().ok()?))
 }
 
+/// The name that the root's `wesl.toml` gives its package.
+pub fn declared_name(root: &Path) -> Option<String> {
+    let table: Table = std::fs::read_to_string(home(root)?.join(NAME)).ok()?.parse().ok()?;
+    Some(table.get("package")?.get("name")?.as_str()?.to_owned())
+}
+
 /// The packages that the root's `wesl.toml` lists by path, those they list in turn included.
 pub fn dependencies(root: &Path, sources: &mut SourceSet) -> Result<Vec<Package>, Diagnostics> {
+    broken(root, sources)?;
     let Some(folder) = home(root) else { return Ok(Vec::new()) };
     let mut found = Found { packages: Vec::new(), visited: vec![folder.clone()], diagnostics: Vec::new() };
     found.collect(&folder, sources);
@@ -33,6 +40,78 @@ fn home(root: &Path) -> Option<PathBuf> {
     })
 }
 
+/// Refuses a `wesl.toml` of the root or above it that cannot be understood: to ignore it would
+/// blame the imports.
+fn broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
+    let Ok(real) = root.canonicalize() else { return Ok(()) };
+    for folder in [Some(real.as_path()), real.parent()].into_iter().flatten().filter(|folder| folder.join(NAME).is_file()) {
+        let shown = if folder == real { root.to_owned() } else { root.join("..") };
+        parse(folder, &shown, sources).map_err(|error| vec![error])?;
+    }
+    Ok(())
+}
+
+/// The tables of a folder's `wesl.toml`, which is there; `shown` is the folder's name in diagnostics.
+fn parse(folder: &Path, shown: &Path, sources: &mut SourceSet) -> Result<(Table, SourceId), Diagnostic> {
+    let disk =
+        Disk::new(folder).map_err(|error| Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", shown.display())))?;
+    let package = Package { name: String::new(), files: Box::new(Shown { disk, folder: shown.to_owned() }) };
+    let missing = || Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`", shown.join(NAME).display()));
+    let id = source::read(sources, &package, NAME)?.ok_or_else(missing)?;
+    let text = sources.get(id).text.clone();
+    let table: Table = text.parse().map_err(|error: toml::de::Error| {
+        let range = error.span().unwrap_or(0..0);
+        let span = Span::new(id, range.start.min(text.len())..range.end.min(text.len()));
+        Diagnostic::error(codes::WESL_TOML, "`wesl.toml` is not valid TOML").at(span, error.message().replace('\n', "; "))
+    })?;
+    check(&table, id, &text)?;
+    Ok((table, id))
+}
+
+/// What is read of the file has the types that are expected.
+fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
+    let wrong = |what: &str, expected: &str, key: &str| {
+        let start = text.find(key).unwrap_or(0);
+        let message = format!("{what} of `wesl.toml` is not {expected}");
+        Err(Diagnostic::error(codes::WESL_TOML, message)
+            .at(Span::new(id, start..(start + key.len()).min(text.len())), format!("expected {expected}")))
+    };
+    let package = table.get("package");
+    if package.is_some_and(|package| !package.is_table()) {
+        return wrong("`package`", "a table", "package");
+    }
+    if package.and_then(|package| package.get("root")).is_some_and(|root| !root.is_str()) {
+        return wrong("`package.root`", "a string", "root");
+    }
+    let Some(dependencies) = table.get("dependencies") else { return Ok(()) };
+    let Some(dependencies) = dependencies.as_table() else { return wrong("`dependencies`", "a table", "dependencies") };
+    match dependencies.iter().find(|(_, entry)| entry.get("path").is_some_and(|path| !path.is_str())) {
+        Some((name, _)) => wrong(&format!("`path` of dependency `{name}`"), "a string", name),
+        None => Ok(()),
+    }
+}
+
+/// A folder under the name that the user gave it.
+struct Shown {
+    disk: Disk,
+    folder: PathBuf,
+}
+
+impl Files for Shown {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        self.disk.read(path)
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        self.disk.list(extensions)
+    }
+
+    fn display(&self, path: &str) -> String {
+        let shown = self.folder.join(path).to_string_lossy().replace('\\', "/");
+        shown.strip_prefix("./").map(str::to_owned).unwrap_or(shown)
+    }
+}
+
 fn root_in(folder: &Path, table: &Table) -> PathBuf {
     let declared = table.get("package").and_then(|package| package.get("root")).and_then(|root| root.as_str());
     folder.join(declared.unwrap_or(DEFAULT_ROOT))
@@ -46,17 +125,14 @@ struct Found {
 
 impl Found {
     fn collect(&mut self, folder: &Path, sources: &mut SourceSet) {
-        let path = folder.join(NAME);
-        let Ok(text) = std::fs::read_to_string(&path) else { return };
-        let id = sources.add(NAME, text.as_str());
-        let table: Table = match toml::from_str(&text) {
-            Ok(table) => table,
-            Err(error) => {
-                let span = Span::new(id, error.span().unwrap_or(0..0));
-                self.diagnostics.push(Diagnostic::error(codes::WESL_TOML, "`wesl.toml` is not valid TOML").at(span, error.message()));
-                return;
-            }
+        if !folder.join(NAME).is_file() {
+            return;
+        }
+        let (table, id) = match parse(folder, Path::new(""), sources) {
+            Ok(found) => found,
+            Err(error) => return self.diagnostics.push(error),
         };
+        let text = sources.get(id).text.clone();
         let Some(dependencies) = table.get("dependencies").and_then(|entry| entry.as_table()) else { return };
         for (name, entry) in dependencies {
             let Some(path) = entry.get("path").and_then(|path| path.as_str()) else { continue };

@@ -5,6 +5,7 @@ pub mod wesl;
 
 use crate::compose::Language;
 use crate::diagnostic::Diagnostics;
+use crate::permute::Settings;
 use crate::source::{Package, SourceSet};
 
 /// The packages a composition may read.
@@ -27,6 +28,44 @@ impl Packages {
 pub enum Graph {
     Wesl(wesl::Graph),
     Glsl(glsl::Graph),
+}
+
+impl Graph {
+    /// The diagnostics of what was composed from the graph, each with the chain of imports or
+    /// includes that led to the file it stands in.
+    pub fn traced(&self, diagnostics: Diagnostics) -> Diagnostics {
+        let one = |diagnostic| match self {
+            Self::Wesl(graph) => graph.traced(diagnostic),
+            Self::Glsl(graph) => graph.traced(diagnostic),
+        };
+        diagnostics.into_iter().map(one).collect()
+    }
+
+    /// The warnings that the author can mend: those that stand in files of the root package.
+    pub fn own(&self, warnings: Diagnostics) -> Diagnostics {
+        let own = |warning: &crate::diagnostic::Diagnostic| match (self, warning.labels.first()) {
+            (Self::Wesl(graph), Some(label)) => graph.is_own(label.span.source),
+            (Self::Glsl(graph), Some(label)) => graph.is_own(label.span.source),
+            (_, None) => true,
+        };
+        warnings.into_iter().filter(own).collect()
+    }
+
+    /// Warnings about flags of conditions that no setting declares and that nothing has asked for yet.
+    pub fn undeclared(&self, settings: &Settings) -> Diagnostics {
+        match self {
+            Self::Wesl(graph) => wesl::undeclared(graph, settings),
+            Self::Glsl(_) => Vec::new(),
+        }
+    }
+
+    /// Whether any condition, macro or constant of the graph may ask for the axis or feature.
+    pub fn may_ask(&self, name: &str) -> bool {
+        match self {
+            Self::Wesl(graph) => graph.may_ask(name),
+            Self::Glsl(graph) => graph.symbols.find(&name.to_uppercase()).is_some(),
+        }
+    }
 }
 
 /// Reads and resolves `root`, a path relative to the root package, and what it may reach.

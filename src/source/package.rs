@@ -131,7 +131,8 @@ impl Files for Disk {
     }
 
     fn display(&self, path: &str) -> String {
-        self.shown.join(path).to_string_lossy().replace('\\', "/")
+        let shown = self.shown.join(path).to_string_lossy().replace('\\', "/");
+        shown.strip_prefix("./").map(str::to_owned).unwrap_or(shown)
     }
 }
 

@@ -6,9 +6,11 @@
 mod guard;
 mod limits;
 mod report;
+mod uniformity;
 
 pub use guard::{guard, on_large_stack};
 pub use limits::{LIMITS, Limits};
+pub use uniformity::lint;
 
 use naga::front::{glsl, wgsl};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};

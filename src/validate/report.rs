@@ -24,7 +24,11 @@ pub fn glsl(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
         .errors
         .iter()
         .map(|error| {
-            let diagnostic = Diagnostic::error(codes::GLSL_ERROR, sentence(&error.kind.to_string()));
+            let message = sentence(&error.kind.to_string());
+            if message == "missing entry point" {
+                return Diagnostic::error(codes::NO_ENTRY_POINT, "the file has no function `main`");
+            }
+            let diagnostic = Diagnostic::error(codes::GLSL_ERROR, message);
             place(diagnostic, composed, error.meta.to_range(), "here")
         })
         .collect()

@@ -1,81 +1,109 @@
 //! The external validators: spirv-val over SPIR-V, glslangValidator over GLSL and GLSL ES.
 
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
-use std::sync::Mutex;
+use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
-/// Programs that judge outputs, with the Debian package that brings each.
-pub const VALIDATORS: &[(&str, &str)] = &[("spirv-val", "spirv-tools"), ("glslangValidator", "glslang-tools")];
+use lamplight::bundle::Stage;
+
+/// A stage as glslangValidator names it.
+pub fn stage(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Vertex => "vert",
+        Stage::Fragment => "frag",
+        Stage::Compute => "comp",
+    }
+}
+
+/// Files that one call of glslangValidator takes; spirv-val takes one.
+const BATCH: usize = 64;
 
 /// One output file and what must accept it.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Job {
-    /// The file.
-    pub file: PathBuf,
     /// Its target's name.
     pub target: String,
     /// `vert`, `frag` or `comp`.
     pub stage: &'static str,
+    /// The file.
+    pub file: PathBuf,
 }
 
-/// The command line for a job, if any validator covers its target.
+impl Job {
+    /// Whether a validator covers its target. MSL and HLSL have none on Linux.
+    pub fn is_covered(&self) -> bool {
+        command(self).is_some()
+    }
+}
+
+/// The command that judges a job, without the file's name.
 ///
 /// SPIR-V is checked for Vulkan 1.1; GLSL as the OpenGL or OpenGL ES it is written for.
 fn command(job: &Job) -> Option<Command> {
-    let mut command = match job.target.as_str() {
-        "spirv" => {
-            let mut command = Command::new("spirv-val");
-            command.args(["--target-env", "vulkan1.1"]);
-            command
-        }
-        "glsl450" | "glsl330" | "essl300" => {
-            let mut command = Command::new("glslangValidator");
-            command.args(["-S", job.stage]);
-            command
-        }
+    let (program, arguments) = match job.target.as_str() {
+        "spirv" => ("spirv-val", ["--target-env", "vulkan1.1"]),
+        "glsl450" | "glsl330" | "essl300" => ("glslangValidator", ["-S", job.stage]),
         _ => return None,
     };
-    command.arg(&job.file).stdin(Stdio::null());
+    let mut command = Command::new(program);
+    command.args(arguments).stdin(Stdio::null());
     Some(command)
 }
 
-/// Runs every job on all cores. Returns how many were judged, and each refusal.
-pub fn validate(jobs: &[Job], progress: &(dyn Fn(usize) + Sync)) -> std::io::Result<(usize, Vec<String>)> {
-    let next = AtomicUsize::new(0);
-    let judged = AtomicUsize::new(0);
-    let refusals = Mutex::new(Vec::new());
-    let failure = Mutex::new(None);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+/// Judges every covered job, on all cores. Returns how many were judged, and each refusal.
+pub fn validate(mut jobs: Vec<Job>, progress: &(dyn Fn(usize) + Sync)) -> std::io::Result<(usize, Vec<String>)> {
+    jobs.retain(Job::is_covered);
+    jobs.sort();
+    let batches: Vec<&[Job]> = jobs
+        .chunk_by(|a, b| (&a.target, a.stage) == (&b.target, b.stage))
+        .flat_map(|alike| alike.chunks(if alike[0].target == "spirv" { 1 } else { BATCH }))
+        .collect();
+    let (next, judged) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let outcome = Mutex::new(Ok(Vec::new()));
     std::thread::scope(|scope| {
-        for _ in 0..threads {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
             scope.spawn(|| {
-                while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let Some(mut command) = command(job) else { continue };
-                    match command.output() {
-                        Ok(output) if output.status.success() => {}
-                        Ok(output) => keep(&refusals, refusal(job, &output)),
-                        Err(error) => *failure.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(error),
-                    }
-                    progress(judged.fetch_add(1, Ordering::Relaxed) + 1);
+                while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    add(&outcome, judge(batch));
+                    progress(judged.fetch_add(batch.len(), Ordering::Relaxed) + batch.len());
                 }
             });
         }
     });
-    match failure.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
-        Some(error) => Err(error),
-        None => {
-            let mut refusals = refusals.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-            refusals.sort();
-            Ok((judged.into_inner(), refusals))
-        }
+    let mut refusals = outcome.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+    refusals.sort();
+    Ok((jobs.len(), refusals))
+}
+
+type Refusals = std::io::Result<Vec<String>>;
+
+fn add(outcome: &Mutex<Refusals>, found: Refusals) {
+    let mut outcome = outcome.lock().unwrap_or_else(PoisonError::into_inner);
+    match (outcome.as_mut(), found) {
+        (Ok(refusals), Ok(found)) => refusals.extend(found),
+        (Ok(_), Err(error)) => *outcome = Err(error),
+        (Err(_), _) => {}
     }
 }
 
-fn keep(refusals: &Mutex<Vec<String>>, refusal: String) {
-    refusals.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(refusal);
+/// A batch that is refused is judged again file by file, to say which and why.
+fn judge(batch: &[Job]) -> Refusals {
+    if run(batch)?.status.success() {
+        return Ok(Vec::new());
+    }
+    let mut refusals = Vec::new();
+    for job in batch {
+        let output = run(std::slice::from_ref(job))?;
+        if !output.status.success() {
+            let words = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).trim().to_owned();
+            refusals.push(format!("{} ({}): {words}", job.file.display(), job.target));
+        }
+    }
+    Ok(refusals)
 }
 
-fn refusal(job: &Job, output: &std::process::Output) -> String {
-    let words = [output.stdout.as_slice(), output.stderr.as_slice()].concat();
-    format!("{} ({}): {}", job.file.display(), job.target, String::from_utf8_lossy(&words).trim())
+fn run(batch: &[Job]) -> std::io::Result<Output> {
+    let mut command = batch.first().and_then(command).ok_or(std::io::ErrorKind::InvalidInput)?;
+    command.args(batch.iter().map(|job| &job.file)).output()
 }

@@ -3,9 +3,11 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod ci;
+mod docs;
 mod external;
 mod generate;
 mod machine;
+mod mutate;
 mod test;
 mod validate;
 
@@ -48,7 +50,9 @@ impl Failure {
 const COMMANDS: &[Command] = &[
     ("gen", "write the library's bundle to target/bundles/ and validate it", generate::run),
     ("test", "install what the tests need, then run every test", test::run),
+    ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
     ("validate", "run the external validators over a bundle", validate::run),
+    ("docs", "write the catalogue and the modules made from data (--check: only compare)", docs::run),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];
 

@@ -91,6 +91,12 @@ impl<'a> Evaluator<'a> {
         false
     }
 
+    /// The default of a setting whose number is left open. Not recorded: the text is the same
+    /// whatever the value.
+    pub fn open(&self, name: Name) -> Option<Setting> {
+        self.settings.open.get(self.graph.names.text(name)).filter(|value| !matches!(value, Setting::Name(_))).cloned()
+    }
+
     /// The value of a setting, recorded; an error at `span` if it has none.
     pub fn setting(&mut self, name: Name, span: Span) -> Option<Setting> {
         let text = self.graph.names.text(name);

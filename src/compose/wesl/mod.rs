@@ -4,9 +4,12 @@
 
 mod cycle;
 mod evaluate;
+pub mod lint;
 mod naming;
 mod reach;
 mod write;
+
+use std::collections::BTreeSet;
 
 use super::{Composed, Language, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -31,16 +34,9 @@ pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<
 }
 
 fn traced(graph: &Graph, errors: Diagnostics) -> Diagnostics {
-    let mut traced: Diagnostics = Vec::with_capacity(errors.len());
-    for error in errors {
-        let place = error.labels.first().map(|label| label.span);
-        // What several uses run into is told once.
-        let known =
-            |other: &Diagnostic| other.code == error.code && place.is_some() && other.labels.first().map(|label| label.span) == place;
-        if !traced.iter().any(known) {
-            let notes = place.map(|place| graph.trace(place.source)).into_iter().flatten();
-            traced.push(notes.fold(error, Diagnostic::note));
-        }
-    }
-    traced
+    // What several uses run into is told once.
+    let mut known = BTreeSet::new();
+    let is_new = |error: &Diagnostic| error.labels.first().is_none_or(|label| known.insert((error.code.name, label.span)));
+    let new = errors.into_iter().filter(is_new).collect::<Diagnostics>();
+    new.into_iter().map(|error| graph.traced(error)).collect()
 }

@@ -4,6 +4,7 @@ use super::evaluate::Evaluator;
 use crate::compose::{Keep, Options};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::wesl::{Event, ItemKind, Name, Reference};
+use crate::permute::Setting;
 use crate::resolve::wesl::{Graph, Target};
 use crate::source::Span;
 
@@ -44,7 +45,7 @@ pub struct Reached {
     items: u32,
     bases: Vec<u32>,
     /// By constant: its value as text.
-    pub constants: Vec<Option<String>>,
+    pub constants: Vec<Option<(&'static str, String)>>,
     pub dependencies: Vec<Dependency>,
     /// Predeclared names that are used although the module has a disabled item of that name.
     pub free: Vec<Name>,
@@ -175,13 +176,18 @@ impl Walk<'_, '_, '_> {
 
     fn constant(&mut self, index: u32) {
         let constant = &self.graph.constants[index as usize];
-        let Some(value) = self.evaluator.setting(constant.name, constant.span) else { return };
-        if let crate::permute::Setting::Name(value) = &value {
+        let open = self.evaluator.open(constant.name);
+        let Some(value) = open.clone().or_else(|| self.evaluator.setting(constant.name, constant.span)) else { return };
+        if let Setting::Name(value) = &value {
             let message = format!("`{}` is an enum axis and has no constant", self.graph.names.text(constant.name));
             let error = Diagnostic::error(codes::WRONG_KIND, message).at(constant.span, format!("its value is `{value}`"));
             self.evaluator.errors.push(error.note("help: choose code with `@if(axis == value)`"));
         }
-        self.reached.constants[index as usize] = Some(value.to_string());
+        self.reached.constants[index as usize] = Some(match (open, &value) {
+            (None, value) => ("const", format!(" = {value}")),
+            (Some(_), Setting::Bool(value)) => ("override", format!(": bool = {value}")),
+            (Some(_), value) => ("override", format!(": i32 = {value}")),
+        });
     }
 
     /// The first time something of a module is kept: its `const_assert`s come, and its errors count.

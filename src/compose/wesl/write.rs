@@ -99,8 +99,8 @@ impl Writer<'_> {
         }
         for (_, index) in kept {
             let name = self.names.text(graph, self.reached, Thing::Constant(index));
-            let value = self.reached.constants[index as usize].as_deref().unwrap_or("0");
-            let line = format!("const {name} = {value};\n");
+            let Some((keyword, rest)) = &self.reached.constants[index as usize] else { continue };
+            let line = format!("{keyword} {name}{rest};\n");
             self.own(&line);
         }
     }

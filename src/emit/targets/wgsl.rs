@@ -4,7 +4,7 @@
 
 use naga::back::wgsl::{WriterFlags, write_string};
 
-use crate::bundle::Target;
+use crate::bundle::{Choice, Target};
 use crate::emit::slots::{Numbering, native};
 use crate::emit::{Emitted, Entry, Source};
 
@@ -12,5 +12,10 @@ pub const TARGET: Entry = Entry { target: Target::WGSL, extension: "wgsl", binar
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let text = write_string(source.module, source.info, WriterFlags::empty()).map_err(|error| error.to_string())?;
-    Ok(Emitted { bytes: text.into_bytes(), native: native(source, source.entry, Numbering::Author) })
+    let mut native = native(source, source.entry, Numbering::Author);
+    let overrides = source.module.overrides.iter().map(|(_, constant)| constant);
+    native.choices = overrides
+        .filter_map(|constant| Some(Choice { name: constant.name.clone()?, id: constant.id.map(u32::from), symbol: None }))
+        .collect();
+    Ok(Emitted { bytes: text.into_bytes(), native })
 }

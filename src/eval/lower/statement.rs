@@ -41,8 +41,13 @@ impl Body<'_, '_> {
         if self.depth > MAX_DEPTH {
             return Err(Error::too_large(format!("statements nest deeper than {MAX_DEPTH}")));
         }
+        let whole = self.span;
         if let Some(branch) = branch {
             self.mark(branch);
+            if block.is_empty() {
+                // An arm that is not written lies where its statement does.
+                self.cover(whole);
+            }
         }
         for (statement, span) in block.span_iter() {
             if self.point.is_none() {

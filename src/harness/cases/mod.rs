@@ -32,9 +32,17 @@
 //! `count`; `same = "n"`; `around = VALUE` with `ulps`; `special = "plain" | "small" | "all"`; and
 //! arrays of these. Fields of structs are named by path (`light.kind = 3`); those not named are 0.
 //!
-//! Oracles: without more, the f64 reference of `src/harness/references/` with the function's path;
-//! `formula = "max(dot(n, l), 0)"` (see [`super::formula`]), which needs no Rust; `rows`, a table
-//! of `{ c = 0.9, ..., expect = [...] }` instead of `inputs`; or `oracle = "none"`, laws alone.
+//! Oracles, none of which but the first needs Rust:
+//!
+//! | given | expected is |
+//! |---|---|
+//! | `oracle = "reference"` | the f64 reference of `src/harness/references/` with the function's path |
+//! | `formula = "max(dot(n, l), 0)"` | the formula's value (see [`super::formula`]) |
+//! | `rows` instead of `inputs` | a table of `{ c = 0.9, ..., expect = [...] }` |
+//! | `oracle = "eval"` | what the code itself gives in f64; what rounding to f32 may add to it is allowed |
+//! | `oracle = "none"` | nothing: laws alone |
+//!
+//! Without any of them: the reference where there is one, else `eval`.
 //!
 //! Error terms are listed in [`super::tolerance`], laws in [`super::laws`].
 
@@ -85,12 +93,18 @@ pub struct Case {
     pub ambiguous: f64,
     pub laws: Vec<Law>,
     pub fixtures: BTreeMap<String, Arc<Fixture>>,
+    /// The same by the fixtures' names in the file.
+    pub fixture_names: Vec<(String, String)>,
 }
 
 /// Where the expected value comes from.
 #[derive(Debug)]
 pub enum Oracle {
+    /// The reference where there is one, else [`Oracle::Eval`].
+    Default,
     Reference,
+    /// The code's own value in f64.
+    Eval,
     Formula(Text),
     Table(Vec<TableRow>),
     None,
@@ -186,6 +200,7 @@ fn simple(node: &Node, fixtures: &BTreeMap<String, Arc<Fixture>>, inputs: Vec<(S
         ambiguous: number("ambiguous", 0.02)?,
         laws: node.get("laws").map_or(Ok(Vec::new()), |laws| laws.one_or_more().iter().map(law).collect())?,
         fixtures: chosen_fixtures(node, fixtures)?,
+        fixture_names: fixture_names(node)?,
     })
 }
 
@@ -201,6 +216,14 @@ fn chosen_fixtures(node: &Node, fixtures: &BTreeMap<String, Arc<Fixture>>) -> Re
     chosen.collect()
 }
 
+fn fixture_names(node: &Node) -> Result<Vec<(String, String)>, Diagnostic> {
+    let Some(table) = node.get("fixtures") else { return Ok(Vec::new()) };
+    table.entries()?.iter().map(|(parameter, name)| Ok((parameter.name.clone(), name.text()?.to_owned()))).collect()
+}
+
+/// Names of oracles in a case file.
+const ORACLES: &[(&str, fn() -> Oracle)] = &[("reference", || Oracle::Reference), ("eval", || Oracle::Eval), ("none", || Oracle::None)];
+
 fn oracle(node: &Node) -> Result<Oracle, Diagnostic> {
     if let Some(formula) = node.get("formula") {
         return Text::read(formula).map(Oracle::Formula);
@@ -208,8 +231,7 @@ fn oracle(node: &Node) -> Result<Oracle, Diagnostic> {
     if let Some(rows) = node.get("rows") {
         return rows.elements()?.iter().map(table_row).collect::<Result<_, _>>().map(Oracle::Table);
     }
-    let none = node.get("oracle").map_or(Ok(false), |node| node.choice(&[("reference", false), ("none", true)]))?;
-    Ok(if none { Oracle::None } else { Oracle::Reference })
+    node.get("oracle").map_or(Ok(Oracle::Default), |node| Ok(node.choice(ORACLES)?()))
 }
 
 fn table_row(node: &Node) -> Result<TableRow, Diagnostic> {

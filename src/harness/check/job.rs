@@ -4,25 +4,30 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::Subjects;
+use super::{Options, Subjects};
 use crate::compose::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::eval::{Bounded, FindingKind, Number};
 use crate::harness::cases::{self, Case, File, Oracle, Rows};
 use crate::harness::fixture::Fixture;
 use crate::harness::formula::{Formula, Scope};
+use crate::harness::interpreter::{Calls, Interpreter, value};
 use crate::harness::kernel::{self, Kernel, Shape};
 use crate::harness::laws::{self, Law};
 use crate::harness::references::{self, Arguments, Expected, Reference};
 use crate::harness::tolerance::{self, Bound};
+use naga::ScalarKind;
 
 /// One case of one module.
 pub struct Job<'a> {
     pub module: String,
     pub case: &'a Case,
+    /// Index of the case in its file.
+    pub index: usize,
     pub kernels: Vec<(Language, Kernel)>,
     pub rows: Rows,
     /// For each row; empty where the case has laws alone.
-    pub expected: Vec<Expected>,
+    pub expected: Vec<Target>,
     pub terms: Vec<Bound>,
     pub near: Option<(Formula, f64)>,
     pub filter: Option<Formula>,
@@ -41,17 +46,39 @@ pub struct BoundLaw<'a> {
 pub enum Judge {
     Reference(Reference),
     Formula(Formula),
+    /// The first language's code, value plus error.
+    Eval(Box<Interpreter>),
     /// A table or nothing: rows cannot be changed.
     Fixed,
 }
 
+/// What a row should give.
+#[derive(Clone)]
+pub struct Target {
+    pub expected: Expected,
+    /// What each word may be off beside the terms of the case; none where it is empty.
+    pub errors: Vec<f64>,
+    /// Whether a comparison on the way was too close to call.
+    pub doubtful: bool,
+}
+
+impl From<Expected> for Target {
+    fn from(expected: Expected) -> Self {
+        Self { expected, errors: Vec::new(), doubtful: false }
+    }
+}
+
 impl Job<'_> {
-    /// What a row should give, if the oracle can tell.
-    pub fn expect(&self, row: &[f64]) -> Option<Expected> {
+    /// What rows should give; `None` if the oracle cannot tell of any row but the case's own.
+    pub fn targets(&self, rows: &Rows) -> Result<Option<Vec<Target>>, Diagnostic> {
+        let each = |expect: &(dyn Fn(&[f64]) -> Expected + Sync)| -> Vec<Target> {
+            (0..rows.len()).into_par_iter().map(|index| expect(rows.row(index)).into()).collect()
+        };
         match &self.oracle {
-            Judge::Reference(reference) => Some(reference(&mut Arguments::new(row, &self.fixtures))),
-            Judge::Formula(formula) => Some(Expected::words(formula.eval(row))),
-            Judge::Fixed => None,
+            Judge::Reference(reference) => Ok(Some(each(&|row| reference(&mut Arguments::new(row, &self.fixtures))))),
+            Judge::Formula(formula) => Ok(Some(each(&|row| Expected::words(formula.eval(row))))),
+            Judge::Eval(interpreter) => bounded(interpreter, rows, &self.kernel().result_kinds()).map(Some),
+            Judge::Fixed => Ok(None),
         }
     }
 
@@ -62,7 +89,13 @@ impl Job<'_> {
 }
 
 /// The jobs of a module's case file.
-pub fn prepare<'a>(module: &str, file: &'a File, languages: &[Language], subjects: &Subjects<'_>) -> Result<Vec<Job<'a>>, Diagnostics> {
+pub fn prepare<'a>(
+    module: &str,
+    file: &'a File,
+    languages: &[Language],
+    subjects: &Subjects<'_>,
+    options: &Options<'_>,
+) -> Result<Vec<Job<'a>>, Diagnostics> {
     let mut functions: Vec<String> = file.cases.iter().map(|case| case.function.clone()).collect();
     functions.sort();
     functions.dedup();
@@ -71,7 +104,7 @@ pub fn prepare<'a>(module: &str, file: &'a File, languages: &[Language], subject
         .map(|language| Ok((*language, subjects(module, *language, &functions)?)))
         .collect::<Result<_, Diagnostics>>()
         .map_err(|errors| errors.into_iter().map(|error| placed(error, file)).collect::<Vec<_>>())?;
-    let jobs: Vec<_> = file.cases.par_iter().map(|case| job(module, case, &modules)).collect();
+    let jobs: Vec<_> = file.cases.par_iter().enumerate().map(|(index, case)| job(module, (index, case), &modules, options)).collect();
     let (mut done, mut errors) = (Vec::new(), Vec::new());
     for result in jobs {
         match result {
@@ -91,8 +124,18 @@ fn placed(error: Diagnostic, file: &File) -> Diagnostic {
     }
 }
 
-fn job<'a>(module: &str, case: &'a Case, modules: &[(Language, Arc<naga::Module>)]) -> Result<Job<'a>, Diagnostic> {
-    let placed = |error: Diagnostic| if error.labels.is_empty() { error.at(case.span, "in this case") } else { error };
+/// An error that has no place yet is put at the case.
+fn placed_at(error: Diagnostic, case: &Case) -> Diagnostic {
+    if error.labels.is_empty() { error.at(case.span, "in this case") } else { error }
+}
+
+fn job<'a>(
+    module: &str,
+    (index, case): (usize, &'a Case),
+    modules: &[(Language, Arc<naga::Module>)],
+    options: &Options<'_>,
+) -> Result<Job<'a>, Diagnostic> {
+    let placed = |error: Diagnostic| placed_at(error, case);
     let kernels: Vec<(Language, Kernel)> = modules
         .iter()
         .map(|(language, naga)| Ok((*language, kernel::build(naga, &case.function, &case.fixtures)?)))
@@ -114,11 +157,12 @@ fn job<'a>(module: &str, case: &'a Case, modules: &[(Language, Arc<naga::Module>
     let mut job = Job {
         module: module.to_owned(),
         case,
+        index,
         terms,
         near: case.near.as_ref().map(|(text, margin)| Ok::<_, Diagnostic>((text.bind(&scope)?, *margin))).transpose()?,
         filter: case.filter().map(|text| text.bind(&scope)).transpose()?,
         laws,
-        oracle: judge(module, case, &scope)?,
+        oracle: judge(module, case, &scope, first, options)?,
         fixtures: first.resources().map(|resource| resource.fixture.clone()).collect(),
         expected: Vec::new(),
         rows,
@@ -142,29 +186,58 @@ fn agree(kernels: &[(Language, Kernel)]) -> Result<(), Diagnostic> {
     }
 }
 
-fn judge(module: &str, case: &Case, scope: &Scope<'_>) -> Result<Judge, Diagnostic> {
+fn judge(module: &str, case: &Case, scope: &Scope<'_>, kernel: &Kernel, options: &Options<'_>) -> Result<Judge, Diagnostic> {
+    let reference = || references::find(module, &case.function).filter(|_| options.references).map(Judge::Reference);
+    let eval = || Interpreter::new(kernel).map(|interpreter| Judge::Eval(Box::new(interpreter)));
     match &case.oracle {
         Oracle::Formula(text) => text.bind(scope).map(Judge::Formula),
         Oracle::Table(_) | Oracle::None => Ok(Judge::Fixed),
-        Oracle::Reference => references::find(module, &case.function).map(Judge::Reference).ok_or_else(|| {
+        Oracle::Eval => eval(),
+        Oracle::Default => reference().map_or_else(eval, Ok),
+        Oracle::Reference => reference().ok_or_else(|| {
             let message = format!("there is no reference for `{module}::{}`", case.function);
             let error = Diagnostic::error(codes::CASE_INVALID, message).at(case.span, "of this function");
-            error.note("give a `formula`, a table of `rows`, or `oracle = \"none\"` with laws")
+            error.note("give a `formula`, a table of `rows`, or `oracle = \"eval\"`")
         }),
     }
 }
 
-fn expected(job: &Job<'_>) -> Result<Vec<Expected>, Diagnostic> {
-    let expected: Vec<Expected> = match &job.case.oracle {
-        Oracle::Table(table) => table.iter().map(|row| Expected::words(row.expect.iter().copied())).collect(),
-        _ => (0..job.rows.len()).into_par_iter().filter_map(|index| job.expect(job.rows.row(index))).collect(),
+fn expected(job: &Job<'_>) -> Result<Vec<Target>, Diagnostic> {
+    let expected: Vec<Target> = match &job.case.oracle {
+        Oracle::Table(table) => table.iter().map(|row| Expected::words(row.expect.iter().copied()).into()).collect(),
+        _ => job.targets(&job.rows).map_err(|error| placed_at(error, job.case))?.unwrap_or_default(),
     };
     let words = job.kernel().results.iter().map(Shape::words).sum::<u32>() as usize;
-    match expected.iter().find(|expected| expected.value.len() != words) {
+    match expected.iter().find(|target| target.expected.value.len() != words) {
         Some(wrong) => {
-            let message = format!("`{}` returns {words} values, {} are expected of it", job.case.function, wrong.value.len());
+            let message = format!("`{}` returns {words} values, {} are expected of it", job.case.function, wrong.expected.value.len());
             Err(Diagnostic::error(codes::CASE_INVALID, message).at(job.case.span, "of this function"))
         }
         None => Ok(expected),
     }
+}
+
+/// Rows that one thread runs before it asks for more.
+const CHUNK: usize = 1024;
+
+/// Value plus error of every row.
+pub fn bounded(interpreter: &Interpreter, rows: &Rows, kinds: &[ScalarKind]) -> Result<Vec<Target>, Diagnostic> {
+    let chunks: Vec<Vec<Target>> = rows
+        .words
+        .par_chunks(CHUNK * rows.stride)
+        .map(|words| {
+            let mut calls = interpreter.calls::<Bounded>()?;
+            words.chunks(rows.stride).map(|row| bounded_row(&mut calls, row, kinds)).collect::<Result<_, _>>()
+        })
+        .collect::<Result<_, Diagnostic>>()?;
+    Ok(chunks.into_iter().flatten().collect())
+}
+
+fn bounded_row(calls: &mut Calls<'_, Bounded>, row: &[u32], kinds: &[ScalarKind]) -> Result<Target, Diagnostic> {
+    calls.machine.forget();
+    let found = calls.call(row)?;
+    let expected = Expected::words(found.iter().zip(kinds).map(|(slot, kind)| value(*slot, *kind)));
+    let errors = found.iter().zip(kinds).map(|(slot, kind)| if *kind == ScalarKind::Float { slot.error() } else { 0.0 }).collect();
+    let doubtful = calls.machine.findings().iter().any(|finding| finding.kind == FindingKind::Ambiguous);
+    Ok(Target { expected, errors, doubtful })
 }

@@ -1,9 +1,9 @@
 //! Compares what an executor returned with what was expected.
 
-use super::job::{BoundLaw, Job};
+use super::job::{BoundLaw, Job, Target};
+use super::profile::Profile;
 use crate::harness::cases::{Rows, number};
 use crate::harness::laws;
-use crate::harness::references::Expected;
 use crate::harness::tolerance;
 use naga::ScalarKind;
 
@@ -12,7 +12,7 @@ use naga::ScalarKind;
 pub struct Verdict {
     /// Rows tried.
     pub inputs: usize,
-    /// Rows whose expected value no f32 holds: anything is right.
+    /// Rows whose expected value no f32 holds, or of which nothing is promised: anything is right.
     pub indeterminate: usize,
     /// Rows that are off, but where a comparison is too close to call.
     pub ambiguous: usize,
@@ -27,6 +27,8 @@ pub struct Verdict {
     pub parity: Option<f64>,
     /// A small failing input, as a text with a case to paste.
     pub smallest: Option<String>,
+    /// How the error runs over the inputs, where it was asked for.
+    pub profile: Option<Box<Profile>>,
 }
 
 /// One component of one row.
@@ -52,7 +54,17 @@ pub struct LawVerdict {
 impl Verdict {
     /// Whether every row and every law holds.
     pub fn passed(&self) -> bool {
-        self.failing.is_empty() && !self.too_ambiguous && self.laws.iter().all(|law| law.broken == 0)
+        self.failing.is_empty() && self.passed_but_for_values()
+    }
+
+    /// Whether all but the values themselves holds.
+    pub fn passed_but_for_values(&self) -> bool {
+        !self.too_ambiguous && !self.proves_nothing() && self.laws.iter().all(|law| law.broken == 0)
+    }
+
+    /// Whether every value would have been right.
+    pub fn proves_nothing(&self) -> bool {
+        self.inputs > 0 && self.indeterminate == self.inputs
     }
 }
 
@@ -74,21 +86,21 @@ impl Worst {
 }
 
 /// Judges every row.
-pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Expected], results: &[u32]) -> Verdict {
+pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Target], results: &[u32]) -> Verdict {
     let kinds = job.kernel().result_kinds();
     let mut verdict = Verdict { inputs: rows.len(), ..Verdict::default() };
-    for (index, (expected, found)) in expected.iter().zip(results.chunks(kinds.len().max(1))).enumerate() {
+    for (index, (target, found)) in expected.iter().zip(results.chunks(kinds.len().max(1))).enumerate() {
         let row = rows.row(index);
-        if is_indeterminate(expected) {
+        if is_indeterminate(target) {
             verdict.indeterminate += 1;
             continue;
         }
-        let Some(worst) = compare(job, row, expected, found, &kinds, index) else { continue };
+        let Some(worst) = compare(job, row, target, found, &kinds, index) else { continue };
         if worst.share() <= 1.0 {
             if verdict.worst.is_none_or(|known| known.share() <= worst.share()) {
                 verdict.worst = Some(worst);
             }
-        } else if is_ambiguous(job, row) {
+        } else if target.doubtful || is_ambiguous(job, row) {
             verdict.ambiguous += 1;
         } else {
             verdict.failing.push(index);
@@ -102,18 +114,21 @@ pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Expected], results: &[u32])
 }
 
 /// The worst component of the alternative that fits best.
-fn compare(job: &Job<'_>, row: &[f64], expected: &Expected, found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
-    let values = std::iter::once(&expected.value).chain(&expected.alternatives);
-    values.filter_map(|value| compare_one(job, row, value, found, kinds, index)).min_by(|a, b| a.share().total_cmp(&b.share()))
+pub fn compare(job: &Job<'_>, row: &[f64], target: &Target, found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
+    let values = std::iter::once(&target.expected.value).chain(&target.expected.alternatives);
+    let one = |value: &Vec<f64>| compare_one(job, row, (value, &target.errors), found, kinds, index);
+    values.filter_map(one).min_by(|a, b| a.share().total_cmp(&b.share()))
 }
 
-fn compare_one(job: &Job<'_>, row: &[f64], expected: &[f64], found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
+/// `of` is the expected value and what each word may be off beside the terms.
+fn compare_one(job: &Job<'_>, row: &[f64], of: (&[f64], &[f64]), found: &[u32], kinds: &[ScalarKind], index: usize) -> Option<Worst> {
     let values = tolerance::values(&job.terms, row);
     let component = |word: usize| {
         let found = number(found[word], kinds[word]);
-        let expected = expected[word];
+        let expected = of.0[word];
         let is_float = kinds[word] == ScalarKind::Float;
-        let allowed = if is_float { tolerance::allowed(&job.terms, &values, word, expected) } else { 0.0 };
+        let own = of.1.get(word).copied().unwrap_or(0.0);
+        let allowed = if is_float { tolerance::allowed(&job.terms, &values, word, expected) + own } else { 0.0 };
         Worst { row: index, word, found, expected, error: distance(found, expected, is_float), allowed }
     };
     (0..kinds.len()).map(component).max_by(|a, b| a.share().total_cmp(&b.share()))
@@ -131,8 +146,10 @@ fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
     }
 }
 
-fn is_indeterminate(expected: &Expected) -> bool {
-    expected.value.iter().any(|value| !value.is_finite() || value.abs() > f64::from(f32::MAX))
+/// Whether anything is right.
+pub fn is_indeterminate(target: &Target) -> bool {
+    let held = |value: &f64| value.is_finite() && value.abs() <= f64::from(f32::MAX);
+    !target.expected.value.iter().all(held) || !target.errors.iter().all(|error| error.is_finite())
 }
 
 fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
@@ -172,7 +189,8 @@ pub fn law(job: &Job<'_>, law: &BoundLaw<'_>, results: &[u32], transformed: Opti
             let value = number(results[at], *kind);
             let other = transformed.map(|words| number(words[at], *kind));
             let allowed = if other.is_some() {
-                2.0 * tolerance::allowed(&job.terms, &values, word, value) + f64::from(f32::MIN_POSITIVE)
+                let own = job.expected.get(index).and_then(|target| target.errors.get(word)).copied().unwrap_or(0.0);
+                2.0 * (tolerance::allowed(&job.terms, &values, word, value) + own) + f64::from(f32::MIN_POSITIVE)
             } else {
                 0.0
             };

@@ -1,18 +1,23 @@
 //! Runs cases of modules in each language on each executor. Prints nothing: results are data.
 
-mod job;
-mod judge;
+pub(super) mod job;
+pub(super) mod judge;
+mod profile;
+mod proof;
 mod report;
 mod shrink;
 
-pub use judge::{Verdict, Worst};
-pub use report::{failures, table};
+pub use judge::{LawVerdict, Verdict, Worst};
+pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
+pub use proof::{Parity, Proof, Spec};
+pub use report::{failures, failures_of, language, short, stricter, table};
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::cases::File;
+use super::ratchet::{self, Ratchet};
 use super::{Session, kernel::Kernel};
 use crate::compose::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -33,6 +38,8 @@ pub struct Open {
 #[derive(Debug, Default)]
 pub struct Report {
     pub outcomes: Vec<Outcome>,
+    /// One for each case, where they were asked for.
+    pub proofs: Vec<Proof>,
 }
 
 /// One function in one language on one executor.
@@ -45,29 +52,92 @@ pub struct Outcome {
     pub executor: &'static str,
     /// Name, driver and version of the device.
     pub adapter: String,
+    /// Index of the case in its file.
+    pub case: usize,
     /// What was found; or why the executor did not run it.
     pub verdict: Result<Verdict, Diagnostic>,
+    /// Share of the stated tolerance that was recorded for this adapter.
+    pub recorded: Option<f64>,
+    /// Share that a waiver lets the executor need, and its reason.
+    pub waiver: Option<(f64, String)>,
 }
 
 impl Outcome {
-    /// Whether every row and law holds.
+    /// Path of the function.
+    pub fn path(&self) -> String {
+        format!("{}::{}", self.module, self.function)
+    }
+
+    /// Whether every row and law holds, and no more is needed than was recorded.
     pub fn passed(&self) -> bool {
-        self.verdict.as_ref().is_ok_and(Verdict::passed)
+        self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict)) && !self.exceeds_driver()
+    }
+
+    /// Whether more error was met than the driver tier allows.
+    pub fn exceeds_driver(&self) -> bool {
+        self.of_driver().is_some_and(|share| share > 1.0)
+    }
+
+    /// The worst error over what the driver tier allows, where it was recorded for this adapter.
+    pub fn of_driver(&self) -> Option<f64> {
+        let share = self.verdict.as_ref().ok()?.worst.map_or(0.0, |worst| worst.share());
+        Some(share / (ratchet::SLACK * self.recorded?))
+    }
+
+    fn is_waived(&self, verdict: &Verdict) -> bool {
+        let share = verdict.worst.map_or(0.0, |worst| worst.share());
+        verdict.passed_but_for_values() && self.waiver.as_ref().is_some_and(|(waived, _)| share <= *waived)
     }
 }
 
 impl Report {
     /// Whether everything holds.
     pub fn passed(&self) -> bool {
-        self.outcomes.iter().all(Outcome::passed)
+        self.outcomes.iter().all(Outcome::passed) && self.proofs.iter().all(Proof::passed)
     }
+
+    /// Appends another report.
+    pub fn append(&mut self, other: Self) {
+        self.outcomes.extend(other.outcomes);
+        self.proofs.extend(other.proofs);
+    }
+}
+
+/// How to check.
+#[derive(Debug, Clone, Copy)]
+pub struct Options<'a> {
+    /// Whether the references of `src/harness/references/` are meant by a module's path.
+    pub references: bool,
+    /// Whether to keep how the error runs over the inputs.
+    pub profile: bool,
+    /// Whether to compare with what WGSL allows, and the languages in f64.
+    pub prove: bool,
+    /// What drivers were measured to need.
+    pub ratchet: Option<&'a Ratchet>,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { references: true, profile: false, prove: false, ratchet: None }
+    }
+}
+
+/// [`check_with`] the default options.
+pub fn check(files: &[(String, File)], languages: &[Language], subjects: &Subjects<'_>, open: &mut [Open]) -> Result<Report, Diagnostics> {
+    check_with(files, languages, subjects, open, &Options::default())
 }
 
 /// Checks the cases of each module (`lighting::spot` and its file).
 ///
 /// Errors are mistakes in the cases or in the modules; failing numbers are in the report.
-pub fn check(files: &[(String, File)], languages: &[Language], subjects: &Subjects<'_>, open: &mut [Open]) -> Result<Report, Diagnostics> {
-    let prepared: Vec<_> = files.par_iter().map(|(module, file)| job::prepare(module, file, languages, subjects)).collect();
+pub fn check_with(
+    files: &[(String, File)],
+    languages: &[Language],
+    subjects: &Subjects<'_>,
+    open: &mut [Open],
+    options: &Options<'_>,
+) -> Result<Report, Diagnostics> {
+    let prepared: Vec<_> = files.par_iter().map(|(module, file)| job::prepare(module, file, languages, subjects, options)).collect();
     let (mut jobs, mut errors) = (Vec::new(), Vec::new());
     for result in prepared {
         match result {
@@ -82,18 +152,20 @@ pub fn check(files: &[(String, File)], languages: &[Language], subjects: &Subjec
         let jobs = &jobs;
         let threads: Vec<_> = open
             .iter_mut()
-            .map(|open| std::thread::Builder::new().stack_size(super::STACK).spawn_scoped(scope, move || run_all(jobs, open)))
+            .map(|open| std::thread::Builder::new().stack_size(super::STACK).spawn_scoped(scope, move || run_all(jobs, open, options)))
             .collect();
         threads.into_iter().filter_map(|thread| thread.ok()?.join().ok()).collect()
     });
-    Ok(Report { outcomes: interleaved(columns) })
+    Ok(Report { outcomes: interleaved(columns), proofs: if options.prove { proof::prove(&jobs) } else { Vec::new() } })
 }
 
-fn run_all(jobs: &[Job<'_>], open: &mut Open) -> Vec<Outcome> {
+fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outcome> {
     let adapter = open.session.adapter();
     let mut outcomes = Vec::new();
     for job in jobs {
         let mut first = None;
+        let path = format!("{}::{}", job.module, job.case.function);
+        let waiver = options.ratchet.and_then(|ratchet| ratchet.waiver(&path, open.executor));
         for (language, kernel) in &job.kernels {
             outcomes.push(Outcome {
                 module: job.module.clone(),
@@ -101,7 +173,10 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open) -> Vec<Outcome> {
                 language: *language,
                 executor: open.executor,
                 adapter: adapter.clone(),
-                verdict: run(job, kernel, open.session.as_mut(), &mut first),
+                case: job.index,
+                verdict: run(job, kernel, open.session.as_mut(), &mut first, options),
+                recorded: options.ratchet.and_then(|ratchet| ratchet.share(&path, open.executor, &adapter)),
+                waiver: waiver.map(|waiver| (waiver.share, waiver.reason.clone())),
             });
         }
     }
@@ -109,7 +184,13 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open) -> Vec<Outcome> {
 }
 
 /// One case in one language; `first` keeps the first language's results, which others are compared with.
-fn run(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, first: &mut Option<Vec<u32>>) -> Result<Verdict, Diagnostic> {
+fn run(
+    job: &Job<'_>,
+    kernel: &Kernel,
+    session: &mut dyn Session,
+    first: &mut Option<Vec<u32>>,
+    options: &Options<'_>,
+) -> Result<Verdict, Diagnostic> {
     let results = session.run(kernel, &job.rows.words)?;
     let mut verdict = judge::judge(job, &job.rows, &job.expected, &results);
     for law in &job.laws {
@@ -119,6 +200,7 @@ fn run(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, first: &mut Op
     if let Some(row) = verdict.failing.first() {
         verdict.smallest = Some(shrink::shrink(job, kernel, session, *row)?);
     }
+    verdict.profile = options.profile.then(|| Box::new(profile::profile(job, &results)));
     verdict.parity = first.as_ref().map(|first| judge::parity(job, first, &results));
     first.get_or_insert(results);
     Ok(verdict)

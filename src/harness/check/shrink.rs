@@ -1,6 +1,6 @@
 //! Makes a failing input small: towards 0, 1 and few mantissa bits, a batch of candidates a draw.
 
-use super::job::Job;
+use super::job::{Job, Target};
 use super::judge;
 use crate::diagnostic::Diagnostic;
 use crate::harness::Session;
@@ -24,7 +24,11 @@ pub fn shrink(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, failing
         best = simpler;
     }
     let found = session.run(kernel, &best)?;
-    Ok(describe(job, &best, &found))
+    let target = if best == job.rows.row_words(failing) { None } else { job.targets(&job.rows.with_words(best.clone()))? };
+    match target.as_ref().and_then(|targets| targets.first()).or(job.expected.get(failing)) {
+        Some(target) => Ok(describe(job, &best, target, &found)),
+        None => Ok(String::new()),
+    }
 }
 
 fn first_failing(
@@ -37,7 +41,7 @@ fn first_failing(
         return Ok(None);
     }
     let rows = job.rows.with_words(candidates.concat());
-    let Some(expected) = (0..rows.len()).map(|index| job.expect(rows.row(index))).collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let Some(expected) = job.targets(&rows)? else { return Ok(None) };
     let results = session.run(kernel, &rows.words)?;
     let verdict = judge::judge(job, &rows, &expected, &results);
     Ok(verdict.failing.first().map(|index| candidates[*index].clone()))
@@ -99,9 +103,9 @@ fn complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
     row.iter().zip(&job.rows.kinds).map(cost).fold((0, 0), |sum, cost| (sum.0 + cost.0, sum.1 + cost.1))
 }
 
-fn describe(job: &Job<'_>, words: &[u32], found: &[u32]) -> String {
+/// The input in decimal and hex, then a case to paste that fails alike.
+fn describe(job: &Job<'_>, words: &[u32], target: &Target, found: &[u32]) -> String {
     let row = crate::harness::cases::numbers(words, &job.rows.kinds);
-    let expected = job.expect(&row).map(|expected| expected.value);
     let kinds = job.kernel().result_kinds();
     let mut text = String::new();
     let mut at = 0;
@@ -110,12 +114,34 @@ fn describe(job: &Job<'_>, words: &[u32], found: &[u32]) -> String {
         let range = at..at + shape.words() as usize;
         at = range.end;
         text += &format!("  {name} = {}\n", values(&words[range.clone()], &job.rows.kinds[range.clone()]));
-        paste.push(format!("{name} = {:?}", &row[range]));
+        paste.push(format!("{name} = {}", list(&row[range])));
     }
     text += &format!("  found {}\n", values(found, &kinds));
-    let expected = expected.unwrap_or_default();
-    text += &format!("  expected {expected:?}\n");
-    text + &format!("\n[[case]]\nfunction = {:?}\nrows = [{{ {}, expect = {expected:?} }}]\n", job.case.function, paste.join(", "))
+    text += &format!("  expected {}\n", list(&target.expected.value));
+    let worst = judge::judge(job, &job.rows.with_words(words.to_vec()), std::slice::from_ref(target), found).worst;
+    let allowed = worst.map_or(0.0, |worst| worst.allowed);
+    text += &format!("  allowed {allowed:e}\n\n");
+    paste.push(format!("expect = {}", list(&target.expected.value)));
+    text + &pasted(job, &paste.join(", "), allowed)
+}
+
+/// A case with the one row, with the fixtures that it names.
+fn pasted(job: &Job<'_>, row: &str, allowed: f64) -> String {
+    let mut text = format!("[[case]]\nfunction = {:?}\n", job.case.function);
+    if allowed > 0.0 {
+        text += &format!("tolerance = {{ abs = {allowed:e} }}\n");
+    }
+    if !job.case.fixture_names.is_empty() {
+        let names: Vec<String> = job.case.fixture_names.iter().map(|(parameter, name)| format!("{parameter} = {name:?}")).collect();
+        text += &format!("fixtures = {{ {} }}\n", names.join(", "));
+    }
+    text + &format!("rows = [{{ {row} }}]\n")
+}
+
+/// Numbers as TOML writes them.
+fn list(numbers: &[f64]) -> String {
+    let one = |number: &f64| if number.is_nan() { "nan".to_owned() } else { format!("{number:?}") };
+    format!("[{}]", numbers.iter().map(one).collect::<Vec<_>>().join(", "))
 }
 
 fn values(words: &[u32], kinds: &[ScalarKind]) -> String {

@@ -56,11 +56,32 @@ pub enum Expression {
     Compare { left: Operand, operator: Comparison, right: Operand, range: Range<u32> },
 }
 
+impl Expression {
+    /// The names in it, those of its operands aside: flags, axes and values.
+    pub fn names(&self) -> impl Iterator<Item = Name> {
+        let (first, second) = match self {
+            Self::Flag(name, _) => (Some(*name), None),
+            Self::Compare { left, right, .. } => (left.name(), right.name()),
+            _ => (None, None),
+        };
+        first.into_iter().chain(second)
+    }
+}
+
 /// A side of a comparison.
 #[derive(Debug, Clone)]
 pub enum Operand {
     Name(Name, Range<u32>),
     Integer(i64, Range<u32>),
+}
+
+impl Operand {
+    fn name(&self) -> Option<Name> {
+        match self {
+            Self::Name(name, _) => Some(*name),
+            Self::Integer(..) => None,
+        }
+    }
 }
 
 /// An operator of a comparison.

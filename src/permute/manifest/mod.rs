@@ -8,6 +8,7 @@
 //! limit = 5000                            # permutations; a million, where it is left out
 //! include = ["shadow=hard,two_sided"]     # keys: wanted whatever the next two say
 //! only = [{ lights = ["spot", "point"], shadow = "*" }]
+//! usage = "forward.used"                  # or instead: the keys that engines asked for
 //! exclude = [{ shadow = "vsm", two_sided = true }]
 //!
 //! [program.forward.axis]
@@ -24,7 +25,8 @@
 //! value it names, one of the values it lists, or any for `"*"`; **an axis it does not name is
 //! at its default**, so that a new axis multiplies nothing until someone asks. Each entry of
 //! `exclude` takes away the points that match it, **whatever the axes it does not name**. Keys
-//! of `include` come back in any case, and must satisfy the constraints.
+//! of `include` come back in any case, and must satisfy the constraints. With `usage`, a list that
+//! a bundle's loader recorded, nothing is wanted but its keys and those of `include`.
 
 mod axes;
 mod lists;

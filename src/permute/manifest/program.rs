@@ -22,6 +22,8 @@ pub struct Program {
     /// In the order declared; all, where the manifest names none.
     pub targets: Vec<Target>,
     pub space: Space,
+    /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
+    pub usage: Option<File>,
     /// The most permutations it may have; it has no more.
     pub limit: usize,
     /// The name in the manifest.
@@ -52,7 +54,7 @@ pub struct Glsl {
     pub fragment: Option<File>,
 }
 
-const KEYS: &[&str] = &["wesl", "glsl", "targets", "axis", "constraint", "include", "only", "exclude", "limit", "doc"];
+const KEYS: &[&str] = &["wesl", "glsl", "targets", "axis", "constraint", "include", "only", "exclude", "usage", "limit", "doc"];
 
 /// Reads a program; `None` once anything is wrong with it.
 pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> {
@@ -70,10 +72,11 @@ pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> 
         let message = format!("{what} has no source");
         reader.problems.push(Diagnostic::error(codes::MISSING_KEY, message).at(span, "needs `wesl`, `glsl` or both"));
     }
+    let usage = table.get("usage").and_then(|value| file(reader, value, "`usage`"));
     let targets = table.get("targets").map_or(Target::ALL.to_vec(), |value| targets(reader, value));
     let limit = table.get("limit").map_or(Some(LIMITS.permutations), |value| limit(reader, value));
     let space = space(reader, table, &what, span)?;
-    let program = Program { name, doc, wesl, glsl, targets, space, limit: limit?, span };
+    let program = Program { name, doc, wesl, glsl, targets, space, usage, limit: limit?, span };
     check_limit(reader, &program);
     (self::errors(reader) == errors).then_some(program)
 }

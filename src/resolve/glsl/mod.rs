@@ -22,6 +22,41 @@ pub struct Graph {
     pub symbols: Symbols,
     /// Paths as diagnostics show them, for each module.
     pub paths: Vec<String>,
+    /// Numbers of the packages that the modules are of; 0 is the root's.
+    pub packages: Vec<usize>,
+}
+
+impl Graph {
+    /// The includes that led to a file, as notes, from its own includer to one in the root file.
+    pub fn trace(&self, source: SourceId) -> Vec<String> {
+        let mut notes = Vec::new();
+        let mut at = self.modules.iter().position(|module| module.source == source);
+        while let Some((includer, line)) = at.filter(|at| *at > 0).and_then(|at| self.includer(at)) {
+            notes.push(format!("included from {}:{line}", self.paths[includer]));
+            at = Some(includer);
+        }
+        notes
+    }
+
+    /// The diagnostic with the chain of includes that led to the file it stands in.
+    pub fn traced(&self, diagnostic: Diagnostic) -> Diagnostic {
+        let source = diagnostic.labels.first().map(|label| label.span.source);
+        source.map(|source| self.trace(source)).into_iter().flatten().fold(diagnostic, Diagnostic::note)
+    }
+
+    /// Whether the file is of the root package.
+    pub fn is_own(&self, source: SourceId) -> bool {
+        self.modules.iter().position(|module| module.source == source).is_some_and(|module| self.packages[module] == include::ROOT)
+    }
+
+    /// The first file that includes a module, and the line: one read before it, so that chains end.
+    fn includer(&self, module: usize) -> Option<(usize, usize)> {
+        self.targets[..module].iter().enumerate().find_map(|(includer, targets)| {
+            let index = targets.iter().position(|target| matches!(target, Target::Module(found) if *found == module))?;
+            let span = self.modules[includer].includes[index].span;
+            Some((includer, self.modules[includer].line(span.start)))
+        })
+    }
 }
 
 /// Where an `#include` leads.
@@ -73,8 +108,9 @@ pub fn load(sources: &mut SourceSet, packages: &Packages, root: &str) -> Result<
         let resolved = loader.targets(targets.len())?;
         targets.push(resolved);
     }
-    let Loader { modules, symbols, paths, .. } = loader;
-    Ok(Graph { root: root.to_owned(), modules, targets, symbols, paths })
+    let Loader { modules, symbols, paths, places, .. } = loader;
+    let packages = places.into_iter().map(|(package, _)| package).collect();
+    Ok(Graph { root: root.to_owned(), modules, targets, symbols, paths, packages })
 }
 
 impl Loader<'_> {

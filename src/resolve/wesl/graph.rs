@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use crate::diagnostic::Diagnostic;
-use crate::parse::wesl::{ConditionId, Module, Name, Names};
+use crate::parse::wesl::{ConditionId, Expression, Module, Name, Names};
 use crate::source::{SourceId, Span};
 
 /// Every module that a root module may reach, ready to be composed any number of times.
@@ -33,6 +33,24 @@ impl Graph {
     /// [`Self::chain`] as notes: `imported by main.wesl:3:8`.
     pub fn trace(&self, source: SourceId) -> Vec<String> {
         self.importers(source).map(|(_, note)| note.to_owned()).collect()
+    }
+
+    /// The diagnostic with the chain of imports that led to the file it stands in.
+    pub fn traced(&self, diagnostic: Diagnostic) -> Diagnostic {
+        let source = diagnostic.labels.first().map(|label| label.span.source);
+        source.map(|source| self.trace(source)).into_iter().flatten().fold(diagnostic, Diagnostic::note)
+    }
+
+    /// Whether any condition or `constants::` may ask for the axis or feature.
+    pub fn may_ask(&self, name: &str) -> bool {
+        let Some(name) = self.names.find(name) else { return false };
+        let expressions = self.nodes.iter().flat_map(|node| &node.module.expressions);
+        expressions.flat_map(Expression::names).any(|asked| asked == name) || self.constants.iter().any(|constant| constant.name == name)
+    }
+
+    /// Whether the author of the root package wrote the file.
+    pub fn is_own(&self, source: SourceId) -> bool {
+        self.by_source.get(&source).is_some_and(|node| self.nodes[*node as usize].package == 0)
     }
 
     fn importers(&self, source: SourceId) -> impl Iterator<Item = (Span, &str)> {

@@ -1,11 +1,12 @@
 //! Imports that do nothing, or nothing good.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::graph::{Candidate, Node, Target};
+use super::graph::{Candidate, Graph, Node, Target};
 use super::load::Loader;
-use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{Name, Names, Origin, Path, Reference};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::parse::wesl::{Expression, Name, Names, Origin, Path, Reference};
+use crate::permute::Settings;
 
 /// Warnings about a module's imports. Modules of dependencies have none: their users cannot mend them.
 pub fn lints(names: &Names, node: &Node) -> Vec<Diagnostic> {
@@ -13,6 +14,7 @@ pub fn lints(names: &Names, node: &Node) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let mut found = Vec::new();
+    let used = used(node);
     for import in &node.module.imports {
         let (text, span) = (names.text(import.alias), node.module.span(import.alias_range.clone()));
         let own = node.sets.get(&import.alias).and_then(|set| set.first()).map(|index| &node.module.items[*index as usize]);
@@ -22,7 +24,7 @@ pub fn lints(names: &Names, node: &Node) -> Vec<Diagnostic> {
                     .at(span, "this import has no effect")
                     .at(node.module.span(item.name_range.clone()), "the declaration wins"),
             ),
-            _ if !is_used(node, import.alias) => {
+            _ if !used.contains(&import.alias) => {
                 found.push(Diagnostic::warning(codes::UNUSED_IMPORT, format!("`{text}` is imported but never used")).at(span, "not used"));
             }
             _ => {}
@@ -35,12 +37,11 @@ pub fn lints(names: &Names, node: &Node) -> Vec<Diagnostic> {
 pub fn clashes(loader: &mut Loader<'_>, node: u32, imported: &HashMap<Name, Vec<Candidate>>) {
     let mut failures = Vec::new();
     let here = &loader.nodes[node as usize];
+    let clashing: HashSet<Name> = imported.iter().filter(|(_, candidates)| differ(candidates)).map(|(alias, _)| *alias).collect();
     let mut first: HashMap<Name, usize> = HashMap::new();
     for (index, import) in here.module.imports.iter().enumerate().filter(|(_, import)| import.condition.is_none()) {
         let earlier = *first.entry(import.alias).or_insert(index);
-        let targets = imported.get(&import.alias).into_iter().flatten().map(|candidate| candidate.target);
-        let targets: Vec<Target> = targets.filter(|target| !matches!(target, Target::Failed(_))).collect();
-        if earlier != index && targets.windows(2).any(|pair| pair[0] != pair[1]) {
+        if earlier != index && clashing.contains(&import.alias) {
             let message = format!("`{}` is imported twice, from different places", loader.names.text(import.alias));
             failures.push(
                 Diagnostic::error(codes::DUPLICATE_ITEM, message)
@@ -57,12 +58,39 @@ pub fn clashes(loader: &mut Loader<'_>, node: u32, imported: &HashMap<Name, Vec<
     }
 }
 
-fn is_used(node: &Node, alias: Name) -> bool {
-    let starts = |path: &Path| path.origin == Origin::Scope && path.segments.first() == Some(&alias);
-    let named = node.module.references.iter().any(|reference| match reference {
-        Reference::Name(name) => *name == alias,
-        Reference::Path(path) => starts(path),
+/// Whether candidates lead to different things, those aside that lead nowhere.
+fn differ(candidates: &[Candidate]) -> bool {
+    let mut targets = candidates.iter().map(|candidate| candidate.target).filter(|target| !matches!(target, Target::Failed(_)));
+    let first = targets.next();
+    targets.any(|target| Some(target) != first)
+}
+
+/// The names that references and the paths of imports start with. An import whose own path starts
+/// with its name means a package by it.
+fn used(node: &Node) -> HashSet<Name> {
+    let start = |path: &Path| path.segments.first().copied().filter(|_| path.origin == Origin::Scope);
+    let named = node.module.references.iter().filter_map(|reference| match reference {
+        Reference::Name(name) => Some(*name),
+        Reference::Path(path) => start(path),
     });
-    // An import whose own path starts with its name means a package by it.
-    named || node.module.imports.iter().any(|import| import.alias != alias && starts(&import.path))
+    let passed = node.module.imports.iter().filter_map(|import| start(&import.path).filter(|name| *name != import.alias));
+    named.chain(passed).collect()
+}
+
+/// Warnings about flags of the root package's conditions that no axis declares, each once. Where
+/// one is asked for, that is an error of the composition; these are hidden behind other conditions.
+pub fn undeclared(graph: &Graph, settings: &Settings) -> Diagnostics {
+    let mut found: BTreeMap<&str, Diagnostic> = BTreeMap::new();
+    for node in graph.nodes.iter().filter(|node| node.package == 0) {
+        for expression in &node.module.expressions {
+            let Expression::Flag(name, range) = expression else { continue };
+            let text = graph.names.text(*name);
+            if !settings.values.contains_key(text) {
+                let warning = Diagnostic::warning(codes::UNDECLARED_FLAG, format!("no axis declares the flag `{text}`"));
+                let warning = warning.at(node.module.span(range.clone()), "no permutation has asked for it");
+                found.entry(text).or_insert_with(|| warning.suggest(text, settings.values.keys().map(String::as_str)));
+            }
+        }
+    }
+    found.into_values().collect()
 }

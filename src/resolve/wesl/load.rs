@@ -227,7 +227,7 @@ fn certain_errors(graph: &Graph) -> Diagnostics {
         let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
         let broken = broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
         let found = node.module.errors.iter().chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
-        errors.extend(found.map(|error| traced(graph, error.clone())));
+        errors.extend(found.map(|error| graph.traced(error.clone())));
         let certainly = node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
         open.extend(certainly.filter_map(|candidate| match candidate.target {
             Target::Items { node, .. } => Some(node as usize),
@@ -237,10 +237,4 @@ fn certain_errors(graph: &Graph) -> Diagnostics {
     errors.sort_by_key(|error| error.labels.first().map(|label| label.span));
     errors.dedup();
     errors
-}
-
-/// With the chain of imports that led to the file it is in.
-fn traced(graph: &Graph, error: Diagnostic) -> Diagnostic {
-    let source = error.labels.first().map(|label| label.span.source);
-    source.map(|source| graph.trace(source)).into_iter().flatten().fold(error, Diagnostic::note)
 }

@@ -18,6 +18,9 @@ struct Absolute {
 /// How many meanings one path may have under different conditions.
 const MEANINGS: usize = 64;
 
+/// Failures of a graph for which names of modules are suggested.
+const SUGGESTED: usize = 100;
+
 impl Loader<'_> {
     /// What a path of a module may mean. `import` is its index if an import has it: that one's
     /// own name does not count for its first segment, and it may lead to a module.
@@ -171,7 +174,7 @@ impl Loader<'_> {
         let path: Vec<String> = path.iter().map(|name| self.names.text(*name).to_owned()).collect();
         let label = self.label(package, &path);
         let shown = self.package(package).files.display(&path.join("/"));
-        let listing = self.listing(package).to_vec();
+        let listing = if self.failures.len() < SUGGESTED { self.listing(package).to_vec() } else { Vec::new() };
         let mut known: Vec<String> = Vec::new();
         for file in listing {
             let parts: Vec<String> = file.rsplit_once('.').map_or(&*file, |(stem, _)| stem).split('/').map(str::to_owned).collect();

@@ -7,6 +7,7 @@ mod load;
 mod locate;
 
 pub use graph::{Candidate, Constant, Graph, Node, Target};
+pub use lint::undeclared;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;

@@ -1,0 +1,86 @@
+//! The permutations a program asked for while it ran, as a list that a manifest can name.
+//!
+//! ```text
+//! # Permutations asked for: a program and a key, one a line.
+//! forward default
+//! forward shadow=hard,two_sided
+//! ```
+//!
+//! Lines are sorted and no order is needed: lists of several runs merge by `sort -u`.
+
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::fmt;
+use std::path::Path;
+use std::sync::{PoisonError, RwLock};
+
+use super::Error;
+use super::directory::replace;
+
+const HEADER: &str = "# Permutations asked for: a program and a key, one a line.";
+
+/// Keys by program, in canonical form.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Usage {
+    pub keys: BTreeMap<String, BTreeSet<String>>,
+}
+
+impl Usage {
+    /// Reads a list; the number of a line that is none, from 1, is the error.
+    pub fn parse(text: &str) -> Result<Self, usize> {
+        let mut usage = Self::default();
+        for (index, line) in text.lines().enumerate() {
+            let line = line.trim();
+            if line.is_empty() || line.starts_with('#') {
+                continue;
+            }
+            let (program, key) = line.split_once(char::is_whitespace).ok_or(index + 1)?;
+            usage.keys.entry(program.to_owned()).or_default().insert(key.trim().to_owned());
+        }
+        Ok(usage)
+    }
+
+    /// Adds to the list in a file, which is made if it is not there and replaced as a whole.
+    ///
+    /// # Errors
+    /// [`Error::Corrupt`] where the file is no list: it is left alone.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        let mut all = match std::fs::read_to_string(path) {
+            Ok(text) => Self::parse(&text).map_err(|line| Error::corrupt("usage list", format!("line {line} is no program and key")))?,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Self::default(),
+            Err(error) => return Err(error.into()),
+        };
+        for (program, keys) in &self.keys {
+            all.keys.entry(program.clone()).or_default().extend(keys.iter().cloned());
+        }
+        replace(path, all.to_string().as_bytes())
+    }
+}
+
+impl fmt::Display for Usage {
+    /// The list.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{HEADER}")?;
+        self.keys.iter().try_for_each(|(program, keys)| keys.iter().try_for_each(|key| writeln!(f, "{program} {key}")))
+    }
+}
+
+/// Collects keys from many threads. What was seen before costs a shared lock and a lookup.
+#[derive(Default)]
+pub struct Recorder(RwLock<BTreeMap<String, HashSet<String>>>);
+
+impl Recorder {
+    pub fn note(&self, program: &str, key: &str) {
+        let known = self.0.read().unwrap_or_else(PoisonError::into_inner).get(program).is_some_and(|keys| keys.contains(key));
+        if !known {
+            let mut all = self.0.write().unwrap_or_else(PoisonError::into_inner);
+            all.entry(program.to_owned()).or_default().insert(key.to_owned());
+        }
+    }
+
+    /// What was asked for so far.
+    pub fn usage(&self) -> Usage {
+        let seen = self.0.read().unwrap_or_else(PoisonError::into_inner);
+        Usage { keys: seen.iter().map(|(program, keys)| (program.clone(), keys.iter().cloned().collect())).collect() }
+    }
+}

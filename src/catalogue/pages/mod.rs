@@ -1,0 +1,87 @@
+//! The catalogue as Markdown: an index, a page for each module, one for programs, one for presets.
+
+mod markdown;
+mod module;
+mod preset;
+mod program;
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::preset::Preset;
+use super::probe::Probe;
+use super::{Kind, Module};
+use crate::permute::Manifest;
+use markdown::{cell, prose};
+
+/// What the catalogue shows.
+pub struct Contents<'c> {
+    pub modules: &'c [Module],
+    /// SVG by the path of the function: `lighting::spot::cone_hard`.
+    pub plots: &'c BTreeMap<String, String>,
+    pub manifest: &'c Manifest,
+    pub presets: &'c [Preset],
+    pub probes: &'c [Probe],
+}
+
+/// The files of the catalogue: path below its folder and text.
+pub fn pages(contents: &Contents) -> BTreeMap<String, String> {
+    let mut files = BTreeMap::from([
+        ("README.md".to_owned(), index(contents)),
+        ("programs.md".to_owned(), program::page(contents.manifest)),
+        ("presets.md".to_owned(), preset::page(contents.presets, contents.probes)),
+    ]);
+    for module in contents.modules {
+        files.insert(page_of(&module.path), module::page(module, contents.plots));
+    }
+    for (path, svg) in contents.plots {
+        files.insert(format!("{}.svg", path.replace("::", "/")), svg.clone());
+    }
+    files
+}
+
+/// Page of a module below the catalogue's folder.
+fn page_of(module: &str) -> String {
+    format!("{}.md", module.replace("::", "/"))
+}
+
+const INDEX: &str = "\
+# Catalogue
+
+Every module exists in WESL and in GLSL with the same functions, parameters and results. Import a
+function in WESL, include its module in GLSL:
+
+```wgsl
+import lamplight::brdf::specular::blinn_phong;
+```
+
+```glsl
+#include <lamplight/brdf/specular.glsl>
+```
+
+Vectors named `n l v h` are unit; `l` and `v` point away from the surface. Colours are linear.
+Visibility and attenuation are factors from 0 to 1, 1 fully lit. Depth is from 0 to 1, near to far.
+
+Beside the modules: the [programs](programs.md) with their axes, and the [presets](presets.md),
+one for each published example.
+
+This catalogue is made from the library by `cargo xtask docs`.
+";
+
+fn index(contents: &Contents) -> String {
+    let mut text = INDEX.to_owned();
+    let mut folder = "";
+    for module in contents.modules {
+        let (here, _) = module.path.split_once("::").unwrap_or((&module.path, ""));
+        if here != folder {
+            let _ = writeln!(text, "\n## {here}\n\n| module | functions | |\n|---|---|---|");
+            folder = here;
+        }
+        let link = format!("[`{}`]({})", module.path, page_of(&module.path));
+        let functions = module.items.iter().filter(|item| item.kind == Kind::Function);
+        let names: Vec<String> =
+            functions.map(|item| format!("[{}]({}#{})", prose(&item.name), page_of(&module.path), item.name)).collect();
+        let _ = writeln!(text, "| {link} | {} | {} |", names.join(", "), cell(module.summary()));
+    }
+    text
+}

@@ -1,0 +1,69 @@
+//! The page of a module.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::super::{Item, Kind, Module, SECTIONS};
+use super::markdown::{block, cell, prose};
+
+/// Sections printed as paragraphs; the parameters are a table.
+const PARAGRAPHS: std::ops::RangeFrom<usize> = 1..;
+
+/// The page: the module's own words, a table of contents, every item.
+pub fn page(module: &Module, plots: &BTreeMap<String, String>) -> String {
+    let mut text = format!("# {}\n", module.path);
+    for paragraph in &module.doc {
+        let _ = write!(text, "\n{}\n", prose(paragraph));
+    }
+    if let Some(item) = module.items.first() {
+        let import = format!("import lamplight::{}::{{..}};", module.path);
+        let _ = write!(text, "\n| WESL | GLSL |\n|---|---|\n| `{import}` | `{}` |\n", item.include());
+    }
+    contents(&mut text, module);
+    for item in &module.items {
+        entry(&mut text, item, plots.contains_key(&item.path()));
+    }
+    let up = "../".repeat(module.path.matches("::").count());
+    let _ = write!(text, "\n---\n[Catalogue]({up}README.md)\n");
+    text
+}
+
+fn contents(text: &mut String, module: &Module) {
+    text.push_str("\n| | |\n|---|---|\n");
+    for item in &module.items {
+        let kind = if item.kind == Kind::Function { String::new() } else { format!("{} ", item.kind.name()) };
+        let _ = writeln!(text, "| {kind}[`{}`](#{}) | {} |", item.name, item.name.to_lowercase(), cell(item.summary()));
+    }
+}
+
+fn entry(text: &mut String, item: &Item, plotted: bool) {
+    let _ = write!(text, "\n## {}\n", prose(&item.name));
+    for paragraph in item.paragraphs() {
+        let _ = write!(text, "\n{}\n", prose(&paragraph));
+    }
+    let _ = write!(text, "\n{}", block("wgsl", &item.wesl));
+    if let Some(glsl) = &item.glsl {
+        let _ = write!(text, "\n{}", block("glsl", glsl));
+    }
+    if plotted {
+        let (_, module) = item.module.rsplit_once("::").unwrap_or(("", &item.module));
+        let _ = write!(text, "\n![{} plotted]({module}/{}.svg)\n", item.name, item.name);
+    }
+    members(text, item);
+    for section in &SECTIONS[PARAGRAPHS] {
+        if let Some(words) = item.section(section) {
+            let _ = write!(text, "\n**{section}.** {}\n", prose(&words));
+        }
+    }
+}
+
+fn members(text: &mut String, item: &Item) {
+    if item.members.is_empty() {
+        return;
+    }
+    let heading = if item.kind == Kind::Struct { "field" } else { "parameter" };
+    let _ = write!(text, "\n| {heading} | type | |\n|---|---|---|\n");
+    for member in &item.members {
+        let _ = writeln!(text, "| `{}` | `{}` | {} |", member.name, member.ty, cell(&member.doc));
+    }
+}

@@ -1,0 +1,67 @@
+//! The page of presets.
+
+use std::fmt::Write as _;
+
+use super::super::preset::{Preset, SCENES};
+use super::super::probe::{ORDER, Probe};
+use super::markdown::{cell, prose};
+
+/// The page: presets, scenes, light probes.
+pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
+    let mut text = "# Presets\n\nOne for each published example. The numbers are those that the source gives, named after the\n\
+                    uniforms' fields; the scene chooses the rest.\n"
+        .to_owned();
+    let mut work = "";
+    for preset in presets {
+        let (here, place) = preset
+            .source
+            .split_once(", example")
+            .map_or((preset.source.as_str(), ""), |(here, _)| (here, &preset.source[here.len() + 2..]));
+        let (here, place) = here.split_once(", chapter 4, ").unwrap_or((here, place));
+        if here != work {
+            let _ =
+                write!(text, "\n## {}\n\n| preset | place | permutation | scene | numbers | |\n|---|---|---|---|---|---|\n", prose(here));
+            work = here;
+        }
+        row(&mut text, preset, place);
+    }
+    text.push_str("\n## Scenes\n\n| scene | what it is |\n|---|---|\n");
+    for (name, about) in SCENES {
+        let _ = writeln!(text, "| `{name}` | {about} |");
+    }
+    light_probes(&mut text, probes);
+    text.push_str("\n---\n[Catalogue](README.md)\n");
+    text
+}
+
+fn row(text: &mut String, preset: &Preset, place: &str) {
+    let passes = preset.passes.iter().map(|pass| format!("`{}:{}`, then ", pass.program, pass.key)).collect::<String>();
+    let numbers =
+        preset.numbers.iter().flat_map(|(group, fields)| fields.iter().map(move |(name, value)| format!("`{group}.{name}` = {value}")));
+    let probe = preset.probe.iter().map(|probe| format!("probe `{probe}`"));
+    let numbers: Vec<String> = numbers.chain(probe).collect();
+    let _ = writeln!(
+        text,
+        "| `{}` | {} | {passes}`{}:{}` | `{}` | {} | {} |",
+        preset.name,
+        cell(place),
+        preset.program,
+        preset.key,
+        preset.scene,
+        numbers.join("<br>"),
+        cell(&preset.doc),
+    );
+}
+
+fn light_probes(text: &mut String, probes: &[Probe]) {
+    let _ = write!(
+        text,
+        "\n## Light probes\n\nNine coefficients each, ordered {}; in shaders the functions of [`ambient::probes`](ambient/probes.md),\n\
+         in Rust `lamplight::catalogue::probe::library(..)`.\n\n| probe | place | L00 |\n|---|---|---|\n",
+        ORDER.join(", ")
+    );
+    for probe in probes {
+        let [r, g, b] = probe.coefficients[0];
+        let _ = writeln!(text, "| `{}` | {} | {r}, {g}, {b} |", probe.name, cell(&probe.title));
+    }
+}

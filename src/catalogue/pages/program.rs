@@ -1,0 +1,51 @@
+//! The page of programs: what each varies in.
+
+use std::fmt::Write as _;
+
+use super::markdown::{cell, prose};
+use crate::permute::{Axis, Manifest, Program};
+
+/// The page.
+pub fn page(manifest: &Manifest) -> String {
+    let mut text = "# Programs\n\nEntry points in both languages. An axis multiplies permutations; a constraint takes some away;\n\
+                    what ships is listed in `shaderlib/lamplight.toml`.\n"
+        .to_owned();
+    for program in &manifest.programs {
+        entry(&mut text, program);
+    }
+    text.push_str("\n---\n[Catalogue](README.md)\n");
+    text
+}
+
+fn entry(text: &mut String, program: &Program) {
+    let _ = write!(text, "\n## {}\n", prose(&program.name));
+    if let Some(doc) = &program.doc {
+        let _ = write!(text, "\n{}\n", prose(doc));
+    }
+    let files: Vec<String> = program.files().map(|file| format!("`{}`", file.path)).collect();
+    let targets: Vec<&str> = program.targets.iter().map(|target| target.name()).collect();
+    let space = &program.space;
+    let _ = write!(text, "\n| | |\n|---|---|\n| files | {} |\n| targets | {} |\n", files.join(", "), targets.join(", "));
+    let _ =
+        write!(text, "| full product | {} |\n| valid | {} |\n| shipped | {} |\n", space.full_count(), space.valid_count(), space.count());
+    axes(text, space.axes());
+    for (index, constraint) in space.constraints().iter().enumerate() {
+        let start = if index == 0 { "\nConstraints:\n\n" } else { "" };
+        let doc = constraint.doc.as_ref().map_or(String::new(), |doc| format!("  \n  {}", prose(doc)));
+        let _ = writeln!(text, "{start}- `{}`{doc}", constraint.text);
+    }
+}
+
+fn axes(text: &mut String, axes: &[Axis]) {
+    if axes.is_empty() {
+        return;
+    }
+    text.push_str("\n| axis | values | mode | |\n|---|---|---|---|\n");
+    for axis in axes {
+        let value = |(ordinal, name): (usize, String)| if ordinal == axis.default { format!("**`{name}`**") } else { format!("`{name}`") };
+        let values: Vec<String> = axis.value_names().into_iter().enumerate().map(value).collect();
+        let doc = axis.doc.as_deref().unwrap_or_default();
+        let _ = writeln!(text, "| `{}` | {} | {} | {} |", axis.name, values.join(", "), axis.mode.name(), cell(doc));
+    }
+    text.push_str("\nThe default of each axis is bold.\n");
+}

@@ -1,0 +1,54 @@
+//! From values to places on the page, and the numbers at the axes.
+
+/// An interval of values drawn over an interval of the page.
+pub struct Scale {
+    pub from: f64,
+    pub to: f64,
+    pub start: f64,
+    pub end: f64,
+}
+
+impl Scale {
+    /// The place of a value.
+    pub fn place(&self, value: f64) -> f64 {
+        self.start + (value - self.from) / (self.to - self.from) * (self.end - self.start)
+    }
+
+    /// Round values within the interval, about as many as asked for.
+    pub fn ticks(&self, count: f64) -> Vec<f64> {
+        let step = step((self.to - self.from) / count);
+        let (first, last) = ((self.from / step - 1e-9).ceil() as i64, (self.to / step + 1e-9).floor() as i64);
+        (first..=last).map(|index| index as f64 * step).collect()
+    }
+}
+
+/// Bounds of the values, opened to the next tick; an interval even where they are all the same.
+pub fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) =
+        values.filter(|value| value.is_finite()).fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
+    if low > high {
+        return (0.0, 1.0);
+    }
+    // Functions of light mostly start at 0: a scale that nearly does, does.
+    let low = if low > 0.0 && low < 0.4 * high { 0.0 } else { low };
+    let step = step((high - low).max(high.abs().max(1e-6) * 0.01) / 4.0);
+    let (from, to) = ((low / step + 1e-6).floor() * step, (high / step - 1e-6).ceil() * step);
+    if to > from { (from, to) } else { (from - step, from + step) }
+}
+
+/// The tick's step nearest above a size: 1, 2 or 5 times a power of ten, or 45 and 90 for degrees.
+fn step(size: f64) -> f64 {
+    let power = 10f64.powf(size.log10().floor());
+    let degrees = [15.0, 30.0, 45.0, 90.0];
+    if let Some(step) = degrees.into_iter().find(|step| (size - step).abs() < 1e-9) {
+        return step;
+    }
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= size * 0.999).unwrap_or(10.0 * power)
+}
+
+/// A tick's value, as short as it goes.
+pub fn number(value: f64) -> String {
+    let rounded = (value * 1e6).round() / 1e6;
+    let text = if rounded == 0.0 { "0".to_owned() } else { rounded.to_string() };
+    text.replace('-', "\u{2212}")
+}

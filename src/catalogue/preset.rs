@@ -1,0 +1,236 @@
+//! Presets: one published example each, as a permutation with a scene and its numbers.
+//!
+//! `presets.toml` is one table a preset:
+//!
+//! ```toml
+//! [hpg_5_shadow]
+//! doc = "A hard shadow that takes away half of the diffuse light."
+//! source = "Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, shadow mapping"
+//! program = "forward"
+//! key = "ambient=none,lights=spot,max_lights=1,shadow=hard,specular=none"
+//! scene = "casters"
+//! passes = [{ program = "depth", key = "default" }]
+//! light = { shadow_strength = 0.5 }
+//! ```
+//!
+//! The tables `light`, `material`, `surroundings`, `haze` and `caster` have the numbers that the
+//! source publishes, named after the fields of the uniform they go to; `depth_pass` has what the
+//! pipeline of the shadow map is set to. What a table leaves out is the scene's to choose.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::probe::Probe;
+use super::reader;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::{Manifest, Program, Quoted, key};
+use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
+
+/// What a preset may show, and what the scene has.
+pub const SCENES: &[(&str, &str)] = &[
+    ("spheres", "a row of spheres of rising shininess before the viewer"),
+    ("floor", "a tessellated floor with a light above it"),
+    ("casters", "a sphere, a box and a torus over a floor that their shadows fall on"),
+    ("sheet", "an open, curled sheet: both of its sides are visible"),
+    ("room", "a box seen from inside, with textures and a baked lightmap"),
+    ("screen", "one triangle that covers the picture"),
+];
+
+/// One example.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Preset {
+    pub name: String,
+    pub doc: String,
+    /// The publication and the place in it.
+    pub source: String,
+    /// What is drawn last, into the picture.
+    pub program: String,
+    /// Its permutation, canonical.
+    pub key: String,
+    /// One of [`SCENES`].
+    pub scene: String,
+    /// One of the light probes, where the example is about one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probe: Option<String>,
+    /// What is drawn before, in order.
+    pub passes: Vec<Pass>,
+    /// Published numbers by group, then by field.
+    pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
+}
+
+/// An earlier pass.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Pass {
+    pub program: String,
+    pub key: String,
+}
+
+/// A number or a vector.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Number {
+    Scalar(f64),
+    Vector(Vec<f64>),
+}
+
+impl std::fmt::Display for Number {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Scalar(value) => write!(f, "{value}"),
+            Self::Vector(values) => f.write_str(&values.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")),
+        }
+    }
+}
+
+type Group = BTreeMap<String, Number>;
+type Entries = BTreeMap<Spanned<String>, Entry>;
+
+/// A preset as the file has it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    doc: String,
+    source: String,
+    program: Spanned<String>,
+    key: Spanned<String>,
+    scene: Spanned<String>,
+    probe: Option<Spanned<String>>,
+    #[serde(default)]
+    passes: Vec<PassEntry>,
+    #[serde(default)]
+    light: Group,
+    #[serde(default)]
+    material: Group,
+    #[serde(default)]
+    surroundings: Group,
+    #[serde(default)]
+    haze: Group,
+    #[serde(default)]
+    caster: Group,
+    #[serde(default)]
+    depth_pass: Group,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PassEntry {
+    program: Spanned<String>,
+    key: Spanned<String>,
+}
+
+/// Path of the presets below the library's root.
+pub const PATH: &str = "presets.toml";
+
+/// The library's presets, by name; its manifest comes from [`crate::project::library_manifest`].
+pub fn library(sources: &mut SourceSet, manifest: &Manifest, probes: &[Probe]) -> Result<Vec<Preset>, Diagnostics> {
+    let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
+    match source::read(sources, &package, PATH).map_err(|error| vec![error])? {
+        Some(id) => parse(sources, id, manifest, probes),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// Reads the presets that are in the set, by name; programs and keys are the manifest's.
+///
+/// Every mistake is reported: programs, scenes and probes that do not exist, keys that are not
+/// canonical, break a constraint or do not ship.
+pub fn parse(sources: &SourceSet, id: SourceId, manifest: &Manifest, probes: &[Probe]) -> Result<Vec<Preset>, Diagnostics> {
+    let entries: Entries = reader::data(sources, id)?;
+    let mut checker = Checker { sources, id, manifest, probes, problems: Vec::new() };
+    let presets: Vec<Preset> = entries.into_iter().map(|(name, entry)| checker.preset(name.into_inner(), entry)).collect();
+    if checker.problems.is_empty() { Ok(presets) } else { Err(checker.problems) }
+}
+
+struct Checker<'s> {
+    sources: &'s SourceSet,
+    id: SourceId,
+    manifest: &'s Manifest,
+    probes: &'s [Probe],
+    problems: Diagnostics,
+}
+
+impl Checker<'_> {
+    fn preset(&mut self, name: String, entry: Entry) -> Preset {
+        self.known("scene", &entry.scene, SCENES.iter().map(|(name, _)| *name));
+        if let Some(probe) = &entry.probe {
+            self.known("light probe", probe, self.probes.iter().map(|probe| probe.name.as_str()));
+        }
+        self.permutation(&entry.program, &entry.key);
+        for pass in &entry.passes {
+            self.permutation(&pass.program, &pass.key);
+        }
+        let groups = [
+            ("light", entry.light),
+            ("material", entry.material),
+            ("surroundings", entry.surroundings),
+            ("haze", entry.haze),
+            ("caster", entry.caster),
+            ("depth_pass", entry.depth_pass),
+        ];
+        Preset {
+            name,
+            doc: entry.doc,
+            source: entry.source,
+            program: entry.program.into_inner(),
+            key: entry.key.into_inner(),
+            scene: entry.scene.into_inner(),
+            probe: entry.probe.map(Spanned::into_inner),
+            passes: entry.passes.into_iter().map(Pass::from).collect(),
+            numbers: groups.into_iter().filter(|(_, group)| !group.is_empty()).map(|(name, group)| (name.to_owned(), group)).collect(),
+        }
+    }
+
+    fn known<'a>(&mut self, what: &str, name: &Spanned<String>, known: impl Iterator<Item = &'a str> + Clone) {
+        if !known.clone().any(|known| known == name.get_ref()) {
+            let wrong = name.get_ref();
+            self.problems.push(reader::invalid(self.span(name), format!("there is no {what} `{wrong}`")).suggest(wrong, known));
+        }
+    }
+
+    fn permutation(&mut self, program: &Spanned<String>, key: &Spanned<String>) {
+        let name = program.get_ref();
+        let Some(found) = self.manifest.program(name) else {
+            let unknown = Diagnostic::error(codes::UNKNOWN_PROGRAM, format!("there is no program `{name}`"));
+            let known = self.manifest.programs.iter().map(|program| program.name.as_str());
+            self.problems.push(unknown.at(self.span(program), "not in the manifest").suggest(name, known));
+            return;
+        };
+        let quoted = Quoted::toml(self.sources, self.span(key), key.get_ref());
+        let problems = check_key(found, &quoted);
+        self.problems.extend(problems);
+    }
+
+    fn span(&self, text: &Spanned<String>) -> Span {
+        Span::new(self.id, text.span())
+    }
+}
+
+/// What is wrong with a preset's key: it must be canonical, valid and shipped.
+fn check_key(program: &Program, text: &Quoted) -> Diagnostics {
+    let point = match key::parse(&program.space, text) {
+        Ok(point) => point,
+        Err(problems) => return problems,
+    };
+    let broken = program.space.broken(&point).map(|constraint| {
+        Diagnostic::error(codes::INVALID_PERMUTATION, format!("permutation `{}` breaks the constraint `{}`", text.text, constraint.text))
+            .at(text.span, "this permutation")
+    });
+    let mut problems: Diagnostics = broken.collect();
+    let canonical = program.space.key(&point);
+    if canonical.as_str() != text.text {
+        problems.push(reader::invalid(text.span, format!("the permutation's name is `{canonical}`")));
+    }
+    if problems.is_empty() && !program.space.contains(&point) {
+        let message = format!("permutation `{canonical}` of `{}` does not ship", program.name);
+        problems.push(reader::invalid(text.span, message).note("help: add it to `include` in the manifest"));
+    }
+    problems
+}
+
+impl From<PassEntry> for Pass {
+    fn from(entry: PassEntry) -> Self {
+        Self { program: entry.program.into_inner(), key: entry.key.into_inner() }
+    }
+}

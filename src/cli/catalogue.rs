@@ -1,0 +1,50 @@
+//! `lamplight catalogue`: the library's documentation as Markdown with plots.
+
+use std::io::{Write, stdout};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::Failure;
+use crate::harness::catalogue::{self, Files};
+use crate::output;
+
+/// Write the library's catalogue: a page for each module, with plots.
+#[derive(Args)]
+pub struct Arguments {
+    /// The folder to write to.
+    #[arg(short, long, value_name = "DIR", default_value = "docs/catalogue")]
+    output: PathBuf,
+    /// Write the modules that are made from data into the library's sources instead.
+    #[arg(long, value_name = "DIR", conflicts_with = "output")]
+    modules: Option<PathBuf>,
+    /// Write nothing; fail if anything would change.
+    #[arg(long)]
+    check: bool,
+}
+
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    let (folder, files) = match &arguments.modules {
+        Some(folder) => (folder, catalogue::modules()),
+        None => (&arguments.output, catalogue::pages()),
+    };
+    let files = files.map_err(|(sources, problems)| Failure::Input(sources, problems))?;
+    let changed = changed(folder, &files);
+    if arguments.check {
+        return if changed.is_empty() { Ok(()) } else { Err(Failure::check(outdated(&changed))) };
+    }
+    for (path, text) in &changed {
+        output::write(path, text.as_bytes())?;
+    }
+    Ok(writeln!(stdout(), "{}: {} files, {} changed", folder.display(), files.len(), changed.len())?)
+}
+
+fn changed(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {
+    let differs = |(path, text): &(PathBuf, String)| std::fs::read(path).ok().as_deref() != Some(text.as_bytes());
+    files.iter().map(|(path, text)| (folder.join(path), text.clone())).filter(differs).collect()
+}
+
+fn outdated(changed: &[(PathBuf, String)]) -> String {
+    let names: Vec<String> = changed.iter().map(|(path, _)| path.display().to_string()).collect();
+    format!("not up to date: {}\nrun: cargo xtask docs", names.join(", "))
+}

@@ -1,0 +1,81 @@
+//! `lamplight keys`: a manifest's permutations as types of an engine's language.
+
+use std::io::{Write, stdout};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::{DiagnosticForm, Failure, warn};
+use crate::keys::{self, LANGUAGES, Language};
+use crate::output;
+use crate::permute::{Lock, Manifest};
+use crate::project;
+use crate::source::SourceSet;
+
+/// Write typed keys for Rust, C or TypeScript, or the lock file of dense keys.
+#[derive(Args)]
+pub struct Arguments {
+    /// The manifest [default: that of the library].
+    #[arg(long, value_name = "FILE")]
+    manifest: Option<PathBuf>,
+    /// The language of the keys.
+    #[arg(long, value_name = "c|rust|ts", value_parser = language, required_unless_present = "lock")]
+    lang: Option<&'static Language>,
+    /// The file to write [default: standard output].
+    #[arg(short, long, value_name = "FILE", requires = "lang")]
+    out: Option<PathBuf>,
+    /// Write the lock file beside the manifest: axes and values that it lacks are appended.
+    #[arg(long, requires = "manifest")]
+    lock: bool,
+    /// Write nothing; exit code 3 if a file is not up to date.
+    #[arg(long)]
+    check: bool,
+}
+
+fn language(name: &str) -> Result<&'static Language, String> {
+    let names: Vec<&str> = LANGUAGES.iter().map(|language| language.name).collect();
+    keys::find(name).ok_or_else(|| format!("there are: {}", names.join(", ")))
+}
+
+pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    let (mut sources, manifest) = open(arguments.manifest.as_deref())?;
+    warn(&sources, &manifest.warnings, form);
+    if let Some(path) = arguments.manifest.as_deref().filter(|_| arguments.lock) {
+        let lock = match project::lock(path, &mut sources) {
+            Ok(lock) => extended(&lock, &manifest),
+            Err(diagnostics) => return Err(Failure::Input(sources, diagnostics)),
+        };
+        put(&project::lock_path(path), &lock.to_string(), arguments.check)?;
+    }
+    let Some(language) = arguments.lang else { return Ok(()) };
+    let text = keys::write(&manifest, language);
+    match &arguments.out {
+        Some(path) => put(path, &text, arguments.check),
+        None => Ok(stdout().write_all(text.as_bytes())?),
+    }
+}
+
+fn open(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> {
+    let Some(path) = path else {
+        return project::library_manifest().map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics));
+    };
+    let mut sources = SourceSet::default();
+    match project::read_manifest(path, &mut sources) {
+        Ok(manifest) => Ok((sources, manifest)),
+        Err(diagnostics) => Err(Failure::Input(sources, diagnostics)),
+    }
+}
+
+fn extended(lock: &Lock, manifest: &Manifest) -> Lock {
+    manifest.programs.iter().fold(lock.clone(), |lock, program| lock.extended(&program.name, &program.space))
+}
+
+fn put(path: &Path, text: &str, check: bool) -> Result<(), Failure> {
+    let known = std::fs::read(path).is_ok_and(|known| known == text.as_bytes());
+    match (known, check) {
+        (true, _) => Ok(()),
+        (false, true) => Err(Failure::check(format!("`{}` is not up to date: run the command without `--check`", path.display()))),
+        (false, false) => output::write(path, text.as_bytes())
+            .map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display()))),
+    }
+}

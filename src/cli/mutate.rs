@@ -1,0 +1,69 @@
+//! `lamplight mutate`: how many mistakes put into a package's functions its numeric cases notice.
+
+use std::io::{Write, stdout};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+use clap::Args;
+
+use super::failure::Failure;
+use crate::harness::library::Library;
+use crate::harness::mutate::{coverage, mutate};
+use crate::source::{Disk, SourceSet};
+
+/// Put mistakes into functions, one at a time, and see whether the numeric cases notice.
+#[derive(Args)]
+pub struct Arguments {
+    /// Modules (`lighting::spot`, `lighting`) [default: all].
+    module: Vec<String>,
+    /// Root directory of the package [default: the library of this program].
+    #[arg(long, value_name = "DIR")]
+    root: Option<PathBuf>,
+    /// Instead, report the statements and branches that no case reaches.
+    #[arg(long)]
+    coverage: bool,
+}
+
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    let library = library(&arguments)?;
+    let modules = modules(&library, &arguments.module)?;
+    if arguments.coverage { cover(&library, &modules) } else { survive(&library, &modules) }
+}
+
+fn library(arguments: &Arguments) -> Result<Library, Failure> {
+    let Some(root) = &arguments.root else { return Ok(Library::embedded()) };
+    let disk = Disk::new(root).map_err(|error| Failure::input(format!("cannot read `{}`: {error}", root.display())))?;
+    Ok(Library::new("lamplight", Arc::new(disk), Vec::new()))
+}
+
+/// The modules of those paths, or below them.
+fn modules(library: &Library, asked: &[String]) -> Result<Vec<String>, Failure> {
+    let all = library.modules();
+    let below = |module: &str, path: &str| module.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"));
+    if let Some(unknown) = asked.iter().find(|path| !all.iter().any(|module| below(module, path))) {
+        return Err(Failure::input(format!("there is no module `{unknown}`")));
+    }
+    Ok(all.into_iter().filter(|module| asked.is_empty() || asked.iter().any(|path| below(module, path))).collect())
+}
+
+fn survive(library: &Library, modules: &[String]) -> Result<(), Failure> {
+    let sources = Mutex::new(SourceSet::default());
+    let report = mutate(library, &sources, modules);
+    let report = report.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))?;
+    write!(stdout(), "{}", report.survivors())?;
+    if modules.len() == library.modules().len() {
+        report.stale.iter().try_for_each(|entry| writeln!(stdout(), "listed as equivalent, but is none that survived: {entry}"))?;
+    }
+    writeln!(stdout(), "{}", report.summary())?;
+    if report.passed() { Ok(()) } else { Err(Failure::check("the cases notice too few mistakes")) }
+}
+
+fn cover(library: &Library, modules: &[String]) -> Result<(), Failure> {
+    let sources = Mutex::new(SourceSet::default());
+    let found = coverage(library, &sources, modules);
+    let found = found.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))?;
+    found.iter().try_for_each(|module| write!(stdout(), "{module}"))?;
+    let (all, missed) = found.iter().fold((0, 0), |sum, module| (sum.0 + module.blocks, sum.1 + module.uncovered.len()));
+    writeln!(stdout(), "reached {} of {all} blocks", all - missed)?;
+    if missed == 0 { Ok(()) } else { Err(Failure::check("some statements are reached by no case")) }
+}

@@ -1,0 +1,85 @@
+//! Modules and their items.
+
+use serde_json::{Value, json};
+
+use super::Shown;
+use crate::catalogue::{Item, Kind, Member, Module, SECTIONS};
+use crate::cli::text::{indented, rows, wrapped};
+use crate::project::LIBRARY;
+
+/// A function, a struct or a constant.
+pub fn item(item: &Item) -> Shown {
+    Shown { text: item_text(item), json: item_json(item) }
+}
+
+/// A module with its items.
+pub fn module(module: &Module) -> Shown {
+    let items = module.items.iter().map(item_json).collect::<Vec<_>>();
+    let json = json!({ "module": module.path, "doc": module.doc, "items": items });
+    Shown { text: module_text(module), json }
+}
+
+fn item_text(item: &Item) -> String {
+    let mut text = format!("{LIBRARY}::{}\n", item.path());
+    for paragraph in item.paragraphs() {
+        text += &format!("\n{}", wrapped(&paragraph, 2));
+    }
+    if item.members.iter().any(|member| !member.doc.is_empty()) {
+        let heading = if item.kind == Kind::Struct { "Fields" } else { "Parameters" };
+        text += &format!("\n{heading}\n{}", rows(&item.members.iter().map(member_row).collect::<Vec<_>>(), 2));
+    }
+    for section in SECTIONS.iter().skip(1) {
+        if let Some(words) = item.section(section) {
+            text += &format!("\n{section}\n{}", wrapped(&words, 2));
+        }
+    }
+    text += &format!("\nWESL\n{}  {}\n", indented(&item.wesl, 2), item.import());
+    if let Some(glsl) = &item.glsl {
+        text += &format!("\nGLSL\n{}  {}\n", indented(glsl, 2), item.include());
+    }
+    text
+}
+
+fn member_row(member: &Member) -> Vec<String> {
+    vec![member.name.clone(), member.ty.clone(), member.doc.clone()]
+}
+
+fn item_json(item: &Item) -> Value {
+    let members =
+        item.members.iter().map(|member| json!({ "name": member.name, "type": member.ty, "doc": member.doc })).collect::<Vec<_>>();
+    json!({
+        item.kind.name(): item.path(),
+        "doc": item.paragraphs(),
+        if item.kind == Kind::Struct { "fields" } else { "parameters" }: members,
+        "result": item.result,
+        "returns": item.section("Returns"),
+        "source": item.section("Source"),
+        "edges": item.section("Edges"),
+        "error_model": item.section("Error model"),
+        "wesl": item.wesl,
+        "glsl": item.glsl,
+        "import": item.import(),
+        "include": item.include(),
+    })
+}
+
+fn module_text(module: &Module) -> String {
+    let mut text = format!("{LIBRARY}::{}\n", module.path);
+    for paragraph in &module.doc {
+        text += &format!("\n{}", wrapped(paragraph, 2));
+    }
+    for item in &module.items {
+        let signature = item.wesl.lines().next().unwrap_or_default().trim_end_matches(['{', ' ']);
+        text += &format!("\n{}{}", wrapped_code(signature), wrapped(item.summary(), 6));
+    }
+    if let Some(item) = module.items.first() {
+        text += &format!("\nWESL\n  import {LIBRARY}::{}::{{..}};\n\nGLSL\n  {}\n", module.path, item.include());
+    }
+    text
+}
+
+/// A signature, its later lines deeper than its first.
+fn wrapped_code(code: &str) -> String {
+    let text = wrapped(code, 4);
+    text.replacen("    ", "  ", 1)
+}

@@ -1,0 +1,102 @@
+//! `lamplight show PATH`: everything about one thing of the library.
+
+mod item;
+mod preset;
+mod program;
+
+pub use preset::{preset_json, probe_json};
+pub use program::axis_json;
+
+use std::io::{Write, stdout};
+
+use clap::Args;
+use serde_json::Value;
+
+use super::failure::Failure;
+use crate::catalogue::preset::Preset;
+use crate::catalogue::probe::Probe;
+use crate::catalogue::{self, Item, Module};
+use crate::diagnostic::nearest;
+use crate::permute::Manifest;
+use crate::project::{self, LIBRARY};
+
+/// Show a function's documentation, signatures, source and error model.
+#[derive(Args)]
+pub struct Arguments {
+    /// An item (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a program
+    /// (`forward`), an axis (`forward.shadow`), a preset (`hpg_5_shadow`) or a light probe.
+    path: String,
+    /// As a JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// One thing, in both forms.
+struct Shown {
+    text: String,
+    json: Value,
+}
+
+/// What there is to show.
+struct Library {
+    modules: Vec<Module>,
+    manifest: Manifest,
+    presets: Vec<Preset>,
+    probes: Vec<Probe>,
+}
+
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    let path = arguments.path.strip_prefix(LIBRARY).and_then(|rest| rest.strip_prefix("::")).unwrap_or(&arguments.path);
+    let library = library()?;
+    let shown = find(&library, path).ok_or_else(|| missing(path, &library))?;
+    let text = if arguments.json { format!("{:#}\n", shown.json) } else { shown.text };
+    Ok(stdout().write_all(text.as_bytes())?)
+}
+
+fn library() -> Result<Library, Failure> {
+    let (mut sources, manifest) = project::library_manifest().map_err(|(sources, problems)| Failure::Input(sources, problems))?;
+    match catalogue::examples(&mut sources, &manifest) {
+        Ok((presets, probes)) => Ok(Library { modules: catalogue::library(), manifest, presets, probes }),
+        Err(problems) => Err(Failure::Input(sources, problems)),
+    }
+}
+
+fn find(library: &Library, path: &str) -> Option<Shown> {
+    let item = || library.modules.iter().flat_map(|module| &module.items).find(|item| item.path() == path).map(item::item);
+    let module = || library.modules.iter().find(|module| module.path == path).map(item::module);
+    let program = || library.manifest.program(path).map(program::program);
+    let preset = || library.presets.iter().find(|preset| preset.name == path).map(preset::preset);
+    let probe = || library.probes.iter().find(|probe| probe.name == path).map(preset::probe);
+    item().or_else(module).or_else(program).or_else(|| axis(library, path)).or_else(preset).or_else(probe)
+}
+
+/// `PROGRAM.AXIS`, or the axis alone where one program has it.
+fn axis(library: &Library, path: &str) -> Option<Shown> {
+    let (wanted, name) = path.split_once('.').map_or((None, path), |(program, name)| (Some(program), name));
+    let programs = library.manifest.programs.iter().filter(|program| wanted.is_none_or(|wanted| wanted == program.name));
+    let mut found = programs.filter_map(|program| Some((program, program.space.axis(name)?)));
+    let (program, axis) = found.next()?;
+    found.next().is_none().then(|| program::axis(program, axis))
+}
+
+fn missing(path: &str, library: &Library) -> Failure {
+    let items: Vec<String> = library.modules.iter().flat_map(|module| module.items.iter().map(Item::path)).collect();
+    let axes: Vec<String> = library
+        .manifest
+        .programs
+        .iter()
+        .flat_map(|program| program.space.axes().iter().map(|axis| format!("{}.{}", program.name, axis.name)))
+        .collect();
+    let others = library
+        .modules
+        .iter()
+        .map(|module| module.path.as_str())
+        .chain(library.manifest.programs.iter().map(|program| program.name.as_str()));
+    let others = others
+        .chain(library.presets.iter().map(|preset| preset.name.as_str()))
+        .chain(library.probes.iter().map(|probe| probe.name.as_str()));
+    let known = items.iter().chain(&axes).map(String::as_str).chain(others);
+    let same_name = items.iter().find(|item| item.rsplit("::").next() == path.rsplit("::").next()).map(String::as_str);
+    let hint = same_name.or_else(|| nearest(path, known)).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    Failure::input(format!("the library has no `{path}`{hint}"))
+}

@@ -1,0 +1,67 @@
+//! Presets and light probes.
+
+use serde_json::{Value, json};
+
+use super::Shown;
+use crate::catalogue::preset::{Pass, Preset};
+use crate::catalogue::probe::{ORDER, Probe};
+use crate::cli::text::{rows, wrapped};
+
+/// A preset with its numbers.
+pub fn preset(preset: &Preset) -> Shown {
+    let mut facts = vec![vec!["source".to_owned(), preset.source.clone()]];
+    facts.extend(preset.passes.iter().map(|pass| vec!["first".to_owned(), permutation(pass)]));
+    facts.push(vec!["program".to_owned(), preset.program.clone()]);
+    facts.push(vec!["key".to_owned(), preset.key.replace(',', ", ")]);
+    facts.push(vec!["scene".to_owned(), preset.scene.clone()]);
+    facts.extend(preset.probe.iter().map(|probe| vec!["light probe".to_owned(), probe.clone()]));
+    let mut text = format!("{}\n\n{}\n{}", preset.name, wrapped(&preset.doc, 2), rows(&facts, 2));
+    let numbers: Vec<Vec<String>> = preset
+        .numbers
+        .iter()
+        .flat_map(|(group, fields)| fields.iter().map(move |(name, value)| vec![format!("{group}.{name}"), value.to_string()]))
+        .collect();
+    if !numbers.is_empty() {
+        text += &format!("\nNumbers\n{}", rows(&numbers, 2));
+    }
+    Shown { text, json: preset_json(preset) }
+}
+
+/// A preset as an object.
+pub fn preset_json(preset: &Preset) -> Value {
+    json!({
+        "preset": preset.name,
+        "summary": preset.doc,
+        "source": preset.source,
+        "program": preset.program,
+        "key": preset.key,
+        "scene": preset.scene,
+        "probe": preset.probe,
+        "passes": preset.passes,
+        "numbers": preset.numbers,
+    })
+}
+
+fn permutation(pass: &Pass) -> String {
+    if pass.key == "default" { pass.program.clone() } else { format!("{} {}", pass.program, pass.key) }
+}
+
+/// A light probe with its coefficients.
+pub fn probe(probe: &Probe) -> Shown {
+    let number = |value: f64| format!("{value:>9}");
+    let table: Vec<Vec<String>> = ORDER
+        .iter()
+        .zip(&probe.coefficients)
+        .map(|(name, row)| vec![(*name).to_owned(), number(row[0]), number(row[1]), row[2].to_string()])
+        .collect();
+    let function = format!("ambient::probes::probe_{}", probe.name);
+    let text = format!("{}\n\n{}{}\n{}\n  {function}\n", probe.name, wrapped(&probe.title, 2), wrapped(&probe.source, 2), rows(&table, 2));
+    Shown { text, json: probe_json(probe) }
+}
+
+/// A light probe as an object.
+pub fn probe_json(probe: &Probe) -> Value {
+    let rows: serde_json::Map<String, Value> =
+        ORDER.iter().zip(&probe.coefficients).map(|(name, row)| ((*name).to_owned(), json!(row))).collect();
+    json!({ "probe": probe.name, "title": probe.title, "source": probe.source, "coefficients": rows })
+}

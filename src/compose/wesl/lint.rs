@@ -1,0 +1,102 @@
+//! Conditions that decide nothing.
+
+use super::evaluate::Evaluator;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::parse::wesl::{ConditionId, Expression, ExpressionId, Module};
+use crate::permute::Settings;
+use crate::resolve::wesl::Graph;
+use crate::source::Span;
+
+/// The outcomes so far of the root package's conditions, over the permutations shown to it.
+pub struct Outcomes<'g> {
+    graph: &'g Graph,
+    /// Those that have had one outcome only.
+    open: Vec<Condition>,
+}
+
+struct Condition {
+    node: u32,
+    id: ConditionId,
+    held: bool,
+    failed: bool,
+    /// It asks for something that the permutations have no value for.
+    unknown: bool,
+}
+
+impl<'g> Outcomes<'g> {
+    pub fn new(graph: &'g Graph) -> Self {
+        let own = graph.nodes.iter().enumerate().filter(|(_, node)| node.package == 0);
+        let conditions = own.flat_map(|(index, node)| conditions(&node.module).map(move |id| (index as u32, id)));
+        let open = conditions.map(|(node, id)| Condition { node, id, held: false, failed: false, unknown: false });
+        Self { graph, open: open.collect() }
+    }
+
+    /// Whether another permutation can tell no more.
+    pub fn is_settled(&self) -> bool {
+        self.open.is_empty()
+    }
+
+    /// Evaluates what is open for one permutation.
+    pub fn see(&mut self, settings: &Settings) {
+        let mut evaluator = Evaluator::new(self.graph, settings);
+        for condition in &mut self.open {
+            let holds = evaluator.holds(condition.node, condition.id);
+            condition.held |= holds;
+            condition.failed |= !holds;
+            condition.unknown |= !evaluator.errors.is_empty();
+            evaluator.errors.clear();
+        }
+        let graph = self.graph;
+        self.open.retain(|condition| !condition.unknown && !(condition.held && (condition.failed || is_later(graph, condition))));
+    }
+
+    /// Where the conditions stand that are watched.
+    pub fn places(&self) -> impl Iterator<Item = Span> {
+        self.graph.nodes.iter().filter(|node| node.package == 0).flat_map(|node| {
+            let conditions = conditions(&node.module).filter_map(|id| node.module.conditions[id as usize].expression);
+            conditions.filter_map(|expression| place(&node.module, expression))
+        })
+    }
+
+    /// A warning for each condition that never had another outcome.
+    pub fn warnings(&self) -> impl Iterator<Item = Diagnostic> {
+        self.open.iter().filter(|condition| condition.held || condition.failed).filter_map(|condition| {
+            let module = &self.graph.nodes[condition.node as usize].module;
+            let span = place(module, module.conditions[condition.id as usize].expression?)?;
+            let word = if condition.held { "true" } else { "false" };
+            let warning = Diagnostic::warning(codes::CONSTANT_CONDITION, format!("this condition is {word} in every permutation"));
+            let label = if condition.held { "decides nothing" } else { "what it guards is in no permutation" };
+            Some(warning.at(span, label))
+        })
+    }
+}
+
+/// The last branch of a chain may cover all that is left: it only has to hold once.
+fn is_later(graph: &Graph, condition: &Condition) -> bool {
+    graph.nodes[condition.node as usize].module.conditions[condition.id as usize].after.is_some()
+}
+
+/// Conditions that ask for something: `@if(true)` is meant as it stands.
+fn conditions(module: &Module) -> impl Iterator<Item = ConditionId> {
+    let asks =
+        |(_, condition): &(usize, &crate::parse::wesl::Condition)| condition.expression.is_some_and(|root| place(module, root).is_some());
+    module.conditions.iter().enumerate().filter(asks).map(|(id, _)| id as ConditionId)
+}
+
+/// From the first name of an expression to its last.
+fn place(module: &Module, root: ExpressionId) -> Option<Span> {
+    let mut range: Option<std::ops::Range<u32>> = None;
+    let mut open = vec![root];
+    while let Some(next) = open.pop() {
+        match &module.expressions[next as usize] {
+            Expression::Literal(_) => {}
+            Expression::Not(operand) => open.push(*operand),
+            Expression::All(operands) | Expression::Any(operands) => open.extend(operands),
+            Expression::Flag(_, found) | Expression::Compare { range: found, .. } => {
+                let known = range.unwrap_or_else(|| found.clone());
+                range = Some(known.start.min(found.start)..known.end.max(found.end));
+            }
+        }
+    }
+    range.map(|range| module.span(range))
+}

@@ -1,0 +1,185 @@
+//! The lines a diagnostic points to, fit to be printed: long lines cut to what is labelled, and
+//! nothing in them that would move a terminal's cursor or turn its writing around.
+
+use std::ops::Range;
+
+use codespan_reporting::files::{Error, Files};
+
+use crate::source::{SourceId, SourceSet, Span};
+
+/// Bytes of a line from which on it is cut, before the label, and in all.
+const LONG: usize = 240;
+const BEFORE: usize = 80;
+const WINDOW: usize = 200;
+
+/// Lines around the labelled ones: as many as codespan may want to show.
+const AROUND: usize = 3;
+
+/// Characters of a message that are shown.
+const MESSAGE: usize = 400;
+
+/// What stands for text that was left out.
+const GAP: &str = "…";
+
+/// A message without control characters, its lines no longer than is readable.
+pub fn tidy(message: &str) -> String {
+    message.split('\n').map(tidy_line).collect::<Vec<_>>().join("\n")
+}
+
+fn tidy_line(line: &str) -> String {
+    let line: String = line.chars().map(harmless).collect();
+    if line.chars().count() <= MESSAGE {
+        return line;
+    }
+    let half = |count| line.chars().take(count).collect::<String>();
+    let tail: Vec<char> = line.chars().rev().take(MESSAGE / 2).collect();
+    half(MESSAGE / 2) + GAP + &tail.into_iter().rev().collect::<String>()
+}
+
+/// The texts that the labels of one diagnostic point into, by [`SourceId`], as far as they matter.
+pub struct Excerpts<'a> {
+    sources: &'a SourceSet,
+    pages: Vec<Page>,
+}
+
+/// Some lines in a row of one text.
+struct Page {
+    source: SourceId,
+    /// Number of the first line, from 0.
+    first: usize,
+    lines: Vec<Line>,
+    text: String,
+}
+
+struct Line {
+    /// Where the line starts in the page.
+    start: usize,
+    /// Where it starts in the author's text.
+    origin: usize,
+    /// The author's bytes of it that are shown.
+    shown: Range<usize>,
+    /// Bytes of the page before them: what stands for the text left out.
+    lead: usize,
+}
+
+impl<'a> Excerpts<'a> {
+    pub fn new(sources: &'a SourceSet, spans: &[Span]) -> Self {
+        let mut ids: Vec<SourceId> = spans.iter().map(|span| span.source).collect();
+        ids.sort();
+        ids.dedup();
+        let page = |id: SourceId| {
+            let ranges: Vec<Range<usize>> = spans.iter().filter(|span| span.source == id).map(|span| span.range()).collect();
+            Page::new(id, &sources.get(id).text, &ranges)
+        };
+        Self { sources, pages: ids.into_iter().map(page).collect() }
+    }
+
+    /// The bytes of the page that show a span.
+    pub fn range(&self, span: Span) -> Range<usize> {
+        self.page(span.source.0 as usize).map_or(0..0, |page| {
+            let start = page.place(span.start as usize);
+            start..page.place(span.end as usize).max(start)
+        })
+    }
+
+    fn page(&self, id: usize) -> Result<&Page, Error> {
+        self.pages.iter().find(|page| page.source.0 as usize == id).ok_or(Error::FileMissing)
+    }
+}
+
+impl Page {
+    fn new(source: SourceId, text: &str, ranges: &[Range<usize>]) -> Self {
+        let line_of = |byte: usize| text.as_bytes()[..byte.min(text.len())].iter().filter(|byte| **byte == b'\n').count();
+        let first = ranges.iter().map(|range| line_of(range.start)).min().unwrap_or(0).saturating_sub(AROUND);
+        let last = ranges.iter().map(|range| line_of(range.end)).max().unwrap_or(0) + AROUND;
+        let mut page = Self { source, first, lines: Vec::new(), text: String::new() };
+        let mut origin = 0;
+        for (number, line) in text.split('\n').enumerate().take(last + 1) {
+            if number >= first {
+                page.push(origin, line, ranges);
+            }
+            origin += line.len() + 1;
+        }
+        page
+    }
+
+    fn push(&mut self, origin: usize, line: &str, ranges: &[Range<usize>]) {
+        let line = line.strip_suffix('\r').unwrap_or(line);
+        let window = window(origin, line, ranges);
+        let start = self.text.len();
+        let lead = if window.start > 0 { GAP } else { "" };
+        let tail = if window.end < line.len() { GAP } else { "" };
+        self.text.push_str(lead);
+        self.text.extend(line[window.clone()].chars().map(harmless));
+        self.text.push_str(tail);
+        self.text.push('\n');
+        self.lines.push(Line { start, origin, shown: origin + window.start..origin + window.end, lead: lead.len() });
+    }
+
+    /// The byte of the page for one of the author's: the nearest that is shown.
+    fn place(&self, byte: usize) -> usize {
+        let index = self.lines.partition_point(|line| line.origin <= byte).saturating_sub(1);
+        self.lines.get(index).map_or(0, |line| line.start + line.lead + byte.clamp(line.shown.start, line.shown.end) - line.shown.start)
+    }
+
+    fn line(&self, index: usize) -> Result<&Line, Error> {
+        self.lines.get(index).ok_or(Error::LineTooLarge { given: index, max: self.lines.len().saturating_sub(1) })
+    }
+}
+
+/// The part of a line to show: around the first range that starts or ends in it.
+fn window(origin: usize, line: &str, ranges: &[Range<usize>]) -> Range<usize> {
+    if line.len() <= LONG {
+        return 0..line.len();
+    }
+    let bytes = origin..=origin + line.len();
+    let ends = ranges.iter().flat_map(|range| [range.start, range.end]);
+    let focus = ends.filter(|byte| bytes.contains(byte)).map(|byte| byte - origin).next().unwrap_or(0);
+    let start = line.floor_char_boundary(focus.saturating_sub(BEFORE));
+    start..line.floor_char_boundary((start + WINDOW).min(line.len()))
+}
+
+/// Control characters and changes of writing direction as others of as many bytes.
+fn harmless(character: char) -> char {
+    match character {
+        '\t' => character,
+        '\0'..'\x20' | '\x7f' => '?',
+        '\u{80}'..='\u{9f}' => '¿',
+        '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => char::REPLACEMENT_CHARACTER,
+        _ => character,
+    }
+}
+
+impl<'a> Files<'a> for Excerpts<'a> {
+    type FileId = usize;
+    type Name = String;
+    type Source = &'a str;
+
+    fn name(&self, id: usize) -> Result<String, Error> {
+        Ok(tidy(&self.sources.get(self.page(id)?.source).path))
+    }
+
+    fn source(&'a self, id: usize) -> Result<&'a str, Error> {
+        Ok(&self.page(id)?.text)
+    }
+
+    fn line_index(&self, id: usize, byte: usize) -> Result<usize, Error> {
+        Ok(self.page(id)?.lines.partition_point(|line| line.start <= byte).saturating_sub(1))
+    }
+
+    fn line_number(&self, id: usize, index: usize) -> Result<usize, Error> {
+        Ok(self.page(id)?.first + index + 1)
+    }
+
+    fn column_number(&self, id: usize, index: usize, byte: usize) -> Result<usize, Error> {
+        let page = self.page(id)?;
+        let line = page.line(index)?;
+        let byte = line.shown.start + byte.saturating_sub(line.start + line.lead);
+        Ok(self.sources.get(page.source).text.get(line.origin..byte).map_or(0, |before| before.chars().count()) + 1)
+    }
+
+    fn line_range(&self, id: usize, index: usize) -> Result<Range<usize>, Error> {
+        let page = self.page(id)?;
+        Ok(page.line(index)?.start..page.lines.get(index + 1).map_or(page.text.len(), |next| next.start))
+    }
+}

@@ -1,0 +1,106 @@
+//! Overrides that stay open in languages whose writers know only constants.
+//!
+//! naga replaces overrides by their values before it writes anything but WGSL. Here they become
+//! private variables instead, which every writer knows, under names that are found again in what
+//! it wrote; there each turns into what the language has for it: a specialisation constant in
+//! SPIR-V, a function constant in MSL, a macro elsewhere.
+
+mod spirv;
+mod text;
+
+use naga::back::wgsl::{WriterFlags, write_string};
+use naga::valid::{ValidationFlags, Validator};
+use naga::{Expression, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
+
+use super::{Emitted, Entry, Source};
+use crate::bundle::{Choice, Target};
+use crate::validate::CAPABILITIES;
+
+/// One override.
+struct Open {
+    /// As the author calls it.
+    name: String,
+    /// Of the variable that stands for it.
+    variable: String,
+    kind: ScalarKind,
+    /// Number for SPIR-V and MSL: the author's, or the first that is free.
+    id: u32,
+    /// The literal's bits, and its text in C-like languages.
+    bits: u32,
+    text: String,
+}
+
+impl Open {
+    /// The macro, or the function constant, that chooses the value.
+    fn symbol(&self) -> String {
+        format!("LAMPLIGHT_{}", self.name.to_uppercase())
+    }
+}
+
+/// Writes an entry point with its overrides open; `None` where one of them is no plain scalar
+/// with a literal default, as those are that depend on others.
+pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, String>> {
+    let opens = opens(source.module)?;
+    Some(opened(source, &opens).and_then(|(module, info)| {
+        let point = module.entry_points.get(source.index).ok_or("the entry point was lost")?;
+        let source = Source { module: &module, info: &info, stage: source.stage, entry: &point.name, index: source.index };
+        finish((writer.write)(&source)?, &opens, writer.target)
+    }))
+}
+
+fn finish(mut emitted: Emitted, opens: &[Open], target: Target) -> Result<Emitted, String> {
+    // A variable that the entry point does not use is not written.
+    let choices =
+        if target == Target::SPIRV { spirv::open(&mut emitted.bytes, opens)? } else { text::open(&mut emitted.bytes, opens, target)? };
+    emitted.native.choices = choices;
+    Ok(emitted)
+}
+
+fn choice(open: &Open, id: bool) -> Choice {
+    Choice { name: open.name.clone(), id: id.then_some(open.id), symbol: (!id).then(|| open.symbol()) }
+}
+
+fn opens(module: &Module) -> Option<Vec<Open>> {
+    let mut taken: Vec<u32> = module.overrides.iter().filter_map(|(_, found)| found.id).map(u32::from).collect();
+    module.overrides.iter().map(|(_, found)| open(module, found, &mut taken)).collect()
+}
+
+fn open(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open> {
+    let name = found.name.clone()?;
+    let TypeInner::Scalar(Scalar { kind, width: 1 | 4 }) = module.types[found.ty].inner else { return None };
+    let Expression::Literal(literal) = module.global_expressions[found.init?] else { return None };
+    let (bits, text) = match literal {
+        Literal::Bool(value) => (u32::from(value), value.to_string()),
+        Literal::I32(value) => (value.cast_unsigned(), if value == i32::MIN { "(-2147483647 - 1)".to_owned() } else { value.to_string() }),
+        Literal::U32(value) => (value, format!("{value}u")),
+        Literal::F32(value) => (value.to_bits(), format!("{value:?}")),
+        _ => return None,
+    };
+    let id = match found.id {
+        Some(id) => id.into(),
+        None => (0..).find(|id| !taken.contains(id))?,
+    };
+    taken.push(id);
+    Some(Open { variable: format!("lamplight_{}_open", name.trim_matches('_')), name, kind, id, bits, text })
+}
+
+/// The module with variables for its overrides: through WGSL, where that is a change of one word.
+fn opened(source: &Source<'_>, opens: &[Open]) -> Result<(Module, naga::valid::ModuleInfo), String> {
+    let mut named = source.module.clone();
+    for ((_, found), open) in named.overrides.iter_mut().zip(opens) {
+        found.name = Some(open.variable.clone());
+        found.id = None;
+    }
+    let text = write_string(&named, source.info, WriterFlags::empty()).map_err(|error| error.to_string())?;
+    let text: Vec<String> = text.lines().map(variable).collect();
+    let mut module = naga::front::wgsl::parse_str(&text.join("\n")).map_err(|error| error.to_string())?;
+    for (point, original) in module.entry_points.iter_mut().zip(&source.module.entry_points) {
+        point.name.clone_from(&original.name);
+    }
+    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(&module).map_err(|error| error.to_string())?;
+    Ok((module, info))
+}
+
+fn variable(line: &str) -> String {
+    line.strip_prefix("override ").map_or_else(|| line.to_owned(), |rest| format!("var<private> {rest}"))
+}

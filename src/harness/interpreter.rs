@@ -1,0 +1,168 @@
+//! Kernels on the crate's own interpreter, in any of its numbers.
+
+use super::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use super::kernel::{Kernel, ParameterKind};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::eval::{self, FunctionId, Machine, Number, Program, Resources};
+use naga::ScalarKind;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+/// A kernel's module, lowered.
+pub struct Interpreter {
+    program: Program,
+    function: FunctionId,
+    /// What each slot of the arguments takes.
+    slots: Vec<Slot>,
+    resources: Resources,
+}
+
+/// An argument slot of the function.
+#[derive(Clone, Copy)]
+enum Slot {
+    /// The next word of the row, of that kind.
+    Word(ScalarKind),
+    /// The handle of a texture or sampler.
+    Handle(u32),
+}
+
+/// Memory for a kernel's calls in one kind of number.
+pub struct Calls<'p, N> {
+    interpreter: &'p Interpreter,
+    /// The machine, for its findings and limits.
+    pub machine: Machine<'p, N>,
+    arguments: Vec<N>,
+}
+
+impl Interpreter {
+    /// Validates and lowers the kernel's module.
+    pub fn new(kernel: &Kernel) -> Result<Self, Diagnostic> {
+        let validated = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&kernel.module);
+        let info = validated.map_err(|error| Diagnostic::error(codes::EXECUTOR_FAILED, format!("the kernel is not valid: {error}")))?;
+        let program = Program::new(&kernel.module, &info).map_err(failed)?;
+        let slots = slots(kernel, &program)?;
+        Ok(Self { function: FunctionId::from(kernel.function), program, slots, resources: resources(kernel) })
+    }
+
+    /// Memory to call it with; the calls of one thread.
+    pub fn calls<N: Number>(&self) -> Result<Calls<'_, N>, Diagnostic> {
+        let mut machine = Machine::new(&self.program).map_err(failed)?;
+        machine.bind(self.resources.clone()).map_err(failed)?;
+        Ok(Calls { interpreter: self, machine, arguments: Vec::new() })
+    }
+}
+
+impl<N: Number> Calls<'_, N> {
+    /// The flattened result of one row of words.
+    pub fn call(&mut self, row: &[u32]) -> Result<&[N], Diagnostic> {
+        let mut words = row.iter().copied();
+        self.arguments.clear();
+        self.arguments.extend(self.interpreter.slots.iter().map(|slot| match slot {
+            Slot::Handle(handle) => N::from_word(*handle),
+            Slot::Word(kind) => number(words.next().unwrap_or(0), *kind),
+        }));
+        self.machine.call(self.interpreter.function, &self.arguments).map_err(failed)
+    }
+}
+
+/// A slot from a word of the kind.
+fn number<N: Number>(word: u32, kind: ScalarKind) -> N {
+    match kind {
+        ScalarKind::Float => N::from_f64(f64::from(f32::from_bits(word))),
+        _ => N::from_word(word),
+    }
+}
+
+/// A slot as the number it stands for.
+pub fn value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
+    match kind {
+        ScalarKind::Float => slot.value(),
+        _ => super::cases::number(slot.word(), kind),
+    }
+}
+
+/// A slot as the word that f32 and integers have for it.
+pub fn word_of<N: Number>(slot: N, kind: ScalarKind) -> u32 {
+    match kind {
+        ScalarKind::Float => slot.bits(),
+        _ => slot.word(),
+    }
+}
+
+fn slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagnostic> {
+    let mut slots = Vec::new();
+    for parameter in &kernel.parameters {
+        match &parameter.kind {
+            ParameterKind::Words { shape, .. } => slots.extend(shape.kinds().into_iter().map(Slot::Word)),
+            ParameterKind::Resource(resource) => {
+                let unbound = || Diagnostic::error(codes::EVAL_UNBOUND, format!("the kernel has no binding {}", resource.binding));
+                slots.push(Slot::Handle(program.handle(0, resource.binding).ok_or_else(unbound)?));
+            }
+        }
+    }
+    Ok(slots)
+}
+
+/// The word of each parameter that is bound, in the order of parameters.
+pub fn handles(kernel: &Kernel, program: &Program) -> Result<Vec<u32>, Diagnostic> {
+    let unbound = |binding| Diagnostic::error(codes::EVAL_UNBOUND, format!("the kernel has no binding {binding}"));
+    kernel.resources().map(|resource| program.handle(0, resource.binding).ok_or_else(|| unbound(resource.binding))).collect()
+}
+
+/// One invocation's words with the handles between them, as the function declares them.
+pub fn flatten(kernel: &Kernel, handles: &[u32], words: &[u32], arguments: &mut Vec<u32>) {
+    arguments.clear();
+    let mut handles = handles.iter();
+    for parameter in &kernel.parameters {
+        match &parameter.kind {
+            ParameterKind::Words { offset, shape } => {
+                let first = *offset as usize;
+                arguments.extend_from_slice(&words[first..first + shape.words() as usize]);
+            }
+            ParameterKind::Resource(_) => arguments.extend(handles.next()),
+        }
+    }
+}
+
+/// The fixtures of a kernel at their bindings.
+pub fn resources(kernel: &Kernel) -> Resources {
+    let mut resources = Resources::default();
+    for resource in kernel.resources() {
+        let place = (0, resource.binding);
+        match &*resource.fixture {
+            Fixture::Texture(fixture) => drop(resources.textures.insert(place, texture(fixture))),
+            Fixture::Sampler(fixture) => drop(resources.samplers.insert(place, sampler(*fixture))),
+        }
+    }
+    resources
+}
+
+fn texture(fixture: &Texture) -> eval::Texture {
+    let shape = match fixture.kind {
+        TextureKind::Depth2d | TextureKind::Color2d => eval::Shape::D2,
+        TextureKind::DepthCube | TextureKind::ColorCube => eval::Shape::Cube,
+    };
+    let texel = |channels: &[f32]| std::array::from_fn(|channel| channels.get(channel).map_or(0.0, |value| f64::from(*value)));
+    let texels = fixture.texels.chunks(fixture.kind.channels()).map(texel).collect();
+    eval::Texture::flat(shape, fixture.width, fixture.height, fixture.kind.layers(), texels)
+}
+
+fn sampler(fixture: Sampler) -> eval::Sampler {
+    let address = match fixture.address {
+        Address::Clamp => eval::Address::Clamp,
+        Address::Repeat => eval::Address::Repeat,
+        Address::Mirror => eval::Address::Mirror,
+    };
+    let filter = if fixture.linear { eval::Filter::Linear } else { eval::Filter::Nearest };
+    let compare = fixture.compare.map(|compare| match compare {
+        Compare::Less => eval::Compare::Less,
+        Compare::LessEqual => eval::Compare::LessEqual,
+        Compare::Greater => eval::Compare::Greater,
+        Compare::GreaterEqual => eval::Compare::GreaterEqual,
+    });
+    eval::Sampler { address: [address; 3], mag: filter, min: filter, compare, ..eval::Sampler::default() }
+}
+
+/// The text naga read is the kernel's, not the author's: no place is given.
+pub fn failed(error: eval::Error) -> Diagnostic {
+    Diagnostic::error(error.code, error.message)
+}

@@ -1,0 +1,196 @@
+//! Keys for C and C++: one header of inline functions.
+
+use std::fmt::Write;
+
+use super::names::{Taken, comment, value};
+use super::{Language, axes, default, part};
+use crate::permute::{Axis, Kind, Manifest, Program};
+
+pub const LANGUAGE: Language = Language { name: "c", about: "a header for C99 and C++", write };
+
+/// Keywords of both languages that an axis may be called.
+const KEYWORDS: &[&str] = &[
+    "and",
+    "asm",
+    "auto",
+    "bool",
+    "case",
+    "catch",
+    "char",
+    "class",
+    "delete",
+    "do",
+    "double",
+    "enum",
+    "explicit",
+    "export",
+    "extern",
+    "float",
+    "friend",
+    "goto",
+    "inline",
+    "int",
+    "long",
+    "mutable",
+    "namespace",
+    "new",
+    "not",
+    "operator",
+    "or",
+    "private",
+    "protected",
+    "public",
+    "register",
+    "restrict",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "template",
+    "this",
+    "throw",
+    "try",
+    "typedef",
+    "typeid",
+    "typename",
+    "union",
+    "unsigned",
+    "using",
+    "virtual",
+    "void",
+    "volatile",
+    "xor",
+];
+
+const START: &str = "/* Written by `lamplight keys --lang c`; do not edit. */
+#ifndef LAMPLIGHT_KEYS_H
+#define LAMPLIGHT_KEYS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+
+/* Appends a part of a key; the length of the text. */
+static inline size_t lamplight_key_part(char *text, size_t length, const char *part)
+{
+    size_t added = strlen(part);
+    if (length > 0)
+        text[length++] = ',';
+    memcpy(text + length, part, added + 1);
+    return length + added;
+}
+";
+
+fn write(manifest: &Manifest) -> String {
+    let mut taken = Taken::new(&["LAMPLIGHT_KEYS_H", "lamplight_key_part"]);
+    let mut text = START.to_owned();
+    manifest.programs.iter().for_each(|program| text.push_str(&self::program(program, &mut taken)));
+    text.push_str("\n#endif\n");
+    text
+}
+
+/// An axis with its identifiers.
+struct Named<'a> {
+    axis: &'a Axis,
+    field: String,
+    ty: String,
+    constants: Vec<String>,
+}
+
+impl Named<'_> {
+    fn default(&self) -> &str {
+        match (self.axis.kind, self.axis.default) {
+            (Kind::Bool, _) if *default(self.axis) == crate::permute::Setting::Bool(true) => "true",
+            (Kind::Bool, _) => "false",
+            (_, ordinal) => &self.constants[ordinal],
+        }
+    }
+}
+
+fn program(program: &Program, taken: &mut Taken) -> String {
+    let name = taken.give(format!("lamplight_{}", program.name));
+    let [default, to_key, bytes] =
+        [format!("{name}_default"), format!("{name}_to_key"), format!("{}_KEY_BYTES", name.to_uppercase())].map(|name| taken.give(name));
+    let mut fields = Taken::new(KEYWORDS);
+    let axes: Vec<Named<'_>> = axes(program).map(|axis| named(axis, &name, taken, &mut fields)).collect();
+    let mut text = String::from("\n");
+    axes.iter().filter(|axis| axis.axis.kind != Kind::Bool).for_each(|axis| text.push_str(&enumeration(axis)));
+    text.push_str(&structure(program, &name, &axes));
+    let _ = writeln!(text, "\n/* Bytes of the longest key, its end included. */\n#define {bytes} {}", longest(&axes));
+    let _ = writeln!(text, "\nstatic inline {name} {default}(void)\n{{\n    {name} key;");
+    text.extend(axes.iter().map(|axis| format!("    key.{} = {};\n", axis.field, axis.default())));
+    if axes.is_empty() {
+        text.push_str("    key.none = 0;\n");
+    }
+    text.push_str("    return key;\n}\n");
+    text.push_str(&to_text(&name, &to_key, &bytes, &axes));
+    text
+}
+
+fn named<'a>(axis: &'a Axis, program: &str, taken: &mut Taken, fields: &mut Taken) -> Named<'a> {
+    let ty = match axis.kind {
+        Kind::Bool => "bool".to_owned(),
+        Kind::Enum | Kind::Int => taken.give(format!("{program}_{}", axis.name)),
+    };
+    let prefix = format!("{program}_{}", axis.name).to_uppercase();
+    let constants = match axis.kind {
+        Kind::Bool => Vec::new(),
+        Kind::Enum | Kind::Int => axis.values.iter().map(|known| taken.give(format!("{prefix}_{}", value(known).to_uppercase()))).collect(),
+    };
+    Named { axis, field: fields.give(axis.name.clone()), ty, constants }
+}
+
+fn enumeration(Named { axis, ty, constants, .. }: &Named<'_>) -> String {
+    let mut text = axis.doc.as_deref().map_or(String::new(), |doc| format!("/*\n{} */\n", comment(" *", doc)));
+    let _ = writeln!(text, "typedef enum {ty} {{");
+    text.extend(constants.iter().map(|constant| format!("    {constant},\n")));
+    let _ = writeln!(text, "}} {ty};\n");
+    text.replace(",\n}", "\n}")
+}
+
+fn structure(program: &Program, name: &str, axes: &[Named<'_>]) -> String {
+    let mut text = format!("/* One permutation of program `{}`: start from its default. */\ntypedef struct {name} {{\n", program.name);
+    text.extend(axes.iter().map(|axis| format!("    {} {};\n", axis.ty, axis.field)));
+    if axes.is_empty() {
+        text.push_str("    /* There is one permutation; C has no empty structures. */\n    char none;\n");
+    }
+    let _ = writeln!(text, "}} {name};");
+    text
+}
+
+fn longest(axes: &[Named<'_>]) -> usize {
+    let parts = axes.iter().map(|named| named.axis.values.iter().map(|value| part(named.axis, value).len() + 1).max().unwrap_or(0));
+    parts.sum::<usize>().max("default".len() + 1)
+}
+
+fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String {
+    let mut text =
+        format!("\n/* Writes the canonical key into {bytes} bytes; its length. A value that is no value counts as the default. */\n");
+    let _ = writeln!(text, "static inline size_t {to_key}(const {name} *key, char *text)\n{{\n    size_t length = 0;");
+    if axes.is_empty() {
+        text.push_str("    (void)key;\n");
+    }
+    axes.iter().for_each(|axis| text.push_str(&append(axis)));
+    text.push_str("    return length > 0 ? length : lamplight_key_part(text, 0, \"default\");\n}\n");
+    text
+}
+
+fn append(named: &Named<'_>) -> String {
+    let Named { axis, field, .. } = named;
+    if axis.kind == Kind::Bool {
+        let other = axis.values.iter().find(|value| *value != default(axis));
+        let append = |value| {
+            format!(
+                "    if (key->{field} != {})\n        length = lamplight_key_part(text, length, \"{}\");\n",
+                named.default(),
+                part(axis, value)
+            )
+        };
+        return other.map_or(String::new(), append);
+    }
+    let parts: Vec<String> = axis.values.iter().map(|value| format!("\"{}\"", part(axis, value))).collect();
+    let mut text = format!("    {{\n        static const char *const parts[] = {{{}}};\n", parts.join(", "));
+    let _ = writeln!(text, "        if (key->{field} != {} && (size_t)key->{field} < sizeof parts / sizeof *parts)", named.default());
+    let _ = writeln!(text, "            length = lamplight_key_part(text, length, parts[key->{field}]);\n    }}");
+    text
+}

@@ -1,0 +1,53 @@
+//! Typed keys: a manifest's programs as types of an engine's language, so that a key that is no
+//! key does not compile.
+//!
+//! Every language gets an enum an axis and a structure a program, whose text is the canonical
+//! key. The text leaves out defaults, so code that is generated today names the same permutations
+//! after axes and values are added. Dynamic axes are left out: permutations do not differ in them.
+
+mod c;
+mod names;
+mod rust;
+mod typescript;
+
+use crate::permute::{Axis, Manifest, Mode, Program, Setting};
+
+/// A language that keys are written for.
+#[derive(Debug, Clone, Copy)]
+pub struct Language {
+    /// Lower-case, as on the command line.
+    pub name: &'static str,
+    /// One line for listings.
+    pub about: &'static str,
+    write: fn(&Manifest) -> String,
+}
+
+/// Every language, by name.
+pub const LANGUAGES: &[Language] = &[c::LANGUAGE, rust::LANGUAGE, typescript::LANGUAGE];
+
+/// The language of that name.
+pub fn find(name: &str) -> Option<&'static Language> {
+    LANGUAGES.iter().find(|language| language.name == name)
+}
+
+/// One source file with the keys of every program. The same manifest gives the same bytes.
+pub fn write(manifest: &Manifest, language: &Language) -> String {
+    (language.write)(manifest)
+}
+
+/// The axes that keys name, sorted by name as in keys.
+fn axes(program: &Program) -> impl Iterator<Item = &Axis> {
+    program.space.axes().iter().filter(|axis| axis.mode != Mode::Dynamic)
+}
+
+/// The part of a key that sets the axis, with which no default is ever written.
+fn part(axis: &Axis, value: &Setting) -> String {
+    match value {
+        Setting::Bool(true) => axis.name.clone(),
+        value => format!("{}={value}", axis.name),
+    }
+}
+
+fn default(axis: &Axis) -> &Setting {
+    &axis.values[axis.default]
+}

@@ -1,0 +1,51 @@
+//! Names of axes and values as identifiers.
+
+use crate::permute::Setting;
+
+/// `pcf_3x3` as `Pcf3x3`.
+pub fn camel(name: &str) -> String {
+    let words = name.split('_').filter(|word| !word.is_empty());
+    let joined: String = words.map(|word| word[..1].to_ascii_uppercase() + &word[1..]).collect();
+    if joined.starts_with(|first: char| first.is_ascii_digit()) { format!("N{joined}") } else { joined }
+}
+
+/// `depth_view` as `depthView`.
+pub fn lower_camel(name: &str) -> String {
+    let camel = camel(name);
+    let length = camel.len().min(1);
+    camel[..length].to_ascii_lowercase() + &camel[length..]
+}
+
+/// A value as a part of an identifier: numbers get a letter, and a word for their sign.
+pub fn value(value: &Setting) -> String {
+    match value {
+        Setting::Int(number) if *number < 0 => format!("minus_{}", number.unsigned_abs()),
+        Setting::Int(number) => format!("n{number}"),
+        other => other.to_string(),
+    }
+}
+
+/// Gives out identifiers, each once; later ones that are taken get underscores, which no
+/// earlier name loses by.
+#[derive(Default)]
+pub struct Taken(Vec<String>);
+
+impl Taken {
+    /// With names that are not to be given out.
+    pub fn new(reserved: &[&str]) -> Self {
+        Self(reserved.iter().map(|name| (*name).to_owned()).collect())
+    }
+
+    pub fn give(&mut self, mut name: String) -> String {
+        while self.0.contains(&name) {
+            name.push('_');
+        }
+        self.0.push(name.clone());
+        name
+    }
+}
+
+/// Lines of a comment, one for each of the text's.
+pub fn comment(prefix: &str, text: &str) -> String {
+    text.lines().map(|line| format!("{}\n", format!("{prefix} {}", line.replace("*/", "* /")).trim_end())).collect()
+}

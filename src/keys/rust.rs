@@ -1,0 +1,129 @@
+//! Keys for Rust: one module a program, to `include!` or to keep as a file.
+
+use std::fmt::Write;
+
+use super::names::{Taken, camel, comment, value};
+use super::{Language, axes, default, part};
+use crate::permute::{Axis, Kind, Manifest, Program};
+
+pub const LANGUAGE: Language = Language { name: "rust", about: "a module a program, for any edition", write };
+
+/// Keywords that an axis, which WGSL allows, may be called; `r#` would not do for all of them.
+const KEYWORDS: &[&str] = &[
+    "Self", "abstract", "as", "async", "await", "become", "box", "crate", "do", "dyn", "enum", "extern", "final", "gen", "impl", "in",
+    "macro", "match", "mod", "move", "mut", "priv", "pub", "ref", "self", "static", "super", "trait", "try", "type", "typeof", "unsafe",
+    "unsized", "use", "virtual", "where", "yield",
+];
+
+fn write(manifest: &Manifest) -> String {
+    let mut taken = Taken::new(KEYWORDS);
+    let mut text = String::from("// Written by `lamplight keys --lang rust`; do not edit.\n");
+    manifest.programs.iter().for_each(|program| text.push_str(&module(program, &taken.give(program.name.clone()))));
+    text
+}
+
+/// An axis with its identifiers.
+struct Named<'a> {
+    axis: &'a Axis,
+    field: String,
+    ty: String,
+    variants: Vec<String>,
+}
+
+impl Named<'_> {
+    fn default(&self) -> String {
+        match self.axis.kind {
+            Kind::Bool => default(self.axis).to_string(),
+            Kind::Enum | Kind::Int => format!("{}::{}", self.ty, self.variants[self.axis.default]),
+        }
+    }
+}
+
+fn named(program: &Program) -> Vec<Named<'_>> {
+    let (mut fields, mut types) = (Taken::new(KEYWORDS), Taken::new(&["Key", "Self"]));
+    let named = axes(program).map(|axis| {
+        let mut variants = Taken::new(KEYWORDS);
+        let ty = match axis.kind {
+            Kind::Bool => "bool".to_owned(),
+            Kind::Enum | Kind::Int => types.give(camel(&axis.name)),
+        };
+        let variants = axis.values.iter().map(|known| variants.give(camel(&value(known)))).collect();
+        Named { axis, field: fields.give(axis.name.clone()), ty, variants }
+    });
+    named.collect()
+}
+
+fn module(program: &Program, name: &str) -> String {
+    let axes = named(program);
+    let mut text = format!("\n/// Keys of program `{}`.\n", program.name);
+    text.push_str(&program.doc.as_deref().map_or(String::new(), |doc| format!("///\n{}", comment("///", doc))));
+    let _ = writeln!(text, "#[allow(dead_code, non_camel_case_types, clippy::all)]\npub mod {name} {{");
+    axes.iter().filter(|axis| axis.axis.kind != Kind::Bool).for_each(|axis| text.push_str(&enumeration(axis)));
+    text.push_str(&structure(&axes));
+    text.push_str(&display(&axes));
+    text.push_str("}\n");
+    text
+}
+
+fn enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
+    let mut text = axis.doc.as_deref().map_or(String::new(), |doc| comment("    ///", doc));
+    let _ = writeln!(text, "    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub enum {ty} {{");
+    text.extend(variants.iter().map(|variant| format!("        {variant},\n")));
+    let all: Vec<String> = variants.iter().map(|variant| format!("Self::{variant}")).collect();
+    let _ = writeln!(text, "    }}\n\n    impl {ty} {{");
+    let _ = writeln!(text, "        /// Every value, in the manifest's order.");
+    let _ = writeln!(text, "        pub const ALL: &'static [Self] = &[{}];\n", all.join(", "));
+    let _ = writeln!(text, "        /// As in keys.\n        pub const fn name(self) -> &'static str {{\n            match self {{");
+    let arms = variants.iter().zip(&axis.values);
+    text.extend(arms.map(|(variant, value)| format!("                Self::{variant} => \"{value}\",\n")));
+    text.push_str("            }\n        }\n    }\n\n");
+    text
+}
+
+fn structure(axes: &[Named<'_>]) -> String {
+    let mut text = String::from("    /// One permutation: `Key { axis: value, ..Key::default() }`.\n");
+    text.push_str("    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub struct Key {\n");
+    for Named { axis, field, ty, .. } in axes {
+        let doc = axis.doc.as_deref().filter(|_| axis.kind == Kind::Bool);
+        text.push_str(&doc.map_or(String::new(), |doc| comment("        ///", doc)));
+        let _ = writeln!(text, "        pub {field}: {ty},");
+    }
+    text.push_str("    }\n\n    impl ::core::default::Default for Key {\n        fn default() -> Self {\n            Self {\n");
+    text.extend(axes.iter().map(|axis| format!("                {}: {},\n", axis.field, axis.default())));
+    text.push_str("            }\n        }\n    }\n\n");
+    text
+}
+
+fn display(axes: &[Named<'_>]) -> String {
+    let mut text = String::from("    impl Key {\n        /// The canonical key, as a bundle's loader takes it.\n");
+    text.push_str("        pub fn to_key(&self) -> ::std::string::String {\n");
+    text.push_str("            ::std::string::ToString::to_string(self)\n        }\n    }\n\n");
+    text.push_str("    impl ::core::fmt::Display for Key {\n");
+    text.push_str("        fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {\n");
+    if !axes.is_empty() {
+        text.push_str("            let mut separator = \"\";\n");
+    }
+    for axis in axes {
+        let _ = writeln!(text, "            if self.{} != {} {{", axis.field, axis.default());
+        let _ = writeln!(text, "                {}", written(axis));
+        text.push_str("                separator = \",\";\n            }\n");
+    }
+    text.push_str(if axes.is_empty() {
+        "            f.write_str(\"default\")\n"
+    } else {
+        "            if separator.is_empty() { f.write_str(\"default\") } else { Ok(()) }\n"
+    });
+    text.push_str("        }\n    }\n");
+    text
+}
+
+/// The statement that writes an axis which is not at its default.
+fn written(Named { axis, field, .. }: &Named<'_>) -> String {
+    match axis.kind {
+        Kind::Bool => match axis.values.iter().find(|value| *value != default(axis)) {
+            Some(value) => format!("::core::write!(f, \"{{separator}}{}\")?;", part(axis, value)),
+            None => String::new(),
+        },
+        Kind::Enum | Kind::Int => format!("::core::write!(f, \"{{separator}}{}={{}}\", self.{field}.name())?;", axis.name),
+    }
+}

@@ -1,0 +1,252 @@
+//! `index.html`: one page that needs nothing else.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::escaped;
+use super::plot::{Series, error_plot, heat_map};
+use crate::compose::Language;
+use crate::harness::check::{Input, Outcome, Proof, Report, Verdict, failures_of, language, short};
+
+const STYLE: &str = include_str!("style.css");
+
+/// The report as a page.
+pub fn page(report: &Report) -> String {
+    let page = Page::new(report);
+    let mut html = format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
+         <title>Lamplight: numbers</title>\n<style>\n{STYLE}</style></head>\n<body>\n<header><h1>Lamplight: numbers</h1>\n"
+    );
+    page.summary(&mut html);
+    html += "</header>\n<main>\n";
+    page.index(&mut html);
+    for (path, outcomes) in &page.functions {
+        page.function(&mut html, path, outcomes);
+    }
+    html + "</main></body></html>\n"
+}
+
+/// A report sorted for reading.
+struct Page<'a> {
+    report: &'a Report,
+    /// In the order of their first runs.
+    executors: Vec<&'static str>,
+    functions: BTreeMap<String, Vec<&'a Outcome>>,
+}
+
+impl<'a> Page<'a> {
+    fn new(report: &'a Report) -> Self {
+        let (mut executors, mut functions) = (Vec::new(), BTreeMap::<String, Vec<&Outcome>>::new());
+        for outcome in &report.outcomes {
+            if !executors.contains(&outcome.executor) {
+                executors.push(outcome.executor);
+            }
+            functions.entry(outcome.path()).or_default().push(outcome);
+        }
+        Self { report, executors, functions }
+    }
+
+    fn class(&self, outcome: &Outcome) -> usize {
+        self.executors.iter().position(|executor| *executor == outcome.executor).unwrap_or(0)
+    }
+
+    fn summary(&self, html: &mut String) {
+        let (all, passed) = (self.report.outcomes.len(), self.report.outcomes.iter().filter(|outcome| outcome.passed()).count());
+        let inputs: usize = self.report.outcomes.iter().filter_map(|outcome| Some(outcome.verdict.as_ref().ok()?.inputs)).sum();
+        let verdict = if self.report.passed() { "<b class=\"ok\">all hold</b>" } else { "<b class=\"bad\">not all hold</b>" };
+        let _ = writeln!(html, "<p>{} functions, {passed} of {all} runs pass over {inputs} inputs: {verdict}.</p>", self.functions.len());
+        html.push_str("<ul class=\"key\">");
+        for (index, executor) in self.executors.iter().enumerate() {
+            let adapter = self.report.outcomes.iter().find(|outcome| outcome.executor == *executor).map_or("", |outcome| &outcome.adapter);
+            let _ = write!(html, "<li><i class=\"swatch b{index}\"></i><b>{executor}</b> {}</li>", escaped(adapter));
+        }
+        html.push_str("</ul><p class=\"note\">Lines show the largest error over each parameter, dashed for GLSL; the grey area is what is allowed. Headroom is what is left of that.</p>\n");
+    }
+
+    /// One row a function, one column an executor.
+    fn index(&self, html: &mut String) {
+        html.push_str("<table class=\"index\"><thead><tr><th>function</th>");
+        for executor in &self.executors {
+            let _ = write!(html, "<th>{executor}</th>");
+        }
+        html.push_str("</tr></thead><tbody>\n");
+        for (path, outcomes) in &self.functions {
+            let _ = write!(html, "<tr><td><a href=\"#{0}\">{0}</a></td>", escaped(path));
+            for executor in &self.executors {
+                let own: Vec<&&Outcome> = outcomes.iter().filter(|outcome| outcome.executor == *executor).collect();
+                let share = own.iter().map(|outcome| share(outcome)).fold(0.0, f64::max);
+                html.push_str(&cell(own.iter().all(|outcome| outcome.passed()), share));
+            }
+            html.push_str("</tr>\n");
+        }
+        html.push_str("</tbody></table>\n");
+    }
+
+    fn function(&self, html: &mut String, path: &str, outcomes: &[&Outcome]) {
+        let _ = writeln!(html, "<section id=\"{0}\"><h2>{0}</h2>", escaped(path));
+        let mut cases: Vec<usize> = outcomes.iter().map(|outcome| outcome.case).collect();
+        cases.sort_unstable();
+        cases.dedup();
+        for case in cases {
+            let own: Vec<&Outcome> = outcomes.iter().copied().filter(|outcome| outcome.case == case).collect();
+            let proof =
+                self.report.proofs.iter().find(|proof| proof.case == case && own.first().is_some_and(|outcome| belongs(proof, outcome)));
+            self.case(html, case, &own, proof);
+        }
+        html.push_str("</section>\n");
+    }
+
+    fn case(&self, html: &mut String, case: usize, outcomes: &[&Outcome], proof: Option<&Proof>) {
+        let _ = writeln!(html, "<h3>case {}</h3>", case + 1);
+        html.push_str("<table><thead><tr><th>executor</th><th>language</th><th>inputs</th><th>ULP</th><th>of allowed</th><th>headroom</th><th>of driver</th><th>ambiguous</th><th>free</th><th>parity ULP</th></tr></thead><tbody>\n");
+        for outcome in outcomes {
+            row(html, outcome);
+        }
+        html.push_str("</tbody></table>\n");
+        if let Some(proof) = proof {
+            let _ = writeln!(html, "<p class=\"note\">{}</p>", proved(proof));
+        }
+        self.plots(html, outcomes);
+        failing(html, outcomes);
+        inputs(html, outcomes);
+    }
+
+    fn plots(&self, html: &mut String, outcomes: &[&Outcome]) {
+        let series: Vec<Series<'_>> = outcomes
+            .iter()
+            .filter_map(|outcome| {
+                let profile = outcome.verdict.as_ref().ok()?.profile.as_deref()?;
+                Some(Series { class: self.class(outcome), dashed: outcome.language == Language::Glsl, profile })
+            })
+            .collect();
+        let Some(first) = series.first() else { return };
+        html.push_str("<div class=\"plots\">");
+        for index in 0..first.profile.axes.len() {
+            html.push_str(&error_plot(index, &series).unwrap_or_default());
+        }
+        let hottest = series
+            .iter()
+            .filter_map(|one| Some((one, one.profile.map.as_ref()?)))
+            .max_by(|a, b| sum(&a.1.cells).total_cmp(&sum(&b.1.cells)));
+        if let Some((one, map)) = hottest {
+            html.push_str(&heat_map(map, one.profile).unwrap_or_default());
+        }
+        html.push_str("</div>\n");
+    }
+}
+
+fn sum(cells: &[f64]) -> f64 {
+    cells.iter().filter(|cell| !cell.is_nan()).sum()
+}
+
+fn belongs(proof: &Proof, outcome: &Outcome) -> bool {
+    proof.module == outcome.module && proof.function == outcome.function
+}
+
+fn share(outcome: &Outcome) -> f64 {
+    outcome.verdict.as_ref().ok().and_then(|verdict| verdict.worst).map_or(0.0, |worst| worst.share())
+}
+
+fn headroom(share: f64) -> String {
+    if share == 0.0 { "exact".to_owned() } else { format!("{:.0} %", 100.0 * (1.0 - share)) }
+}
+
+/// A table cell with a bar as long as what is used of the tolerance.
+fn cell(passed: bool, share: f64) -> String {
+    let class = if !passed {
+        "bad"
+    } else if share > 0.8 {
+        "near"
+    } else {
+        "ok"
+    };
+    let text = if passed { headroom(share) } else { "fails".to_owned() };
+    format!("<td class=\"bar {class}\" style=\"--used:{:.0}%\">{text}</td>", 100.0 * share.clamp(0.0, 1.0))
+}
+
+fn row(html: &mut String, outcome: &Outcome) {
+    let _ = write!(html, "<tr><td>{}</td><td>{}</td>", outcome.executor, language(outcome.language));
+    match &outcome.verdict {
+        Err(error) => {
+            let _ = write!(html, "<td colspan=\"8\" class=\"bad\">not run: {}</td>", escaped(&error.message));
+        }
+        Ok(verdict) => numbers(html, outcome, verdict),
+    }
+    html.push_str("</tr>\n");
+}
+
+fn numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
+    let (ulps, allowed) = verdict.worst.map_or((0.0, 0.0), |worst| (worst.ulps(), worst.allowed_ulps()));
+    let percent = |rows: usize| format!("{:.2} %", 100.0 * rows as f64 / verdict.inputs.max(1) as f64);
+    let _ = write!(
+        html,
+        "<td>{}</td><td>{}</td><td>{}</td>{}",
+        verdict.inputs,
+        short(ulps),
+        short(allowed),
+        cell(outcome.passed(), share(outcome))
+    );
+    let driver = outcome.of_driver().map_or("–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let parity = verdict.parity.map_or("–".to_owned(), short);
+    let _ = write!(
+        html,
+        "<td>{driver}</td><td>{}</td><td>{}</td><td>{parity}</td>",
+        percent(verdict.ambiguous),
+        percent(verdict.indeterminate)
+    );
+}
+
+/// What holds without a device, in a sentence each.
+fn proved(proof: &Proof) -> String {
+    let mut text = match &proof.spec {
+        Err(error) => format!("WGSL's own bound is not known: {}. ", escaped(error)),
+        Ok(spec) if spec.bound_ulps == 0.0 => String::new(),
+        Ok(spec) => {
+            let (stated, bound) = (short(spec.stated_ulps), short(spec.bound_ulps));
+            format!(
+                "Tightest: {stated} ULP stated where WGSL allows {bound} ({} of {} inputs state less than WGSL allows). ",
+                spec.stricter, spec.rows
+            )
+        }
+    };
+    match &proof.parity {
+        None => {}
+        Some(Err(error)) => text += &format!("The languages could not be compared in f64: {}.", escaped(error)),
+        Some(Ok(parity)) if parity.apart == 0 => text += &format!("WESL and GLSL agree in f64 on {} inputs.", parity.rows),
+        Some(Ok(parity)) => {
+            text += &format!(
+                "WESL and GLSL differ in f64 on {} of {} inputs, by up to {:.1e} of the value.",
+                parity.apart, parity.rows, parity.worst
+            )
+        }
+    }
+    text
+}
+
+fn failing(html: &mut String, outcomes: &[&Outcome]) {
+    for outcome in outcomes.iter().filter(|outcome| !outcome.passed()) {
+        let _ = writeln!(html, "<pre class=\"bad\">{}</pre>", escaped(&failures_of(std::slice::from_ref(*outcome), &[])));
+    }
+}
+
+/// The inputs that used most of what is allowed, of the run that used most.
+fn inputs(html: &mut String, outcomes: &[&Outcome]) {
+    let Some(outcome) = outcomes.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else { return };
+    let profile = outcome.verdict.as_ref().ok().and_then(|verdict| verdict.profile.as_deref());
+    let Some(worst) = profile.map(|profile| &profile.worst).filter(|worst| !worst.is_empty()) else { return };
+    let _ = write!(html, "<details><summary>worst inputs ({}, {})</summary><table><tbody>", outcome.executor, language(outcome.language));
+    for Input { words, worst } in worst {
+        let words: Vec<String> =
+            words.iter().map(|(name, value, bits)| format!("{} = {value} <i>0x{bits:08x}</i>", escaped(name))).collect();
+        let _ = write!(
+            html,
+            "<tr><td class=\"words\">{}</td><td>found {}, expected {}: {} of {} ULP</td></tr>",
+            words.join(", "),
+            worst.found,
+            worst.expected,
+            short(worst.ulps()),
+            short(worst.allowed_ulps())
+        );
+    }
+    html.push_str("</tbody></table></details>\n");
+}

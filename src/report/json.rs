@@ -1,0 +1,90 @@
+//! `report.json`: every number of a check.
+
+use serde_json::{Value, json};
+
+use crate::harness::check::{Input, Outcome, Proof, Report, Verdict, Worst, language};
+
+/// The report as indented JSON.
+pub fn text(report: &Report) -> String {
+    let value = json!({
+        "format": 1,
+        "passed": report.passed(),
+        "outcomes": report.outcomes.iter().map(outcome).collect::<Vec<_>>(),
+        "proofs": report.proofs.iter().map(proof).collect::<Vec<_>>(),
+    });
+    format!("{value:#}\n")
+}
+
+fn outcome(outcome: &Outcome) -> Value {
+    let (verdict, error) = match &outcome.verdict {
+        Ok(found) => (verdict(found), Value::Null),
+        Err(error) => (Value::Null, json!(error.message)),
+    };
+    json!({
+        "module": outcome.module,
+        "function": outcome.function,
+        "case": outcome.case,
+        "language": language(outcome.language),
+        "executor": outcome.executor,
+        "adapter": outcome.adapter,
+        "passed": outcome.passed(),
+        "recorded_share": outcome.recorded,
+        "of_driver": outcome.of_driver(),
+        "waiver": outcome.waiver.as_ref().map(|(share, reason)| json!({ "share": share, "reason": reason })),
+        "verdict": verdict,
+        "error": error,
+    })
+}
+
+fn verdict(verdict: &Verdict) -> Value {
+    let laws = verdict.laws.iter().map(|law| json!({ "law": law.name, "broken": law.broken, "example": law.example }));
+    let worst_inputs = verdict.profile.iter().flat_map(|profile| &profile.worst);
+    json!({
+        "inputs": verdict.inputs,
+        "indeterminate": verdict.indeterminate,
+        "ambiguous": verdict.ambiguous,
+        "failing": verdict.failing.len(),
+        "parity_ulps": verdict.parity,
+        "worst": verdict.worst.as_ref().map(worst),
+        "worst_inputs": worst_inputs.map(input).collect::<Vec<_>>(),
+        "laws": laws.collect::<Vec<_>>(),
+        "smallest": verdict.smallest,
+    })
+}
+
+fn worst(worst: &Worst) -> Value {
+    json!({
+        "row": worst.row,
+        "component": worst.word,
+        "found": worst.found,
+        "expected": worst.expected,
+        "error": worst.error,
+        "allowed": worst.allowed,
+        "share": worst.share(),
+        "ulps": worst.ulps(),
+        "allowed_ulps": worst.allowed_ulps(),
+    })
+}
+
+fn input(input: &Input) -> Value {
+    let words = input.words.iter().map(|(name, value, bits)| json!({ "name": name, "value": value, "bits": format!("0x{bits:08x}") }));
+    json!({ "words": words.collect::<Vec<_>>(), "outcome": worst(&input.worst) })
+}
+
+fn proof(proof: &Proof) -> Value {
+    let spec = match &proof.spec {
+        Ok(spec) => json!({
+            "rows": spec.rows,
+            "stricter": spec.stricter,
+            "least_share": spec.least,
+            "stated_ulps": spec.stated_ulps,
+            "bound_ulps": spec.bound_ulps,
+        }),
+        Err(error) => json!({ "error": error }),
+    };
+    let parity = proof.parity.as_ref().map(|parity| match parity {
+        Ok(parity) => json!({ "rows": parity.rows, "apart": parity.apart, "worst_relative": parity.worst }),
+        Err(error) => json!({ "error": error }),
+    });
+    json!({ "module": proof.module, "function": proof.function, "case": proof.case, "spec": spec, "parity": parity })
+}

@@ -1,0 +1,41 @@
+//! A check's report as files: a page to look at, JSON for programs, JUnit for continuous integration.
+//!
+//! Each is a function from the [`Report`] to its text; the command line writes them.
+
+mod html;
+mod json;
+mod junit;
+mod plot;
+
+use crate::harness::check::Report;
+
+/// A form of a report.
+pub struct Entry {
+    /// File name.
+    pub file: &'static str,
+    pub text: fn(&Report) -> String,
+}
+
+/// Every form.
+pub const ALL: &[Entry] = &[
+    Entry { file: "index.html", text: html::page },
+    Entry { file: "report.json", text: json::text },
+    Entry { file: "junit.xml", text: junit::text },
+];
+
+/// Text with the letters that HTML and XML give a meaning replaced, and those XML refuses left out.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '"' => escaped += "&quot;",
+            '\n' | '\t' => escaped.push(letter),
+            letter if letter.is_control() => {}
+            letter => escaped.push(letter),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,264 @@
+//! Derivatives, and samples that choose their level by them, where neighbouring fragments may
+//! have taken another branch: undefined on GPUs, refused by browsers, accepted by naga.
+//!
+//! What differs between fragments is followed from the inputs of the fragment stage through
+//! expressions, variables, arguments and results. What cannot be followed is taken for uniform:
+//! a lint must not cry wolf.
+
+use std::collections::BTreeMap;
+
+use naga::{Block, Expression, Function, Handle, SampleLevel, ShaderStage, Span, Statement};
+
+use super::Validated;
+use crate::compose::Composed;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+
+/// Rounds in which knowledge travels between functions; deeper chains of calls stay unknown.
+const ROUNDS: usize = 8;
+
+/// Warnings about the fragment entry points of a module, in the order of its text.
+pub fn lint(composed: &Composed, validated: &Validated) -> Diagnostics {
+    let mut flow = Flow::new(&validated.module);
+    if flow.functions.iter().all(|function| !function.is_entry) {
+        return Vec::new();
+    }
+    for _ in 0..ROUNDS {
+        if !flow.round() {
+            break;
+        }
+    }
+    flow.found.iter().filter_map(|(range, finding)| warning(composed, range.0..range.1, finding)).collect()
+}
+
+fn warning(composed: &Composed, range: std::ops::Range<usize>, finding: &Finding) -> Option<Diagnostic> {
+    let (what, help) = match finding.sample {
+        true => ("a texture sampled with an implicit level", "help: sample before the branch, or give the level or the gradients"),
+        false => ("a derivative", "help: take it before the branch"),
+    };
+    let warning = Diagnostic::warning(codes::NON_UNIFORM_DERIVATIVE, format!("{what} in non-uniform control flow"));
+    let warning = warning.at(composed.map.lookup(range)?, "neighbouring fragments may not come here");
+    let cause = finding.cause.to_range().and_then(|range| composed.map.lookup(range));
+    let warning = cause.into_iter().fold(warning, |warning, span| warning.at(span, "differs between fragments"));
+    Some(warning.note(help))
+}
+
+/// A place that should not be where it is.
+struct Finding {
+    sample: bool,
+    /// The condition that parted the fragments.
+    cause: Span,
+}
+
+/// What is known of one function.
+struct Known {
+    is_entry: bool,
+    arguments: Vec<bool>,
+    locals: Vec<bool>,
+    result: bool,
+    /// It is called where fragments have parted, by this condition.
+    parted: Option<Span>,
+    /// Conditions by which some fragments leave a loop before others, by its number.
+    loops: BTreeMap<usize, Span>,
+}
+
+struct Flow<'a> {
+    module: &'a naga::Module,
+    /// Those of the module, then the fragment entry points and nothing of the others.
+    functions: Vec<Known>,
+    globals: Vec<bool>,
+    found: BTreeMap<(usize, usize), Finding>,
+    changed: bool,
+}
+
+impl<'a> Flow<'a> {
+    fn new(module: &'a naga::Module) -> Self {
+        let known = |function: &Function, is_entry| Known {
+            is_entry,
+            arguments: vec![is_entry; function.arguments.len()],
+            locals: vec![false; function.local_variables.len()],
+            result: false,
+            parted: None,
+            loops: BTreeMap::new(),
+        };
+        let functions = module.functions.iter().map(|(_, function)| known(function, false));
+        let entries = module.entry_points.iter().map(|point| known(&point.function, point.stage == ShaderStage::Fragment));
+        let functions = functions.chain(entries).collect();
+        Self { module, functions, globals: vec![false; module.global_variables.len()], found: BTreeMap::new(), changed: false }
+    }
+
+    /// Walks every function once, callees first; whether anything new was learnt.
+    fn round(&mut self) -> bool {
+        self.changed = false;
+        let module = self.module;
+        for (handle, function) in module.functions.iter() {
+            self.walk(handle.index(), function);
+        }
+        for (index, point) in module.entry_points.iter().enumerate().filter(|(_, point)| point.stage == ShaderStage::Fragment) {
+            self.walk(module.functions.len() + index, &point.function);
+        }
+        self.changed
+    }
+
+    fn walk(&mut self, index: usize, function: &'a Function) {
+        let mut walk = Walk { varying: self.varying(index, function), flow: self, index, function, returned: None, left: None, loops: 0 };
+        let parted = walk.flow.functions[index].parted;
+        walk.block(&function.body, parted);
+    }
+
+    /// Whether each expression differs between fragments. Operands come before their users.
+    fn varying(&self, index: usize, function: &Function) -> Vec<bool> {
+        let known = &self.functions[index];
+        let mut varying: Vec<bool> = Vec::with_capacity(function.expressions.len());
+        for (_, expression) in function.expressions.iter() {
+            let of = |handle: &Handle<Expression>| varying.get(handle.index()).copied().unwrap_or(false);
+            let value = match expression {
+                Expression::FunctionArgument(argument) => known.arguments[*argument as usize],
+                Expression::LocalVariable(variable) => known.locals[variable.index()],
+                Expression::GlobalVariable(variable) => self.globals[variable.index()],
+                Expression::CallResult(callee) => self.functions[callee.index()].result,
+                Expression::Derivative { expr, .. } => of(expr),
+                Expression::Load { pointer } => of(pointer),
+                Expression::Access { base, index } => of(base) || of(index),
+                Expression::AccessIndex { base, .. } => of(base),
+                Expression::Splat { value, .. } | Expression::Swizzle { vector: value, .. } => of(value),
+                Expression::Unary { expr, .. } | Expression::As { expr, .. } => of(expr),
+                Expression::Relational { argument, .. } => of(argument),
+                Expression::Compose { components, .. } => components.iter().any(of),
+                Expression::Binary { left, right, .. } => of(left) || of(right),
+                Expression::Select { condition, accept, reject } => of(condition) || of(accept) || of(reject),
+                Expression::Math { arg, arg1, arg2, arg3, .. } => of(arg) || [arg1, arg2, arg3].into_iter().flatten().any(of),
+                Expression::ImageSample { coordinate, .. } | Expression::ImageLoad { coordinate, .. } => of(coordinate),
+                _ => false,
+            };
+            varying.push(value);
+        }
+        varying
+    }
+}
+
+/// One function being walked.
+struct Walk<'w, 'a> {
+    varying: Vec<bool>,
+    flow: &'w mut Flow<'a>,
+    index: usize,
+    function: &'a Function,
+    /// Some fragments have returned, by this condition.
+    returned: Option<Span>,
+    /// Some have left the round of the innermost loop.
+    left: Option<Span>,
+    /// Loops met so far.
+    loops: usize,
+}
+
+impl<'a> Walk<'_, 'a> {
+    fn block(&mut self, block: &'a Block, parted: Option<Span>) {
+        for statement in block.iter() {
+            let parted = parted.or(self.returned).or(self.left);
+            self.statement(statement, parted);
+        }
+    }
+
+    fn statement(&mut self, statement: &'a Statement, parted: Option<Span>) {
+        match statement {
+            Statement::Emit(range) => {
+                if let Some(cause) = parted {
+                    range.clone().for_each(|handle| self.emit(handle, cause));
+                }
+            }
+            Statement::Block(block) => self.block(block, parted),
+            Statement::If { condition, accept, reject } => {
+                let parted = self.parted_by(*condition, parted);
+                self.block(accept, parted);
+                self.block(reject, parted);
+            }
+            Statement::Switch { selector, cases } => {
+                let parted = self.parted_by(*selector, parted);
+                // A `break` in a case leaves the switch only.
+                let outer = self.left;
+                for case in cases {
+                    self.block(&case.body, parted);
+                    self.left = outer;
+                }
+            }
+            Statement::Loop { body, continuing, .. } => {
+                let outer = self.left.take();
+                let number = self.loops;
+                self.loops += 1;
+                let before = self.flow.functions[self.index].loops.get(&number).copied();
+                self.block(body, parted.or(before));
+                self.block(continuing, parted.or(before).or(self.left));
+                self.leave(number);
+                self.left = outer;
+            }
+            Statement::Break | Statement::Continue => self.left = self.left.or(parted),
+            Statement::Return { value } => {
+                self.returned = self.returned.or(parted);
+                let varies = parted.is_some() || value.is_some_and(|value| self.varying[value.index()]);
+                self.learn(varies, |flow, index| &mut flow.functions[index].result);
+            }
+            Statement::Store { pointer, value } => self.store(*pointer, parted.is_some() || self.varying[value.index()]),
+            Statement::Call { function, arguments, .. } => self.call(*function, arguments, parted),
+            _ => {}
+        }
+    }
+
+    /// What leaves one round of a loop parts the rounds after it: known in the next walk.
+    fn leave(&mut self, number: usize) {
+        let loops = &mut self.flow.functions[self.index].loops;
+        if let Some(cause) = self.left.filter(|_| !loops.contains_key(&number)) {
+            loops.insert(number, cause);
+            self.flow.changed = true;
+        }
+    }
+
+    fn parted_by(&self, condition: Handle<Expression>, parted: Option<Span>) -> Option<Span> {
+        parted.or_else(|| self.varying[condition.index()].then(|| self.function.expressions.get_span(condition)))
+    }
+
+    fn emit(&mut self, handle: Handle<Expression>, cause: Span) {
+        let sample = match &self.function.expressions[handle] {
+            Expression::ImageSample { level: SampleLevel::Auto | SampleLevel::Bias(_), .. } => true,
+            Expression::Derivative { .. } => false,
+            _ => return,
+        };
+        if let Some(range) = self.function.expressions.get_span(handle).to_range() {
+            self.flow.found.entry((range.start, range.end)).or_insert(Finding { sample, cause });
+        }
+    }
+
+    /// The variable behind a pointer holds what differs between fragments.
+    fn store(&mut self, pointer: Handle<Expression>, varies: bool) {
+        let mut root = pointer;
+        while let Expression::Access { base, .. } | Expression::AccessIndex { base, .. } = &self.function.expressions[root] {
+            root = *base;
+        }
+        match &self.function.expressions[root] {
+            Expression::LocalVariable(variable) => {
+                self.learn(varies, |flow, index| &mut flow.functions[index].locals[variable.index()]);
+            }
+            Expression::GlobalVariable(variable) => self.learn(varies, |flow, _| &mut flow.globals[variable.index()]),
+            _ => {}
+        }
+    }
+
+    fn call(&mut self, callee: Handle<Function>, arguments: &[Handle<Expression>], parted: Option<Span>) {
+        for (position, argument) in arguments.iter().enumerate() {
+            let varies = self.varying[argument.index()];
+            self.learn(varies, |flow, _| &mut flow.functions[callee.index()].arguments[position]);
+        }
+        let known = &mut self.flow.functions[callee.index()].parted;
+        if known.is_none() && parted.is_some() {
+            *known = parted;
+            self.flow.changed = true;
+        }
+    }
+
+    fn learn(&mut self, holds: bool, fact: impl for<'f> FnOnce(&'f mut Flow<'a>, usize) -> &'f mut bool) {
+        let index = self.index;
+        let fact = fact(self.flow, index);
+        if holds && !*fact {
+            *fact = true;
+            self.flow.changed = true;
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Diagnostics as users meet them: one folder of `tests/diagnostics/` for each case.
+//!
+//! A case has the files of a package and `command`, whose lines are command lines of `lamplight`,
+//! run one after the other in the folder (a line that starts with `#` says what is shown). What
+//! they print on standard error, and how they exit, is a snapshot. `hostile` cases are made here,
+//! since they are large.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+use lamplight::diagnostic::codes;
+use libtest_mimic::{Failed, Trial};
+
+use crate::snapshot;
+
+pub fn trials() -> Vec<Trial> {
+    let case = |(name, path): (String, PathBuf)| Trial::test(format!("diagnostics::{name}"), move || check(&name, &path));
+    let mut trials: Vec<Trial> = snapshot::cases("diagnostics").into_iter().map(case).collect();
+    trials.push(Trial::test("diagnostics every code has a case", every_code));
+    trials.push(Trial::test("diagnostics every code is explained", explained));
+    trials.push(Trial::test("diagnostics links and odd bytes", odd_files));
+    for (name, file, text) in hostile() {
+        trials.push(Trial::test(format!("diagnostics::hostile::{name}"), move || survives(file, &text)));
+    }
+    trials
+}
+
+fn check(name: &str, case: &Path) -> Result<(), Failed> {
+    // Outputs must not land in the sources, and hidden files above must not matter.
+    let folder = tempfile::tempdir()?;
+    copy(case, folder.path())?;
+    let mut text = String::new();
+    for line in fs::read_to_string(case.join("command"))?.lines().filter(|line| !line.trim().is_empty()) {
+        writeln!(text, "{line}")?;
+        if !line.starts_with('#') {
+            let output = run(folder.path(), line)?;
+            text += &String::from_utf8(output.stderr)?.replace("lamplight.exe", "lamplight");
+            writeln!(text, "=> {}\n", output.status.code().ok_or("killed")?)?;
+        }
+    }
+    snapshot::check("diagnostics", name, text.lines().map(|line| line.trim_end().to_owned() + "\n").collect::<String>().trim_end())
+}
+
+fn run(folder: &Path, line: &str) -> Result<Output, Failed> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+    command.current_dir(folder).env("COLUMNS", "100").args(line.split_whitespace());
+    Ok(command.output()?)
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), Failed> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let (path, name) = (entry.as_ref().map(fs::DirEntry::path).map_err(ToString::to_string)?, entry?.file_name());
+        if path.is_dir() { copy(&path, &to.join(name))? } else { fs::copy(&path, to.join(name)).map(|_| ())? }
+    }
+    Ok(())
+}
+
+/// Codes that are shown in some file of expectations, or that a test of another kind names.
+fn every_code() -> Result<(), Failed> {
+    let mut shown = String::new();
+    for folder in ["snapshots", "tests"] {
+        gather(&snapshot::root().join(folder), &mut shown)?;
+    }
+    let has = |name: &str| [format!("[{name}]"), format!("\"{name}\"")].iter().any(|form| shown.contains(form));
+    let missing: BTreeSet<&str> = codes::ALL.iter().map(|code| code.name).filter(|name| !has(name)).collect();
+    if missing.is_empty() { Ok(()) } else { Err(format!("no case shows {missing:?}").into()) }
+}
+
+fn gather(folder: &Path, text: &mut String) -> Result<(), Failed> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            gather(&path, text)?;
+        } else if path.extension().is_some_and(|extension| ["snap", "err", "txt", "warnings", "rs"].iter().any(|known| extension == *known))
+        {
+            text.push_str(&fs::read_to_string(&path).unwrap_or_default());
+        }
+    }
+    Ok(())
+}
+
+/// A title of one line, and something to say.
+fn explained() -> Result<(), Failed> {
+    let poor = codes::ALL.iter().filter(|code| code.title.is_empty() || code.explanation.len() < 40 || code.title.ends_with('.'));
+    let poor: Vec<&str> = poor.map(|code| code.name).collect();
+    if poor.is_empty() { Ok(()) } else { Err(format!("poorly explained: {poor:?}").into()) }
+}
+
+/// What cannot be a file of the repository: links that lead out, bytes that are not UTF-8.
+fn odd_files() -> Result<(), Failed> {
+    let (folder, outside) = (tempfile::tempdir()?, tempfile::tempdir()?);
+    let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes);
+    fs::write(outside.path().join("a.wesl"), "fn a() {}")?;
+    write("latin.wesl", b"fn a() {} // caf\xe9\n")?;
+    write("latin.frag.glsl", b"#include \"bytes.glsl\"\nvoid main() {}\n")?;
+    write("bytes.glsl", &[0xff, 0xfe, 0, 1, 2])?;
+    write("link.wesl", b"import package::out::a;\nfn b() { a(); }\n")?;
+    write("linked.frag.glsl", b"#include \"out.wesl\"\nvoid main() {}\n")?;
+    write("fine.wesl", b"fn a() {}\n")?;
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(outside.path().join("a.wesl"), folder.path().join("out.wesl"))?;
+    let mut lines = vec!["compose latin.wesl", "compose latin.frag.glsl"];
+    if cfg!(unix) {
+        lines.extend(["compose link.wesl", "compose linked.frag.glsl", "compose out.wesl --root ."]);
+    }
+    let mut text = String::new();
+    for line in lines {
+        text += &told(folder.path(), line)?;
+    }
+    for name in ["wesl.toml", "lamplight.toml"] {
+        write(name, &[0xff, 0, b'[', 0x80, b'\n'])?;
+        text += &told(folder.path(), "compose fine.wesl")?;
+        fs::remove_file(folder.path().join(name))?;
+    }
+    if cfg!(unix) { snapshot::check("diagnostics", "odd_files", text.trim_end()) } else { Ok(()) }
+}
+
+fn told(folder: &Path, line: &str) -> Result<String, Failed> {
+    let output = run(folder, line)?;
+    Ok(format!("{line}\n{}=> {}\n\n", String::from_utf8(output.stderr)?, output.status.code().ok_or("killed")?))
+}
+
+/// The most that a hostile input may take, with room for a slow machine; and the most it may say.
+const PATIENCE: Duration = Duration::from_secs(20);
+const SAID: usize = 64 << 10;
+
+/// Ends in good order, whatever the answer, soon and without a flood of words.
+fn survives(file: &str, text: &str) -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    fs::write(folder.path().join(file), text)?;
+    fs::write(folder.path().join("a.wesl"), "@fragment fn f() {}\n")?;
+    let line = match file {
+        "m.toml" => "variants --manifest m.toml".to_owned(),
+        "wesl.toml" => "compose a.wesl".to_owned(),
+        file => format!("compile {file} --target wgsl --feature a -o out"),
+    };
+    let start = Instant::now();
+    let output = run(folder.path(), &line)?;
+    let code = output.status.code().ok_or("killed by a signal")?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    if code > 1 || said.contains("panicked") {
+        return Err(format!("exit code {code}: {}", said.chars().take(2000).collect::<String>()).into());
+    }
+    if said.len() > SAID || start.elapsed() > PATIENCE {
+        return Err(format!("{} bytes said, {:?}", said.len(), start.elapsed()).into());
+    }
+    Ok(())
+}
+
+/// Name, file and text of inputs that mean harm.
+fn hostile() -> Vec<(&'static str, &'static str, String)> {
+    let numbered = |count: usize, form: &dyn Fn(usize) -> String| (0..count).map(form).collect::<String>();
+    let axis = "[program.f]\nwesl = \"a.wesl\"\n[program.f.axis]\n";
+    vec![
+        ("blocks", "x.wesl", format!("fn a() {}{}", "{".repeat(100_000), "}".repeat(100_000))),
+        ("brackets", "x.wesl", format!("const a = {}1{};", "(".repeat(100_000), ")".repeat(100_000))),
+        ("terms", "x.wesl", format!("const a = {}1;", "1 + ".repeat(20_000))),
+        ("comparisons", "x.wesl", format!("fn f() {{ let a = {}b; }}", "a <".repeat(50_000))),
+        ("templates", "x.wesl", format!("fn f() {{ let a: {}f32{}; }}", "array<".repeat(50_000), ">".repeat(50_000))),
+        ("one long line", "x.wesl", format!("fn f() {{ let x = {}a; }}", "a + ".repeat(150_000))),
+        ("large", "x.wesl", "// x\n".repeat((4 << 20) / 5)),
+        ("too large", "x.wesl", "/".repeat(5 << 20)),
+        ("open comments", "x.wesl", "/*".repeat(500_000)),
+        ("attributes", "x.wesl", format!("fn f() {{{}}}", "@if(a) ".repeat(50_000))),
+        ("negations", "x.wesl", format!("@if({}a) fn f() {{}}", "!".repeat(100_000))),
+        ("condition brackets", "x.wesl", format!("@if({}a{}) fn f() {{}}", "(".repeat(100_000), ")".repeat(100_000))),
+        ("conjunctions", "x.wesl", format!("@if(a{}) fn f() {{}}", " && a".repeat(100_000))),
+        ("branches", "x.wesl", format!("@if(a) fn f() {{}}\n{}", "@elif(a) fn f() {}\n".repeat(20_000))),
+        ("import braces", "x.wesl", format!("import package::{}b{};", "{a::".repeat(50_000), "}".repeat(50_000))),
+        ("imports", "x.wesl", format!("import package::{{{}}};\nfn f() {{ x(); }}", numbered(20_000, &|i| format!("m{i}::x,")))),
+        ("a long path", "x.wesl", format!("import package::{}b; fn f() {{ b(); }}", "a::".repeat(50_000))),
+        ("a long name", "x.wesl", format!("import package::{}; fn f() {{ }}", "a".repeat(1_000_000))),
+        ("supers", "x.wesl", format!("import {}b; fn f() {{ b(); }}", "super::".repeat(50_000))),
+        ("errors", "x.wesl", "fn f( { }\n".repeat(20_000)),
+        ("unknown flags", "x.wesl", numbered(20_000, &|i| format!("@if(x{i}) fn f{i}() {{}}\n"))),
+        ("calls", "x.wesl", numbered(5_000, &|i| format!("fn f{i}() {{ f{}(); }}\n", i + 1)) + "fn f5000() {}\n@fragment fn m() { f0(); }"),
+        ("constants", "x.wesl", numbered(20_000, &|i| format!("const c{i} = c{};\n", (i + 1) % 20_000))),
+        ("zeros", "x.wesl", "\0".repeat(100_000)),
+        ("glsl includes itself", "x.frag.glsl", "#include \"x.frag.glsl\"\n".repeat(1000)),
+        ("glsl bomb", "x.frag.glsl", bomb()),
+        ("glsl nesting", "x.frag.glsl", "#if 1\n".repeat(50_000)),
+        ("glsl condition", "x.frag.glsl", format!("#if {}1\n#endif\n", "(".repeat(100_000))),
+        ("glsl terms", "x.frag.glsl", format!("void main() {{ float a = {}1.0; }}", "1.0 + ".repeat(20_000))),
+        ("glsl missing", "x.frag.glsl", numbered(20_000, &|i| format!("#include \"m{i}\"\n"))),
+        ("glsl errors", "x.frag.glsl", "#error no\n".repeat(20_000)),
+        ("manifest values", "m.toml", format!("{axis}n = {{ values = [{}] }}\n", numbered(400_000, &|i| format!("{i},")))),
+        ("manifest axes", "m.toml", axis.to_owned() + &numbered(128, &|i| format!("x{i} = {{ values = [false, true] }}\n"))),
+        ("manifest nesting", "m.toml", format!("a={}{}", "[".repeat(50_000), "]".repeat(50_000))),
+        ("manifest dots", "m.toml", format!("a{} = 1\n", ".a".repeat(50_000))),
+        ("manifest keys", "m.toml", numbered(50_000, &|i| format!("a{i} = 1\n"))),
+        (
+            "manifest constraint",
+            "m.toml",
+            format!("{axis}x = {{ values = [false, true] }}\n[[program.f.constraint]]\nrequire = \"{}x\"\n", "(".repeat(50_000)),
+        ),
+        ("manifest noise", "m.toml", numbered(100_000, &|i| char::from((i * 7919 % 94 + 33) as u8).to_string())),
+        ("wesl.toml nesting", "wesl.toml", format!("a={}{}", "[".repeat(50_000), "]".repeat(50_000))),
+        (
+            "wesl.toml dependencies",
+            "wesl.toml",
+            "[package]\nroot = \".\"\n[dependencies]\n".to_owned() + &numbered(20_000, &|i| format!("d{i} = {{ path = \"d{i}\" }}\n")),
+        ),
+    ]
+}
+
+/// Each macro twice the one before: 2^40 tokens.
+fn bomb() -> String {
+    let doubled: String = (1..40).map(|i| format!("#define M{i} M{} M{}\n", i - 1, i - 1)).collect();
+    format!("#define M0 x\n{doubled}void main() {{ M39 }}\n")
+}

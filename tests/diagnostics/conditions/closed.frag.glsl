@@ -1,0 +1,5 @@
+#endif
+#else
+#if
+#endif
+void main() {}

@@ -1,0 +1,2 @@
+#if FOO
+void main() {}

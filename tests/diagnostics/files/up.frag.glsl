@@ -1,0 +1,3 @@
+#version 450
+#include "../../secret.glsl"
+void main() {}

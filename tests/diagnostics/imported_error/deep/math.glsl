@@ -1,0 +1,6 @@
+float safe(float x) {
+#if STRICT
+    return x + missing;
+#endif
+    return x;
+}

@@ -1,0 +1,151 @@
+//! The library's own programs: reviewed permutations in full, all others by their hashes, every
+//! output through the external validators.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::process::Command;
+use std::sync::OnceLock;
+
+use lamplight::bundle::{Contents, EntryContents, Target, Unit, blob_files, write_directory};
+use lamplight::compose::{Keep, Language, Options, compose};
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::emit::emit;
+use lamplight::generate::{Request, generate};
+use lamplight::permute::{Program, Quoted, key};
+use lamplight::validate::{on_large_stack, validate};
+use lamplight::{project, resolve};
+use libtest_mimic::{Failed, Trial};
+
+use crate::external::{self, Job};
+use crate::snapshot;
+
+/// Permutations of `forward` whose texts and outputs are reviewed by eye: one for each thing that
+/// changes the shape of the shader.
+const REVIEWED: &[&str] = &[
+    "default",
+    "lights=none",
+    "shadow=pcf_3x3,two_sided",
+    "frequency=vertex,lights=point,specular=phong",
+    "frequency=flat,lights=spot,max_lights=10",
+    "ambient=sh9,frequency=flat,lights=spot,specular=phong,two_sided",
+    "ambient=ibl,base_map,diffuse=oren_nayar,material=array,specular=ggx",
+    "shadow=pcf_vogel,shadow_light=directional,specular=ggx",
+    "base_map,fog=exp2,lights=spot,shadow=vsm,specular=ggx",
+    "ambient_attenuated,attenuation=inverse_square_window,cone=hard,frequency=vertex,lights=spot,viewer=infinite",
+    "lights=directional,max_lights=1,shadow=pcss,shadow_light=directional",
+    "ambient=hemisphere,base_map,diffuse=half_lambert,lights=point,material=array,specular=phong",
+];
+
+pub fn trials() -> Vec<Trial> {
+    let reviewed = REVIEWED.iter().map(|key| Trial::test(format!("library::reviewed::{key}"), || review(key)));
+    let whole = [("library::hashes", hashes as fn() -> _), ("library::external_validators", validators)];
+    reviewed.chain(whole.map(|(name, run)| Trial::test(name, run))).collect()
+}
+
+fn review(text: &str) -> Result<(), Failed> {
+    let (mut sources, manifest) = project::library_manifest().map_err(|(sources, errors)| render(&sources, &errors, Form::Human))?;
+    let program = manifest.program("forward").ok_or("no program `forward`")?;
+    let id = sources.add("key", text);
+    let point = key::parse(&program.space, &Quoted::whole(&sources, id)).map_err(|errors| render(&sources, &errors, Form::Human))?;
+    let settings = program.space.settings(&point);
+    for (path, language, entry) in roots(program) {
+        let packages = project::library();
+        let graph = resolve::load(&mut sources, &packages, path, language).map_err(|errors| render(&sources, &errors, Form::Human))?;
+        let keep = if language == Language::Wesl { Keep::Items(vec![entry.to_owned()]) } else { Keep::EntryPoints };
+        let composed = compose(&graph, &settings, &Options { keep, ..Options::default() });
+        let composed = composed.map_err(|errors| render(&sources, &errors, Form::Human))?;
+        let validated = validate(&composed).map_err(|errors| render(&sources, &errors, Form::Human))?;
+        let stem = path.rsplit('/').next().unwrap_or_default();
+        let name = |target: &str| if language == Language::Wesl { format!("{stem}.{entry}.{target}") } else { format!("{stem}.{target}") };
+        let folder = format!("shaderlib/programs/forward/{text}");
+        snapshot::check(&folder, &name("composed"), &composed.text)?;
+        for &target in Target::ALL {
+            let emitted = emit(&validated, entry, target).map_err(|error| render(&sources, &[error], Form::Human))?;
+            snapshot::check(&folder, &name(target.name()), &readable(target, &emitted.bytes)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Root files with an entry point each: those of WESL for every reviewed permutation, and GLSL.
+fn roots(program: &Program) -> Vec<(&str, Language, &'static str)> {
+    let wesl = program.wesl.iter().flat_map(|file| [("vs_main", file), ("fs_main", file)]);
+    let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
+    let wesl = wesl.map(|(entry, file)| (file.path.as_str(), Language::Wesl, entry));
+    wesl.chain(glsl.map(|file| (file.path.as_str(), Language::Glsl, "main"))).collect()
+}
+
+/// Text as it is; SPIR-V disassembled by spirv-dis.
+fn readable(target: Target, bytes: &[u8]) -> Result<String, Failed> {
+    if target != Target::SPIRV {
+        return Ok(String::from_utf8(bytes.to_vec())?);
+    }
+    let file = tempfile::NamedTempFile::new()?;
+    std::fs::write(file.path(), bytes)?;
+    let output = Command::new("spirv-dis").args(["--no-color", "--no-header"]).arg(file.path()).output()?;
+    if output.status.success() {
+        Ok(String::from_utf8(output.stdout)?)
+    } else {
+        Err(String::from_utf8_lossy(&output.stderr).into_owned().into())
+    }
+}
+
+/// The bundle of the whole manifest, made once.
+fn contents() -> Result<&'static Contents, Failed> {
+    static CONTENTS: OnceLock<Result<Contents, String>> = OnceLock::new();
+    CONTENTS.get_or_init(|| on_large_stack(library)).as_ref().map_err(|error| error.clone().into())
+}
+
+fn library() -> Result<Contents, String> {
+    let (mut sources, manifest) = project::library_manifest().map_err(|(sources, errors)| render(&sources, &errors, Form::Human))?;
+    let generated = generate(&mut sources, &project::library(), &manifest, &Request::default(), &|_| {});
+    generated.map(|generated| generated.contents).map_err(|errors| render(&sources, &errors, Form::Human))
+}
+
+/// One line for each permutation and language: a hash over its entry points for each target.
+fn hashes() -> Result<(), Failed> {
+    for (name, program) in &contents()?.programs {
+        let mut table = String::new();
+        for (language, entries) in &program.languages {
+            let Some(first) = entries.values().next() else { continue };
+            writeln!(table, "{language:?}: {}", targets(first).join(" "))?;
+            for key in first.keys.keys() {
+                let units: Vec<&Unit> = entries.values().filter_map(|entry| entry.units.get(entry.keys.get(key)?)).collect();
+                let row: Vec<String> = targets(first).iter().map(|target| hash(&units, target)).collect();
+                writeln!(table, "{} {key}", row.join(" "))?;
+            }
+        }
+        snapshot::check("shaderlib/programs", &format!("{name}.hashes"), &table)?;
+    }
+    Ok(())
+}
+
+fn targets(entry: &EntryContents) -> Vec<&str> {
+    entry.units.values().next().map(|unit| unit.targets.keys().map(String::as_str).collect()).unwrap_or_default()
+}
+
+fn hash(units: &[&Unit], target: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for artifact in units.iter().filter_map(|unit| unit.targets.get(target)) {
+        hasher.update(&artifact.bytes);
+    }
+    hasher.finalize().to_hex()[..8].to_owned()
+}
+
+fn validators() -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    write_directory(contents()?, folder.path())?;
+    let files = blob_files(folder.path())?;
+    let jobs = files.into_iter().map(|file| Job { stage: external::stage(file.stage), target: file.target, file: file.path });
+    let jobs: Vec<Job> = jobs.collect();
+    let mut count: BTreeMap<&str, usize> = BTreeMap::new();
+    jobs.iter().filter(|job| job.is_covered()).for_each(|job| *count.entry(&job.target).or_default() += 1);
+    if count.keys().copied().ne(["essl300", "glsl330", "glsl450", "spirv"]) {
+        return Err(format!("the validators cover {count:?}").into());
+    }
+    let (judged, refusals) = external::validate(jobs.clone(), &|_| {})?;
+    if refusals.is_empty() && judged == count.values().sum::<usize>() {
+        return Ok(());
+    }
+    Err(format!("{} of {judged} outputs refused:\n{}", refusals.len(), refusals.into_iter().take(5).collect::<Vec<_>>().join("\n")).into())
+}

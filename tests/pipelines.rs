@@ -1,0 +1,383 @@
+//! Reflection proven by use: the bundle is read through the loader, and layouts, vertex buffers
+//! and targets come from the reflection alone. wgpu accepts a pipeline only if they fit its
+//! own reading of the shader.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::num::NonZeroU64;
+use std::time::Instant;
+
+use lamplight::bundle::{Binding, Bundle, Found, Kind, Language, Program as Loaded, Reflection, Stage, Target, Varying, pack};
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::generate::{Request, generate};
+use lamplight::permute::axis::ValueSet;
+use lamplight::permute::manifest::Program;
+use lamplight::permute::space::{Lists, Slice};
+use lamplight::permute::{Assignment, Manifest, Space, cover};
+use lamplight::project;
+use libtest_mimic::{Failed, Trial};
+use pollster::block_on;
+
+/// Set to test every permutation that ships, instead of a covering sample of all pairs.
+const EVERYTHING: &str = "LAMPLIGHT_EVERY_PIPELINE";
+
+const BACKENDS: [(&str, wgpu::Backends); 2] = [("vulkan", wgpu::Backends::VULKAN), ("gl", wgpu::Backends::GL)];
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("pipelines::from_the_reflection_alone", pipelines),
+        Trial::test("pipelines::a_wrong_reflection_is_noticed", wrong_reflections),
+    ]
+}
+
+fn pipelines() -> Result<(), Failed> {
+    let start = Instant::now();
+    let bundle = bundle(std::env::var_os(EVERYTHING).is_some())?;
+    let generated = start.elapsed();
+    for (name, backend) in BACKENDS {
+        let device = Device::open(backend)?;
+        let mut count = 0;
+        for pair in every_pair(&bundle)? {
+            device.accepts(&pair, false).map_err(|error| format!("{name}, {}: {error}", pair.title))?;
+            count += 1;
+            if device.spirv {
+                device.accepts(&pair, true).map_err(|error| format!("{name}, SPIR-V, {}: {error}", pair.title))?;
+                count += 1;
+            }
+        }
+        println!("{name}: {count} pipelines after {:.1?} (bundle: {generated:.1?})", start.elapsed());
+    }
+    Ok(())
+}
+
+/// What the first trial relies on: wgpu does refuse layouts that are wrong.
+fn wrong_reflections() -> Result<(), Failed> {
+    let bundle = bundle(false)?;
+    let device = Device::open(wgpu::Backends::VULKAN)?;
+    let pairs = every_pair(&bundle)?;
+    let find = |wanted: &dyn Fn(&Pair) -> bool| pairs.iter().find(|pair| wanted(pair)).cloned().ok_or("no such permutation");
+    let is_depth = |binding: &Binding| binding.ty.starts_with("texture_depth");
+    let mut shadowed = find(&|pair| pair.fragment.as_ref().is_some_and(|found| found.reflection.bindings.iter().any(is_depth)))?;
+    let lit = find(&|pair| pair.title.starts_with("forward"))?;
+    let changes: [(&str, &Pair, &dyn Fn(&mut Reflection)); 5] = [
+        ("a binding is missing", &lit, &|reflection| reflection.bindings.truncate(1)),
+        ("a buffer is too small", &lit, &|reflection| {
+            reflection.bindings.iter_mut().for_each(|binding| binding.size = binding.size.map(|size| size - 16))
+        }),
+        ("an input is missing", &lit, &|reflection| reflection.inputs.truncate(1)),
+        ("an input has another type", &lit, &|reflection| reflection.inputs.iter_mut().for_each(|input| "u32".clone_into(&mut input.ty))),
+        ("a group is another", &lit, &|reflection| reflection.bindings.iter_mut().for_each(|binding| binding.group += 1)),
+    ];
+    for (what, pair, change) in changes {
+        let mut pair = pair.clone();
+        change(std::sync::Arc::make_mut(&mut pair.vertex.reflection));
+        if device.accepts(&pair, false).is_ok() {
+            return Err(format!("{}: {what}, and wgpu took it", pair.title).into());
+        }
+    }
+    let fragment = shadowed.fragment.as_mut().ok_or("no fragment stage")?;
+    let bindings = &mut std::sync::Arc::make_mut(&mut fragment.reflection).bindings;
+    bindings.iter_mut().filter(|binding| is_depth(binding)).for_each(|binding| "texture_2d<f32>".clone_into(&mut binding.ty));
+    if device.accepts(&shadowed, false).is_ok() { Err("a depth texture is called a colour, and wgpu took it".into()) } else { Ok(()) }
+}
+
+/// The bundle of the library: what ships, or a set that has every pair of values of two axes.
+fn bundle(everything: bool) -> Result<Bundle, Failed> {
+    let (mut sources, mut manifest) =
+        project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    for program in &mut manifest.programs {
+        program.targets = vec![Target::WGSL, Target::SPIRV];
+        if !everything {
+            program.space = covering(program);
+        }
+    }
+    let generated = generated(&mut sources, &manifest);
+    let contents = generated.map_err(|problems| render(&sources, &problems, Form::Human))?;
+    Ok(Bundle::from_bytes(pack(&contents)?)?)
+}
+
+fn generated(
+    sources: &mut lamplight::source::SourceSet,
+    manifest: &Manifest,
+) -> Result<lamplight::bundle::Contents, lamplight::diagnostic::Diagnostics> {
+    Ok(generate(sources, &project::library(), manifest, &Request::default(), &|_| ())?.contents)
+}
+
+/// The program's space with nothing wanted but its covering set.
+fn covering(program: &Program) -> Space {
+    let space = &program.space;
+    let include: Vec<Assignment> = cover::pairwise(space).points;
+    let everything = Slice { values: space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect(), span: program.span };
+    let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
+    Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists).unwrap_or_else(|_| space.clone())
+}
+
+/// The stages of one permutation in one language, in both targets.
+#[derive(Clone)]
+struct Pair {
+    title: String,
+    vertex: Found,
+    fragment: Option<Found>,
+    spirv: [Option<Found>; 2],
+}
+
+/// Every permutation whose shaders no other has.
+fn every_pair(bundle: &Bundle) -> Result<Vec<Pair>, Failed> {
+    let mut pairs = Vec::new();
+    for name in bundle.programs() {
+        let program = bundle.program(name)?;
+        for language in [Language::Wesl, Language::Glsl] {
+            pairs_of(&program, language, &mut pairs)?;
+        }
+    }
+    Ok(pairs)
+}
+
+fn pairs_of(program: &Loaded<'_>, language: Language, pairs: &mut Vec<Pair>) -> Result<(), Failed> {
+    let names: Vec<&str> = program.entries().filter(|(found, _)| *found == language).map(|(_, name)| name).collect();
+    let shaders = names.iter().map(|name| program.entry(language, name)).collect::<Result<Vec<_>, _>>()?;
+    let mut seen = BTreeSet::new();
+    for key in shaders[0].keys()? {
+        let units = shaders.iter().map(|shader| shader.find(&key)).collect::<Result<Vec<_>, _>>()?;
+        if !seen.insert(units) {
+            continue;
+        }
+        let stages = |target| -> Result<[Option<Found>; 2], Failed> {
+            let mut stages = [None, None];
+            for shader in &shaders {
+                let found = shader.get(&key, target)?;
+                let stage = usize::from(found.reflection.stage == Stage::Fragment);
+                stages[stage] = Some(found);
+            }
+            Ok(stages)
+        };
+        let [vertex, fragment] = stages(Target::WGSL)?;
+        let title = format!("{} {language:?} {key}", program.name());
+        pairs.push(Pair {
+            vertex: vertex.ok_or_else(|| format!("{title} has no vertex stage"))?,
+            title,
+            fragment,
+            spirv: stages(Target::SPIRV)?,
+        });
+    }
+    Ok(())
+}
+
+struct Device {
+    device: wgpu::Device,
+    /// Whether it takes SPIR-V as it is.
+    spirv: bool,
+}
+
+impl Device {
+    fn open(backend: wgpu::Backends) -> Result<Self, Failed> {
+        let instance =
+            wgpu::Instance::new(wgpu::InstanceDescriptor { backends: backend, ..wgpu::InstanceDescriptor::new_without_display_handle() });
+        let mut adapters = block_on(instance.enumerate_adapters(backend));
+        adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
+        let adapter = adapters.into_iter().next().ok_or_else(|| format!("no adapter for {backend:?}: cargo xtask test installs one"))?;
+        let descriptor = wgpu::DeviceDescriptor {
+            required_features: adapter.features() & wgpu::Features::PASSTHROUGH_SHADERS,
+            required_limits: adapter.limits(),
+            // SAFETY: the shaders that pass through were written by naga and validated.
+            experimental_features: unsafe { wgpu::ExperimentalFeatures::enabled() },
+            ..Default::default()
+        };
+        let (device, _) = block_on(adapter.request_device(&descriptor))?;
+        let spirv = backend == wgpu::Backends::VULKAN && device.features().contains(wgpu::Features::PASSTHROUGH_SHADERS);
+        Ok(Self { device, spirv })
+    }
+
+    /// Creates the pipeline; what wgpu has against it.
+    fn accepts(&self, pair: &Pair, spirv: bool) -> Result<(), String> {
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let created = self.create(pair, spirv);
+        let errors = [block_on(internal.pop()), block_on(scope.pop())];
+        created?;
+        errors.into_iter().flatten().next().map_or(Ok(()), |error| Err(error.to_string()))
+    }
+
+    fn create(&self, pair: &Pair, spirv: bool) -> Result<(), String> {
+        let stages = || std::iter::once(&pair.vertex).chain(&pair.fragment);
+        let layout = self.layout(stages().map(|found| &*found.reflection), spirv)?;
+        let modules = if spirv {
+            pair.spirv.iter().flatten().map(|found| self.passed(found)).collect::<Result<Vec<_>, _>>()?
+        } else {
+            stages().map(|found| self.module(found)).collect::<Result<Vec<_>, _>>()?
+        };
+        let attributes = attributes(&pair.vertex.reflection.inputs)?;
+        let stride = attributes.iter().map(|attribute| attribute.offset + attribute.format.size()).max().unwrap_or(0);
+        let buffer = wgpu::VertexBufferLayout { array_stride: stride, step_mode: wgpu::VertexStepMode::Vertex, attributes: &attributes };
+        let targets = pair.fragment.as_ref().map_or(Ok(Vec::new()), |found| targets(&found.reflection.outputs))?;
+        let depth = wgpu::DepthStencilState {
+            format: wgpu::TextureFormat::Depth32Float,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::LessEqual),
+            stencil: Default::default(),
+            bias: Default::default(),
+        };
+        let _pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &modules[0],
+                entry_point: Some(&pair.vertex.native.entry_name),
+                compilation_options: Default::default(),
+                buffers: &[(!attributes.is_empty()).then_some(buffer)],
+            },
+            primitive: Default::default(),
+            depth_stencil: Some(depth),
+            multisample: Default::default(),
+            fragment: pair.fragment.as_ref().map(|found| wgpu::FragmentState {
+                module: &modules[1],
+                entry_point: Some(&found.native.entry_name),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Ok(())
+    }
+
+    fn module(&self, found: &Found) -> Result<wgpu::ShaderModule, String> {
+        let text = std::str::from_utf8(&found.bytes).map_err(|error| error.to_string())?;
+        let source = wgpu::ShaderSource::Wgsl(text.into());
+        Ok(self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source }))
+    }
+
+    fn passed(&self, found: &Found) -> Result<wgpu::ShaderModule, String> {
+        let words: Vec<u32> = found.bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+        let entry = wgpu::PassthroughShaderEntryPoint { name: found.native.entry_name.as_str().into(), workgroup_size: (0, 0, 0) };
+        let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
+            entry_points: std::slice::from_ref(&entry).into(),
+            spirv: Some(words.into()),
+            ..Default::default()
+        };
+        // SAFETY: naga wrote the words from a valid module.
+        Ok(unsafe { self.device.create_shader_module_passthrough(descriptor) })
+    }
+
+    /// One layout over all stages, since they share their groups. wgpu numbers the bindings of a
+    /// Vulkan layout without gaps and renumbers those of the shaders it translates itself; where
+    /// SPIR-V passes through, bindings that nobody sees fill the gaps.
+    fn layout<'a>(&self, stages: impl Iterator<Item = &'a Reflection>, without_gaps: bool) -> Result<wgpu::PipelineLayout, String> {
+        let mut groups: BTreeMap<u32, BTreeMap<u32, wgpu::BindGroupLayoutEntry>> = BTreeMap::new();
+        for reflection in stages {
+            for binding in &reflection.bindings {
+                let entry = entry(binding, reflection)?;
+                let known = groups.entry(binding.group).or_default().entry(binding.binding).or_insert(entry);
+                known.visibility |= entry.visibility;
+                if known.ty != entry.ty {
+                    return Err(format!("the stages disagree about `{}`", binding.name));
+                }
+            }
+        }
+        if without_gaps {
+            groups.values_mut().for_each(fill);
+        }
+        let last = groups.last_key_value().map_or(0, |(group, _)| group + 1);
+        let layouts: Vec<Option<wgpu::BindGroupLayout>> = (0..last).map(|group| Some(self.group(groups.get(&group)?))).collect();
+        let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(Option::as_ref).collect();
+        let descriptor = wgpu::PipelineLayoutDescriptor { label: None, bind_group_layouts: &layouts, immediate_size: 0 };
+        Ok(self.device.create_pipeline_layout(&descriptor))
+    }
+
+    fn group(&self, entries: &BTreeMap<u32, wgpu::BindGroupLayoutEntry>) -> wgpu::BindGroupLayout {
+        let entries: Vec<_> = entries.values().copied().collect();
+        self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+    }
+}
+
+fn fill(group: &mut BTreeMap<u32, wgpu::BindGroupLayoutEntry>) {
+    let last = group.last_key_value().map_or(0, |(binding, _)| *binding);
+    for binding in 0..last {
+        let ty = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let unseen = wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::NONE, ty, count: None };
+        group.entry(binding).or_insert(unseen);
+    }
+}
+
+fn entry(binding: &Binding, reflection: &Reflection) -> Result<wgpu::BindGroupLayoutEntry, String> {
+    let place = [binding.group, binding.binding];
+    let ty = match binding.kind {
+        Kind::Uniform => wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: binding.size.and_then(|size| NonZeroU64::new(size.into())),
+        },
+        Kind::Sampler if filters_depth(place, reflection) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+        Kind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        Kind::ComparisonSampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
+        Kind::Texture => texture(binding)?,
+        Kind::Storage | Kind::StorageTexture => return Err(format!("`{}` is of a kind that the library has not", binding.name)),
+    };
+    let visibility = match reflection.stage {
+        Stage::Vertex => wgpu::ShaderStages::VERTEX,
+        Stage::Fragment => wgpu::ShaderStages::FRAGMENT,
+        Stage::Compute => wgpu::ShaderStages::COMPUTE,
+    };
+    Ok(wgpu::BindGroupLayoutEntry { binding: binding.binding, visibility, ty, count: None })
+}
+
+/// Whether the sampler reads a depth texture without comparing: such a pair cannot filter.
+fn filters_depth(sampler: [u32; 2], reflection: &Reflection) -> bool {
+    let is_depth = |place: [u32; 2]| {
+        reflection.bindings.iter().any(|binding| [binding.group, binding.binding] == place && binding.ty.starts_with("texture_depth"))
+    };
+    reflection.pairs.iter().any(|pair| pair.sampler == sampler && is_depth(pair.texture))
+}
+
+fn texture(binding: &Binding) -> Result<wgpu::BindingType, String> {
+    use wgpu::TextureViewDimension::{Cube, CubeArray, D2, D2Array, D3};
+    let float = wgpu::TextureSampleType::Float { filterable: true };
+    let (sample_type, view_dimension) = match binding.ty.as_str() {
+        "texture_2d<f32>" => (float, D2),
+        "texture_2d_array<f32>" => (float, D2Array),
+        "texture_cube<f32>" => (float, Cube),
+        "texture_3d<f32>" => (float, D3),
+        "texture_depth_2d" => (wgpu::TextureSampleType::Depth, D2),
+        "texture_depth_2d_array" => (wgpu::TextureSampleType::Depth, D2Array),
+        "texture_depth_cube" => (wgpu::TextureSampleType::Depth, Cube),
+        "texture_depth_cube_array" => (wgpu::TextureSampleType::Depth, CubeArray),
+        other => return Err(format!("no texture is of type `{other}`")),
+    };
+    Ok(wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false })
+}
+
+/// One interleaved buffer with an attribute for each location.
+fn attributes(inputs: &[Varying]) -> Result<Vec<wgpu::VertexAttribute>, String> {
+    let mut offset = 0;
+    let mut attributes = Vec::new();
+    for input in inputs {
+        let Some(shader_location) = input.location else { continue };
+        let format = match input.ty.as_str() {
+            "f32" => wgpu::VertexFormat::Float32,
+            "vec2<f32>" => wgpu::VertexFormat::Float32x2,
+            "vec3<f32>" => wgpu::VertexFormat::Float32x3,
+            "vec4<f32>" => wgpu::VertexFormat::Float32x4,
+            "u32" => wgpu::VertexFormat::Uint32,
+            "i32" => wgpu::VertexFormat::Sint32,
+            other => return Err(format!("no attribute is of type `{other}`")),
+        };
+        attributes.push(wgpu::VertexAttribute { format, offset, shader_location });
+        offset += format.size();
+    }
+    Ok(attributes)
+}
+
+fn targets(outputs: &[Varying]) -> Result<Vec<Option<wgpu::ColorTargetState>>, String> {
+    let mut targets = Vec::new();
+    for output in outputs {
+        let Some(location) = output.location else { continue };
+        let format = match output.ty.as_str() {
+            "f32" => wgpu::TextureFormat::R8Unorm,
+            "vec2<f32>" => wgpu::TextureFormat::Rg8Unorm,
+            "vec4<f32>" => wgpu::TextureFormat::Rgba8Unorm,
+            other => return Err(format!("no target is of type `{other}`")),
+        };
+        targets.resize(location as usize, None);
+        targets.push(Some(format.into()));
+    }
+    Ok(targets)
+}
