@@ -8,6 +8,7 @@ use std::{env, fs};
 fn main() -> std::io::Result<()> {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or(std::io::ErrorKind::NotFound)?);
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or(std::io::ErrorKind::NotFound)?);
+    println!("cargo::rustc-env=LAMPLIGHT_BUILD={}", build_id(&root, &out)?);
     fs::write(out.join("codes.rs"), codes(&root.join("src/diagnostic/codes"))?)?;
     fs::write(out.join("target_names.rs"), target_names(&root.join("src/emit/targets"))?)?;
     for (folder, entry) in [("emit/targets", "TARGET"), ("harness/executors", "EXECUTOR"), ("harness/references", "REFERENCES")] {
@@ -15,6 +16,57 @@ fn main() -> std::io::Result<()> {
         fs::write(out.join(format!("{name}.rs")), modules(&root.join("src").join(folder), entry)?)?;
     }
     fs::write(out.join("shaderlib.rs"), embedded(&root.join("shaderlib"))?)
+}
+
+/// A hash over all that the crate's results depend on: its own sources, the versions of what it
+/// is built with, and for what it is built.
+fn build_id(root: &Path, out: &Path) -> std::io::Result<String> {
+    let mut hash = Fnv::default();
+    let mut sources = Vec::new();
+    every(&root.join("src"), &mut sources)?;
+    every(&root.join("shaderlib"), &mut sources)?;
+    sources.sort();
+    for path in sources {
+        hash.add(relative(root, &path).as_bytes());
+        hash.add(&fs::read(&path)?);
+    }
+    // The lock file of the workspace that is built, which need not be this crate's.
+    let lock = out.ancestors().chain([root]).map(|folder| folder.join("Cargo.lock")).find(|lock| lock.is_file());
+    if let Some(lock) = lock {
+        println!("cargo::rerun-if-changed={}", lock.display());
+        hash.add(&fs::read(lock)?);
+    }
+    for variable in ["CARGO_PKG_VERSION", "TARGET"] {
+        hash.add(env::var(variable).unwrap_or_default().as_bytes());
+    }
+    Ok(format!("{:032x}", hash.0))
+}
+
+/// FNV-1a of 128 bits: short enough to write down here, and build scripts should stay light.
+struct Fnv(u128);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
+    }
+}
+
+impl Fnv {
+    fn add(&mut self, bytes: &[u8]) {
+        for byte in (bytes.len() as u64).to_le_bytes().iter().chain(bytes) {
+            self.0 = (self.0 ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
+        }
+    }
+}
+
+/// Every file below a folder.
+fn every(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    println!("cargo::rerun-if-changed={}", folder.display());
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() { every(&path, found)? } else { found.push(path) }
+    }
+    Ok(())
 }
 
 /// Files with the extension, sorted by name; the folder is watched for changes.

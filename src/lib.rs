@@ -7,6 +7,8 @@
 pub mod bundle;
 
 #[cfg(feature = "compile")]
+pub mod cache;
+#[cfg(feature = "compile")]
 pub mod catalogue;
 #[cfg(feature = "compile")]
 pub mod compose;

@@ -9,6 +9,7 @@ mod compose_wesl;
 mod diagnostics;
 mod emit;
 mod eval;
+mod generate;
 #[path = "../xtask/src/external.rs"]
 mod external;
 mod examples;
@@ -18,6 +19,7 @@ mod library;
 mod permute;
 mod pipelines;
 mod programs;
+mod scale;
 mod shaderlib;
 mod snapshot;
 
@@ -35,11 +37,13 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     eval::trials,
     examples::trials,
     frames::trials,
+    generate::trials,
     harness::trials,
     library::trials,
     permute::trials,
     pipelines::trials,
     programs::trials,
+    scale::trials,
     shaderlib::trials,
 ];
 

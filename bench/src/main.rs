@@ -4,13 +4,14 @@
 
 mod compose;
 mod corpus;
+mod generate;
 
 use std::error::Error;
 use std::process::ExitCode;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[("compose", compose::run)];
+const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[("compose", compose::run), ("gen", generate::run)];
 
 fn main() -> ExitCode {
     let asked = std::env::args().nth(1).unwrap_or_default();

@@ -60,22 +60,43 @@ pub struct Artifact {
     pub native: Arc<Native>,
 }
 
-impl Unit {
+/// What a unit is, in short.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Digest {
     /// Equal for units of equal content, on any machine.
-    pub fn hash(&self) -> Result<Hash, Error> {
+    pub unit: Hash,
+    /// The checksum of each target's bytes, and how many there are, in the order of the targets.
+    pub blobs: Box<[(Hash, u32)]>,
+}
+
+impl Unit {
+    /// Hashes everything, each byte once.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a blob of 4 GiB or more.
+    pub fn digest(&self) -> Result<Digest, Error> {
         let mut hasher = blake3::Hasher::new();
         let mut part = |bytes: &[u8]| {
             hasher.update(&(bytes.len() as u64).to_le_bytes());
             hasher.update(bytes);
         };
         part(&json(&*self.reflection)?);
+        let mut blobs = Vec::with_capacity(self.targets.len());
         for (target, artifact) in &self.targets {
+            let length = u32::try_from(artifact.bytes.len()).map_err(|_| Error::Io(format!("the shader for `{target}` is too large")))?;
+            let sum = checksum(&artifact.bytes);
             part(target.as_bytes());
             part(artifact.extension.as_bytes());
             part(&json(&*artifact.native)?);
-            part(&artifact.bytes);
+            part(&sum);
+            blobs.push((sum, length));
         }
-        Ok(short(&hasher.finalize()))
+        Ok(Digest { unit: short(&hasher.finalize()), blobs: blobs.into() })
+    }
+
+    /// Equal for units of equal content, on any machine.
+    pub fn hash(&self) -> Result<Hash, Error> {
+        Ok(self.digest()?.unit)
     }
 }
 

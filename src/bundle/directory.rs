@@ -3,47 +3,123 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::contents::{checksum, hex};
-use super::manifest::{self, ManifestArtifact, ManifestUnit};
-use super::store::{Artifact, Program, Programs, Store, Unit};
-use super::{Contents, Error, Native, Reflection, Stage};
+use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
+use super::store::{self, Artifact, Program, Programs, Store};
+use super::{Contents, Digest, Error, Native, Reflection, Stage, Unit};
 
 const MANIFEST: &str = "manifest.json";
 const BLOBS: &str = "blobs";
 const TEMPORARY: &str = ".tmp-";
 
 /// Writes the directory form over whatever bundle is there.
+pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
+    let writer = DirectoryWriter::create(path)?;
+    let entries = contents.programs.values().flat_map(|program| program.languages.values()).flat_map(|entries| entries.values());
+    entries.flat_map(|entry| entry.units.values()).try_for_each(|unit| writer.add(unit).map(|_| ()))?;
+    writer.finish(contents)
+}
+
+/// Writes the directory form over whatever bundle is there, unit by unit, so that no more than
+/// its manifest is ever in memory.
 ///
 /// Blobs come first, under names of their own content; then the manifest, by one rename; then
 /// blobs nobody names any more are removed. Killed at any point, the directory is the old bundle
 /// or the new one, whole.
-pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
-    let path = path.as_ref();
-    let blobs = path.join(BLOBS);
-    fs::create_dir_all(&blobs)?;
-    let mut names = BTreeSet::new();
-    for artifact in artifacts(contents) {
-        let blob = hex(&checksum(&artifact.bytes));
-        let name = ManifestArtifact { blob, extension: artifact.extension.clone(), bytes: 0, native: String::new() }.file()?;
-        if names.insert(name.clone()) {
-            replace(&blobs.join(name), &artifact.bytes)?;
-        }
+pub struct DirectoryWriter {
+    path: PathBuf,
+    manifest: Mutex<Manifest>,
+}
+
+impl DirectoryWriter {
+    /// Starts over at `path`; the bundle that is there stays as it is until [`Self::finish`].
+    pub fn create(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref().to_owned();
+        fs::create_dir_all(path.join(BLOBS))?;
+        Ok(Self { path, manifest: Mutex::default() })
     }
-    replace(&path.join(MANIFEST), manifest::write(contents)?.as_bytes())?;
-    remove_stale(&blobs, &names)
+
+    /// Writes the blobs of a unit; keys refer to it by the digest's hash.
+    pub fn add(&self, unit: &Unit) -> Result<Digest, Error> {
+        let digest = unit.digest()?;
+        let mut part = Manifest::default();
+        part.add_unit(&digest, unit)?;
+        for (target, named) in part.units.values().flat_map(|unit| &unit.targets) {
+            if let Some(artifact) = unit.targets.get(target) {
+                replace(&self.path.join(BLOBS).join(named.file()?), &artifact.bytes)?;
+            }
+        }
+        self.manifest().absorb(part);
+        Ok(digest)
+    }
+
+    /// Writes the manifest for the programs and keys of `contents`, whose own units are not
+    /// looked at, and removes what is no longer named.
+    ///
+    /// # Errors
+    /// [`Error::Corrupt`] where a key refers to a unit that was not added.
+    pub fn finish(self, contents: &Contents) -> Result<(), Error> {
+        let mut manifest = std::mem::take(&mut *self.manifest());
+        manifest.outline(contents)?;
+        self.write(&manifest)?;
+        let artifacts = manifest.units.values().flat_map(|unit| unit.targets.values());
+        let names = artifacts.map(ManifestArtifact::file).collect::<Result<BTreeSet<_>, _>>()?;
+        remove_stale(&self.path.join(BLOBS), &names)
+    }
+
+    /// Goes on with the bundle at `path`.
+    pub(super) fn reopen(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref().to_owned();
+        let manifest = read_manifest(&path)?;
+        Ok(Self { path, manifest: Mutex::new(manifest) })
+    }
+
+    /// Sets the keys of `contents` and leaves all others as they are.
+    pub(super) fn patch(self, contents: &Contents) -> Result<(), Error> {
+        let mut manifest = std::mem::take(&mut *self.manifest());
+        let mut others = std::mem::take(&mut manifest.programs);
+        manifest.outline(contents)?;
+        let patches = std::mem::take(&mut manifest.programs);
+        for (name, patch) in patches {
+            let program = others.entry(name).or_default();
+            program.axes = patch.axes;
+            for (language, entries) in patch.entries {
+                for (entry, patch) in entries {
+                    program.entries.entry(language).or_default().entry(entry).or_default().keys.extend(patch.keys);
+                }
+            }
+        }
+        manifest.programs = others;
+        self.write(&manifest)
+    }
+
+    fn write(&self, manifest: &Manifest) -> Result<(), Error> {
+        let path = self.path.join(MANIFEST);
+        let temporary = temporary(&path);
+        let written = fs::File::create(&temporary).map_err(Error::from).and_then(|file| manifest::write(manifest, file));
+        let renamed = written.and_then(|()| Ok(fs::rename(&temporary, path)?));
+        if renamed.is_err() {
+            // The error that matters is the first one.
+            let _ = fs::remove_file(&temporary);
+        }
+        renamed
+    }
+
+    fn manifest(&self) -> MutexGuard<'_, Manifest> {
+        // A thread that panicked here left the manifest without its unit, which no key names.
+        self.manifest.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// Writes a file beside and renames it into place, unless it is there with these bytes already.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    static NEXT: AtomicU32 = AtomicU32::new(0);
     if fs::metadata(path).is_ok_and(|found| found.len() == bytes.len() as u64) && fs::read(path).is_ok_and(|found| found == bytes) {
         return Ok(());
     }
-    let temporary = format!("{TEMPORARY}{}-{}", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
-    let temporary = path.with_file_name(temporary);
+    let temporary = temporary(path);
     let written = fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
         // The error that matters is the first one.
@@ -52,9 +128,10 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     Ok(written?)
 }
 
-fn artifacts(contents: &Contents) -> impl Iterator<Item = &super::Artifact> {
-    let entries = contents.programs.values().flat_map(|program| program.languages.values()).flat_map(|entries| entries.values());
-    entries.flat_map(|entry| entry.units.values()).flat_map(|unit| unit.targets.values())
+/// A name beside `path` that no other thread or process uses.
+fn temporary(path: &Path) -> PathBuf {
+    static NEXT: AtomicU32 = AtomicU32::new(0);
+    path.with_file_name(format!("{TEMPORARY}{}-{}", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed)))
 }
 
 /// Removes blobs that are not named, and what a killed run left.
@@ -84,11 +161,14 @@ pub struct Directory {
     artifacts: Vec<ManifestArtifact>,
 }
 
+fn read_manifest(path: &Path) -> Result<Manifest, Error> {
+    let text = fs::read(path.join(MANIFEST)).map_err(|error| Error::Io(format!("{MANIFEST}: {error}")))?;
+    manifest::read(&String::from_utf8(text).map_err(|_| Error::corrupt(MANIFEST, "it is not UTF-8"))?)
+}
+
 /// Reads the manifest.
 pub fn open(path: &Path) -> Result<Directory, Error> {
-    let text = fs::read(path.join(MANIFEST)).map_err(|error| Error::Io(format!("{MANIFEST}: {error}")))?;
-    let text = String::from_utf8(text).map_err(|_| Error::corrupt(MANIFEST, "it is not UTF-8"))?;
-    let manifest = manifest::read(&text)?;
+    let manifest = read_manifest(path)?;
     let mut directory = Directory {
         blobs: path.join(BLOBS),
         programs: Programs::new(),
@@ -170,13 +250,13 @@ impl Store for Directory {
         Ok(())
     }
 
-    fn unit(&self, unit: u32) -> Result<Unit, Error> {
+    fn unit(&self, unit: u32) -> Result<store::Unit, Error> {
         let (reflection, targets) = self.units.get(unit as usize).ok_or_else(|| Error::corrupt(MANIFEST, "a unit is out of range"))?;
         let targets = targets.iter().map(|(target, (artifact, blob))| {
             let native = self.natives.get(&artifact.native).ok_or_else(|| Error::corrupt(MANIFEST, "an artifact names no native"))?;
             Ok((target.clone(), Artifact { extension: artifact.extension.clone(), native: native.clone(), blob: *blob }))
         });
-        Ok(Unit { reflection: reflection.clone(), targets: targets.collect::<Result<_, Error>>()? })
+        Ok(store::Unit { reflection: reflection.clone(), targets: targets.collect::<Result<_, Error>>()? })
     }
 
     fn blob(&self, blob: u32) -> Result<Vec<u8>, Error> {

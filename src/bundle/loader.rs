@@ -140,7 +140,7 @@ impl Bundle {
         Ok(contents)
     }
 
-    fn unit(&self, number: u32) -> Result<Unit, Error> {
+    pub(super) fn unit(&self, number: u32) -> Result<Unit, Error> {
         let unit = self.store.unit(number)?;
         let targets = unit.targets.into_iter().map(|(target, found)| {
             let bytes = self.store.blob(found.blob)?.into();
@@ -226,6 +226,13 @@ impl Shader<'_> {
     pub fn keys(&self) -> Result<Vec<String>, Error> {
         let mut keys = Vec::new();
         self.store.each_key(self.entry, &mut |key, _| keys.push(key.to_owned()))?;
+        Ok(keys)
+    }
+
+    /// Every key with the number of its unit.
+    pub(super) fn numbered(&self) -> Result<Vec<(String, u32)>, Error> {
+        let mut keys = Vec::new();
+        self.store.each_key(self.entry, &mut |key, unit| keys.push((key.to_owned(), unit)))?;
         Ok(keys)
     }
 

@@ -1,11 +1,12 @@
 //! `manifest.json` of the directory form.
 
 use std::collections::BTreeMap;
+use std::io::{self, Write as _};
 
 use serde::{Deserialize, Serialize};
 
-use super::contents::{checksum, hex, json};
-use super::{Axis, Contents, EntryContents, Error, Language, Native, Reflection, Unit, VERSION};
+use super::contents::{checksum, hex, json, short};
+use super::{Axis, Contents, Digest, Error, Hash, Language, Native, Reflection, Unit, VERSION};
 
 /// The published JSON Schema of the manifest.
 pub const SCHEMA: &str = include_str!("schema.json");
@@ -15,7 +16,7 @@ const END: &str = "\"\n}\n";
 const BLANK: &str = "00000000000000000000000000000000";
 
 /// The whole file. Everything is named by what it is, so that an edit moves no other line.
-#[derive(Debug, Default, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Manifest {
     pub version: u32,
     pub programs: BTreeMap<String, ManifestProgram>,
@@ -24,6 +25,19 @@ pub struct Manifest {
     pub natives: BTreeMap<String, Native>,
     /// Over the text of the file with zeros in its place; the last value of the file.
     pub checksum: String,
+}
+
+impl Default for Manifest {
+    fn default() -> Self {
+        Self {
+            version: VERSION,
+            programs: BTreeMap::new(),
+            units: BTreeMap::new(),
+            reflections: BTreeMap::new(),
+            natives: BTreeMap::new(),
+            checksum: BLANK.to_owned(),
+        }
+    }
 }
 
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -64,24 +78,44 @@ impl ManifestArtifact {
     }
 }
 
-/// The text of the manifest.
-pub fn write(contents: &Contents) -> Result<String, Error> {
-    let mut manifest = Manifest { version: VERSION, checksum: BLANK.to_owned(), ..Manifest::default() };
-    for (name, program) in &contents.programs {
-        let mut copy = ManifestProgram { axes: program.axes.clone(), ..ManifestProgram::default() };
-        for (language, entries) in &program.languages {
-            for (entry, contents) in entries {
-                let keys = add_units(&mut manifest, contents)?;
-                copy.entries.entry(*language).or_default().insert(entry.clone(), ManifestEntry { keys });
-            }
-        }
-        manifest.programs.insert(name.clone(), copy);
+/// Writes the text of a manifest, the checksum of what came before it at its end.
+pub fn write(manifest: &Manifest, out: impl io::Write) -> Result<(), Error> {
+    let mut out = io::BufWriter::with_capacity(1 << 16, Sealing { out, hasher: blake3::Hasher::new(), held: Vec::new() });
+    serde_json::to_writer_pretty(&mut out, manifest).map_err(|error| Error::Io(error.to_string()))?;
+    out.write_all(b"\n")?;
+    out.into_inner().map_err(|error| Error::Io(error.to_string()))?.seal()
+}
+
+/// Passes a text on and hashes it, but holds back its end, where the checksum goes.
+struct Sealing<W> {
+    out: W,
+    hasher: blake3::Hasher,
+    held: Vec<u8>,
+}
+
+impl<W: io::Write> io::Write for Sealing<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.held.extend_from_slice(bytes);
+        let passed = self.held.len().saturating_sub(BLANK.len() + END.len());
+        self.hasher.update(&self.held[..passed]);
+        self.out.write_all(&self.held[..passed])?;
+        self.held.drain(..passed);
+        Ok(bytes.len())
     }
-    let mut text = serde_json::to_string_pretty(&manifest).map_err(|error| Error::Io(error.to_string()))?;
-    text.push('\n');
-    let sum = hex(&checksum(text.as_bytes()));
-    text.truncate(text.len() - END.len() - BLANK.len());
-    Ok(text + &sum + END)
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W: io::Write> Sealing<W> {
+    fn seal(mut self) -> Result<(), Error> {
+        self.hasher.update(&self.held);
+        let sum = hex(&short(&self.hasher.finalize()));
+        self.out.write_all(sum.as_bytes())?;
+        self.out.write_all(END.as_bytes())?;
+        Ok(self.out.flush()?)
+    }
 }
 
 /// The manifest, if its text is what was written.
@@ -113,26 +147,51 @@ fn version_error(text: &str) -> Option<Error> {
     (found != VERSION).then_some(Error::Version { found, known: VERSION })
 }
 
-fn add_units(manifest: &mut Manifest, entry: &EntryContents) -> Result<BTreeMap<String, String>, Error> {
-    for (hash, unit) in &entry.units {
-        if !manifest.units.contains_key(&hex(hash)) {
-            let copy = add_unit(manifest, unit)?;
-            manifest.units.insert(hex(hash), copy);
+impl Manifest {
+    /// Adds a unit under its hash, unless it is there.
+    pub fn add_unit(&mut self, digest: &Digest, unit: &Unit) -> Result<(), Error> {
+        let name = hex(&digest.unit);
+        if self.units.contains_key(&name) {
+            return Ok(());
         }
+        let reflection = hex(&checksum(&json(&*unit.reflection)?));
+        self.reflections.entry(reflection.clone()).or_insert_with(|| (*unit.reflection).clone());
+        let mut targets = BTreeMap::new();
+        for ((target, artifact), (blob, bytes)) in unit.targets.iter().zip(&digest.blobs) {
+            let native = hex(&checksum(&json(&*artifact.native)?));
+            self.natives.entry(native.clone()).or_insert_with(|| (*artifact.native).clone());
+            let (blob, bytes, extension) = (hex(blob), (*bytes).into(), artifact.extension.clone());
+            targets.insert(target.clone(), ManifestArtifact { blob, extension, bytes, native });
+        }
+        self.units.insert(name, ManifestUnit { reflection, targets });
+        Ok(())
     }
-    Ok(entry.keys.iter().map(|(key, hash)| (key.clone(), hex(hash))).collect())
-}
 
-fn add_unit(manifest: &mut Manifest, unit: &Unit) -> Result<ManifestUnit, Error> {
-    let reflection = hex(&checksum(&json(&*unit.reflection)?));
-    manifest.reflections.entry(reflection.clone()).or_insert_with(|| (*unit.reflection).clone());
-    let mut targets = BTreeMap::new();
-    for (target, artifact) in &unit.targets {
-        let native = hex(&checksum(&json(&*artifact.native)?));
-        manifest.natives.entry(native.clone()).or_insert_with(|| (*artifact.native).clone());
-        let blob = hex(&checksum(&artifact.bytes));
-        let bytes = artifact.bytes.len() as u64;
-        targets.insert(target.clone(), ManifestArtifact { blob, extension: artifact.extension.clone(), bytes, native });
+    /// Sets the programs, and the keys with the units they refer to.
+    pub fn outline(&mut self, contents: &Contents) -> Result<(), Error> {
+        for (name, program) in &contents.programs {
+            let mut copy = ManifestProgram { axes: program.axes.clone(), ..ManifestProgram::default() };
+            for (language, entries) in &program.languages {
+                for (entry, contents) in entries {
+                    let keys = contents.keys.iter().map(|(key, hash)| Ok((key.clone(), self.known(hash)?)));
+                    let keys = keys.collect::<Result<_, Error>>()?;
+                    copy.entries.entry(*language).or_default().insert(entry.clone(), ManifestEntry { keys });
+                }
+            }
+            self.programs.insert(name.clone(), copy);
+        }
+        Ok(())
     }
-    Ok(ManifestUnit { reflection, targets })
+
+    /// Takes the units of another manifest.
+    pub fn absorb(&mut self, other: Self) {
+        self.units.extend(other.units);
+        self.reflections.extend(other.reflections);
+        self.natives.extend(other.natives);
+    }
+
+    fn known(&self, hash: &Hash) -> Result<String, Error> {
+        let name = hex(hash);
+        if self.units.contains_key(&name) { Ok(name) } else { Err(Error::corrupt("contents", "a key refers to no unit")) }
+    }
 }

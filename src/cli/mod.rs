@@ -16,11 +16,14 @@ mod generate;
 mod input;
 mod keys;
 mod list;
+mod merge;
 mod mutate;
 mod progress;
 mod show;
 mod text;
 mod variants;
+mod watch;
+mod work;
 
 use std::process::ExitCode;
 
@@ -46,7 +49,9 @@ enum Command {
     Compose(compose::Arguments),
     Compile(compile::Arguments),
     Gen(generate::Arguments),
+    Merge(merge::Arguments),
     Variants(variants::Arguments),
+    Watch(watch::Arguments),
     Bundle(bundle::Arguments),
     Keys(keys::Arguments),
     Eval(eval::Arguments),
@@ -74,7 +79,9 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Compose(arguments) => compose::run(arguments, form),
         Command::Compile(arguments) => compile::run(arguments, form),
         Command::Gen(arguments) => generate::run(arguments, form),
+        Command::Merge(arguments) => merge::run(arguments),
         Command::Variants(arguments) => variants::run(arguments, form),
+        Command::Watch(arguments) => watch::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
         Command::Keys(arguments) => keys::run(arguments, form),
         Command::Eval(arguments) => eval::run(arguments, form),

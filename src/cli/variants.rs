@@ -1,14 +1,18 @@
 //! `lamplight variants`: what a manifest's axes multiply to.
 
 use std::io::{Write, stdout};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
-use crate::diagnostic::nearest;
-use crate::permute::report::{Report, report};
+use super::progress::Bar;
+use crate::diagnostic::{Diagnostics, nearest};
+use crate::generate::{self, Discard, Request, Tools};
+use crate::permute::report::{Report, StageCount, report};
+use crate::permute::{Manifest, Program};
 use crate::project;
+use crate::resolve::Packages;
 use crate::source::SourceSet;
 
 /// Report how many permutations a manifest has, and what each axis costs.
@@ -23,18 +27,33 @@ pub struct Arguments {
     /// Also list every key of this program.
     #[arg(long, value_name = "PROGRAM")]
     keys: Option<String>,
+    /// Compose every permutation: count the distinct texts, and say which axes each stage sees.
+    #[arg(long)]
+    compose: bool,
+    /// Compile them too, and count the distinct outputs.
+    #[arg(long)]
+    compile: bool,
 }
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let (sources, manifest) = match &arguments.manifest {
-        Some(path) => open(path)?,
-        None => project::library_manifest().map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?,
-    };
+    let mut sources = SourceSet::default();
+    let opened = open(arguments.manifest.as_deref(), &mut sources);
+    let (manifest, packages) = opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
     warn(&sources, &manifest.warnings, form);
     if let Some(name) = &arguments.keys {
         return keys(&manifest, name);
     }
-    let reports: Vec<Report> = manifest.programs.iter().map(|program| report(&program.name, &program.space)).collect();
+    let reports = manifest.programs.iter().map(|program| {
+        let mut report = report(&program.name, &program.space);
+        if arguments.compose || arguments.compile {
+            let bar = Bar::new();
+            let composed = compose(&arguments, &mut sources, &packages, &manifest, program, &mut report, &bar);
+            bar.clear();
+            composed.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+        }
+        Ok(report)
+    });
+    let reports = reports.collect::<Result<Vec<Report>, Failure>>()?;
     if arguments.json {
         return Ok(writeln!(stdout(), "{:#}", serde_json::json!(reports))?);
     }
@@ -42,15 +61,50 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     Ok(stdout().write_all(texts.join("\n").as_bytes())?)
 }
 
-fn open(path: &std::path::Path) -> Result<(SourceSet, crate::permute::Manifest), Failure> {
-    let mut sources = SourceSet::default();
-    match project::read_manifest(path, &mut sources) {
-        Ok(manifest) => Ok((sources, manifest)),
-        Err(diagnostics) => Err(Failure::Input(sources, diagnostics)),
+fn open(path: Option<&Path>, sources: &mut SourceSet) -> Result<(Manifest, Packages), Diagnostics> {
+    match path {
+        Some(path) => project::declared(path, sources),
+        None => {
+            let (library, manifest) = project::library_manifest().map_err(|(library, diagnostics)| {
+                *sources = library;
+                diagnostics
+            })?;
+            *sources = library;
+            Ok((manifest, project::library()))
+        }
     }
 }
 
-fn keys(manifest: &crate::permute::Manifest, name: &str) -> Result<(), Failure> {
+/// Fills in what only composing, and compiling, tells.
+fn compose(
+    arguments: &Arguments,
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &Manifest,
+    program: &Program,
+    report: &mut Report,
+    bar: &Bar,
+) -> Result<(), Diagnostics> {
+    let progress = |progress| bar.show(progress);
+    let composed = generate::survey(sources, packages, program, &progress)?;
+    let axes = || program.space.axes().iter().map(|axis| axis.name.clone());
+    let stages = composed.entries.iter().map(|entry| StageCount {
+        stage: format!("{} ({})", entry.entry, format!("{:?}", entry.language).to_lowercase()),
+        unique: entry.unique as u64,
+        blind: axes().filter(|axis| !entry.axes.contains(axis)).collect(),
+    });
+    report.stages = Some(stages.collect());
+    report.unique_sources = Some(composed.entries.iter().map(|entry| entry.unique as u64).sum());
+    if arguments.compile {
+        let request = Request { program: Some(program.name.clone()), ..Request::default() };
+        let tools = Tools { sink: &Discard, cache: None, progress: &progress };
+        let compiled = generate::generate(sources, packages, manifest, &request, &tools)?;
+        report.unique_outputs = Some(compiled.summary.targets.iter().map(|target| target.outputs as u64).sum());
+    }
+    Ok(())
+}
+
+fn keys(manifest: &Manifest, name: &str) -> Result<(), Failure> {
     let program = manifest.program(name).ok_or_else(|| {
         let known = manifest.programs.iter().map(|program| program.name.as_str());
         let hint = nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));

@@ -8,7 +8,7 @@ use super::weave::Woven;
 use crate::compose::wesl::lint::Outcomes;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::axis::Mode;
-use crate::permute::{Assignment, Key, Program};
+use crate::permute::{Assignment, Program};
 use crate::resolve::Graph;
 use crate::source::{SourceSet, Span};
 
@@ -27,14 +27,14 @@ pub struct Lints {
 
 impl Lints {
     /// Looks at a program with all its permutations.
-    pub fn see(&mut self, sources: &SourceSet, program: &Program, entries: &[Entry], points: &[(Key, Assignment)]) {
+    pub fn see(&mut self, sources: &SourceSet, program: &Program, entries: &[Entry], points: &[Assignment]) {
         let mut seen: Vec<*const Graph> = Vec::new();
         for entry in entries {
             if seen.contains(&Arc::as_ptr(&entry.graph)) {
                 continue;
             }
             seen.push(Arc::as_ptr(&entry.graph));
-            if let Some((_, point)) = points.first() {
+            if let Some(point) = points.first() {
                 self.found.extend(entry.graph.undeclared(&program.space.settings(point)));
             }
             if let Graph::Wesl(graph) = &*entry.graph {
@@ -43,8 +43,8 @@ impl Lints {
         }
     }
 
-    fn conditions(&mut self, sources: &SourceSet, program: &Program, mut outcomes: Outcomes<'_>, points: &[(Key, Assignment)]) {
-        for (_, point) in points {
+    fn conditions(&mut self, sources: &SourceSet, program: &Program, mut outcomes: Outcomes<'_>, points: &[Assignment]) {
+        for point in points {
             if outcomes.is_settled() {
                 break;
             }

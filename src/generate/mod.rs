@@ -2,28 +2,40 @@
 //!
 //! Work is done once, however many permutations ask for it. An entry point composes only for
 //! settings whose answers it has not seen ([`ReadTree`]), compiles only texts it has not seen,
-//! and stores only bytes that are new.
+//! and stores only bytes that are new. Units leave as they are made, so that memory holds keys and
+//! hashes, and the texts of one batch.
 //!
 //! [`ReadTree`]: crate::permute::ReadTree
 
 mod compile;
 mod entry;
+mod lean;
 mod lint;
+mod shard;
+mod sink;
 mod summary;
 mod weave;
 
+pub use shard::Shard;
+pub use sink::{Discard, Memory, Sink};
 pub use summary::{EntrySummary, ProgramSummary, Summary};
 
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use crate::bundle::{Axis, Contents, EntryContents, ProgramContents, Target};
+use crate::bundle::{Axis, Contents, Digest, EntryContents, ProgramContents, Target};
+use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::permute::{Assignment, Key, Manifest, Program, Quoted, key};
+use crate::permute::{Assignment, Manifest, Program, Quoted, key};
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 use crate::validate::on_large_stack;
+pub use compile::Made;
+use compile::{Compiled, Compiler};
+use entry::Entry;
 use lint::Lints;
+use summary::Outputs;
+use weave::Text;
 
 /// Diagnostics of one entry point after which no more are looked for.
 const REPORTED: usize = 20;
@@ -37,6 +49,17 @@ pub struct Request {
     pub only: Option<Quoted>,
     /// Only these targets; those of each program where there are none.
     pub targets: Vec<Target>,
+    /// Only this part of each program's permutations.
+    pub shard: Option<Shard>,
+}
+
+/// What a run works with.
+pub struct Tools<'a> {
+    /// Where units go.
+    pub sink: &'a dyn Sink,
+    /// Where results are kept between runs, and looked up.
+    pub cache: Option<&'a Cache>,
+    pub progress: &'a (dyn Fn(Progress) + Sync),
 }
 
 /// How far a run is.
@@ -49,15 +72,16 @@ pub struct Progress {
     pub total: usize,
 }
 
-/// A bundle's contents and the account of how they came about.
+/// Programs, keys and the account of how they came about.
 #[derive(Debug)]
 pub struct Generated {
+    /// Keys refer to units that the sink has: the entry points themselves have none.
     pub contents: Contents,
     pub summary: Summary,
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Composes, validates and emits every permutation asked for.
+/// Composes, validates and emits every permutation asked for; units go to the sink as they are made.
 ///
 /// # Errors
 /// Diagnostics of the permutations that fail, each once, with the key of the first permutation
@@ -67,50 +91,59 @@ pub fn generate(
     packages: &Packages,
     manifest: &Manifest,
     request: &Request,
-    progress: &(dyn Fn(Progress) + Sync),
+    tools: &Tools<'_>,
 ) -> Result<Generated, Diagnostics> {
     let start = Instant::now();
-    let mut done = Vec::new();
+    let mut generated = Generated { contents: Contents::default(), summary: Summary::default(), warnings: Vec::new() };
+    let mut outputs = Outputs::default();
     let mut lints = Lints::default();
     for program in chosen(manifest, request)? {
         let points = points(program, request)?;
-        let entries = entry::entries(sources, packages, program, points.first().map(|(_, point)| point))?;
-        let targets = if request.targets.is_empty() { &program.targets } else { &request.targets };
-        let woven = on_large_stack(|| {
-            let woven = entries.iter().map(|entry| weave::weave(entry, &program.space, &points, targets, progress));
-            woven.collect::<Result<Vec<_>, _>>()
-        })?;
-        // One permutation says nothing about the others.
-        if request.only.is_none() {
-            lints.see(sources, program, &entries, &points);
+        let entries = entry::entries(sources, packages, program, points.first())?;
+        let points = request.shard.map_or(&*points, |shard| shard.of(&points));
+        let mut targets = if request.targets.is_empty() { program.targets.clone() } else { request.targets.clone() };
+        targets.sort();
+        targets.dedup();
+        let compiler = Compiler { targets: &targets, sink: tools.sink, cache: tools.cache };
+        let make = |text: &Text, entry: &Entry| compiler.make(text, entry);
+        let woven = on_large_stack(|| weave::weave(&entries, &program.space, points, &make, tools.progress))?;
+        // One permutation says nothing about the others, and a part of them not enough.
+        if request.only.is_none() && request.shard.is_none() {
+            lints.see(sources, program, &entries, points);
             lints.see_reads(program, &woven);
         }
-        done.push(Done { program, keys: points.into_iter().map(|(key, _)| key).collect(), woven });
+        outputs.add(&targets, &woven);
+        generated.summary.programs.push(summary::program(&program.name, points.len(), &woven));
+        generated.warnings.extend(woven.iter().flat_map(|woven| woven.warnings.iter().cloned()));
+        generated.contents.programs.insert(program.name.clone(), contents(program, points, &woven));
     }
-    let mut generated = finish(done, start.elapsed())?;
     generated.warnings.extend(lints.finish());
     generated.warnings = lint::distinct(sources, generated.warnings);
+    generated.summary.targets = outputs.summaries();
+    generated.summary.cached = tools.cache.map_or(0, Cache::hits);
+    generated.summary.seconds = start.elapsed().as_secs_f64();
     Ok(generated)
 }
 
-/// A program with every entry point compiled.
-struct Done<'a> {
-    program: &'a Program,
-    keys: Vec<Key>,
-    woven: Vec<weave::Woven>,
+/// Composes every permutation asked for and compiles none: how many texts there are, and which
+/// axes each entry point sees.
+///
+/// # Errors
+/// As of [`generate`], of composing.
+pub fn survey(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    program: &Program,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<ProgramSummary, Diagnostics> {
+    let points = points(program, &Request::default())?;
+    let entries = entry::entries(sources, packages, program, points.first())?;
+    let nothing = |_: &Text, _: &Entry| Ok(Compiled { digest: Digest { unit: [0; 16], blobs: Box::default() }, warnings: Vec::new() });
+    let woven = on_large_stack(|| weave::weave(&entries, &program.space, &points, &nothing, progress))?;
+    Ok(summary::program(&program.name, points.len(), &woven))
 }
 
-fn finish(done: Vec<Done<'_>>, elapsed: Duration) -> Result<Generated, Diagnostics> {
-    let programs = done.iter().map(|done| summary::program(&done.program.name, done.keys.len(), &done.woven)).collect();
-    let warnings = done.iter().flat_map(|done| &done.woven).flat_map(|woven| woven.warnings.iter().cloned()).collect();
-    let mut contents = Contents::default();
-    for Done { program, keys, woven } in done {
-        contents.programs.insert(program.name.clone(), program_contents(program, &keys, woven)?);
-    }
-    Ok(Generated { summary: summary::summarise(programs, &contents, elapsed), contents, warnings })
-}
-
-fn program_contents(program: &Program, keys: &[Key], woven: Vec<weave::Woven>) -> Result<ProgramContents, Diagnostics> {
+fn contents(program: &Program, points: &[Assignment], woven: &[weave::Woven]) -> ProgramContents {
     let axes = program.space.axes().iter().map(|axis| Axis {
         name: axis.name.clone(),
         values: axis.value_names(),
@@ -119,18 +152,12 @@ fn program_contents(program: &Program, keys: &[Key], woven: Vec<weave::Woven>) -
     });
     let mut contents = ProgramContents { axes: axes.collect(), languages: BTreeMap::new() };
     for woven in woven {
-        let (language, label) = (woven.language.into(), woven.label.clone());
-        contents.languages.entry(language).or_default().insert(label, entry_contents(keys, woven)?);
+        let unit_of = woven.text_of.iter().map(|text| woven.made[*text as usize].unit);
+        let keys = points.iter().map(|point| program.space.key(point).to_string()).zip(unit_of).collect();
+        let entry = EntryContents { units: BTreeMap::new(), keys };
+        contents.languages.entry(woven.language.into()).or_default().insert(woven.label.clone(), entry);
     }
-    Ok(contents)
-}
-
-fn entry_contents(keys: &[Key], woven: weave::Woven) -> Result<EntryContents, Diagnostics> {
-    let mut contents = EntryContents::default();
-    let failed = |error: crate::bundle::Error| vec![Diagnostic::error(codes::BUNDLE_FAILED, error.to_string())];
-    let hashes = woven.units.into_iter().map(|unit| contents.add(unit)).collect::<Result<Vec<_>, _>>().map_err(failed)?;
-    contents.keys = keys.iter().zip(&woven.unit_of).map(|(key, unit)| (key.to_string(), hashes[*unit as usize])).collect();
-    Ok(contents)
+    contents
 }
 
 fn chosen<'a>(manifest: &'a Manifest, request: &Request) -> Result<Vec<&'a Program>, Diagnostics> {
@@ -141,12 +168,11 @@ fn chosen<'a>(manifest: &'a Manifest, request: &Request) -> Result<Vec<&'a Progr
     })
 }
 
-fn points(program: &Program, request: &Request) -> Result<Vec<(Key, Assignment)>, Diagnostics> {
-    let points = match &request.only {
-        Some(text) => vec![asked(program, text)?],
-        None => program.space.enumerate(),
-    };
-    Ok(points.into_iter().map(|point| (program.space.key(&point), point)).collect())
+fn points(program: &Program, request: &Request) -> Result<Vec<Assignment>, Diagnostics> {
+    match &request.only {
+        Some(text) => Ok(vec![asked(program, text)?]),
+        None => Ok(program.space.enumerate()),
+    }
 }
 
 /// The point of a key that was asked for by name: it must satisfy the constraints.

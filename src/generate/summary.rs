@@ -2,23 +2,26 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::time::Duration;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::weave::Woven;
-use crate::bundle::{Contents, Language};
+use crate::bundle::{Hash, Language, Target};
 
 /// How much there was to do, how much was done, and what came out.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Summary {
     pub programs: Vec<ProgramSummary>,
     pub targets: Vec<TargetSummary>,
+    /// Texts whose results came from the cache; all others were compiled.
+    pub cached: usize,
+    /// Whether nothing was done, since neither the inputs nor the bundle changed since they were made.
+    pub up_to_date: bool,
     pub seconds: f64,
 }
 
 /// One program.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ProgramSummary {
     pub name: String,
     pub permutations: usize,
@@ -26,7 +29,7 @@ pub struct ProgramSummary {
 }
 
 /// One entry point of one language.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct EntrySummary {
     pub entry: String,
     pub language: Language,
@@ -39,13 +42,13 @@ pub struct EntrySummary {
 }
 
 /// One target, over all programs.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct TargetSummary {
     pub target: String,
     /// Distinct outputs.
     pub outputs: usize,
     /// Their bytes.
-    pub bytes: usize,
+    pub bytes: u64,
 }
 
 pub(super) fn program(name: &str, permutations: usize, woven: &[Woven]) -> ProgramSummary {
@@ -53,34 +56,44 @@ pub(super) fn program(name: &str, permutations: usize, woven: &[Woven]) -> Progr
         entry: woven.label.clone(),
         language: woven.language.into(),
         compositions: woven.compositions,
-        unique: woven.units.len(),
+        unique: woven.made.len(),
         axes: woven.reads.iter().cloned().collect(),
     });
     ProgramSummary { name: name.to_owned(), permutations, entries: entries.collect() }
 }
 
-pub(super) fn summarise(programs: Vec<ProgramSummary>, contents: &Contents, elapsed: Duration) -> Summary {
-    Summary { programs, targets: targets(contents), seconds: elapsed.as_secs_f64() }
-}
+/// Counts the distinct outputs of each target; a program's woven entry points come with its targets.
+#[derive(Debug, Default)]
+pub(super) struct Outputs(BTreeMap<Target, BTreeMap<Hash, u32>>);
 
-fn targets(contents: &Contents) -> Vec<TargetSummary> {
-    let mut outputs: BTreeMap<&str, BTreeMap<&[u8], ()>> = BTreeMap::new();
-    let entries = contents.programs.values().flat_map(|program| program.languages.values()).flat_map(BTreeMap::values);
-    for (target, artifact) in entries.flat_map(|entry| entry.units.values()).flat_map(|unit| &unit.targets) {
-        outputs.entry(target).or_default().insert(&artifact.bytes, ());
+impl Outputs {
+    pub fn add(&mut self, targets: &[Target], woven: &[Woven]) {
+        for digest in woven.iter().flat_map(|woven| &woven.made) {
+            for (target, (blob, length)) in targets.iter().zip(&digest.blobs) {
+                self.0.entry(*target).or_default().insert(*blob, *length);
+            }
+        }
     }
-    let summary = |(target, blobs): (&str, BTreeMap<&[u8], ()>)| TargetSummary {
-        target: target.to_owned(),
-        outputs: blobs.len(),
-        bytes: blobs.keys().map(|bytes| bytes.len()).sum(),
-    };
-    outputs.into_iter().map(summary).collect()
+
+    pub fn summaries(&self) -> Vec<TargetSummary> {
+        let summary = |(target, blobs): (&Target, &BTreeMap<Hash, u32>)| TargetSummary {
+            target: target.name().to_owned(),
+            outputs: blobs.len(),
+            bytes: blobs.values().map(|length| u64::from(*length)).sum(),
+        };
+        self.0.iter().map(summary).collect()
+    }
 }
 
 impl Summary {
     /// Permutations of all programs.
     pub fn permutations(&self) -> usize {
         self.programs.iter().map(|program| program.permutations).sum()
+    }
+
+    /// Distinct texts of all entry points.
+    pub fn texts(&self) -> usize {
+        self.programs.iter().flat_map(|program| &program.entries).map(|entry| entry.unique).sum()
     }
 }
 
@@ -96,6 +109,10 @@ impl fmt::Display for Summary {
         for target in &self.targets {
             writeln!(f, "{:8} {:6} outputs {:8.1} MB", target.target, target.outputs, target.bytes as f64 / 1e6)?;
         }
+        if self.up_to_date {
+            return writeln!(f, "{} permutations up to date, checked in {:.2} s", self.permutations(), self.seconds);
+        }
+        writeln!(f, "{} texts, {} of them from the cache", self.texts(), self.cached)?;
         let rate = self.permutations() as f64 / self.seconds.max(1e-9);
         writeln!(f, "{} permutations in {:.2} s, {rate:.0} a second", self.permutations(), self.seconds)
     }

@@ -1,29 +1,30 @@
-//! One entry point over all permutations.
+//! The entry points of a program over all its permutations.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use super::compile::compile;
+use super::compile::Compiled;
 use super::entry::Entry;
+use super::lean::lean;
 use super::{Progress, REPORTED};
-use crate::bundle::{Target, Unit};
+use crate::bundle::{Digest, Hash};
 use crate::compose::{self, Composed};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Assignment, Key, ReadTree, Space};
 
 /// Permutations composed before their new texts are compiled: bounds the memory that texts take.
-const BATCH: usize = 1024;
+const BATCH: usize = 512;
 
-/// An entry point, compiled.
+/// An entry point, compiled for every permutation.
 pub struct Woven {
     /// Its name in the bundle.
     pub label: String,
     pub language: compose::Language,
     /// One for each distinct text, in the order of the first permutation that has it.
-    pub units: Vec<Unit>,
-    /// For each permutation, the index of its unit.
-    pub unit_of: Vec<u32>,
+    pub made: Vec<Digest>,
+    /// For each permutation, the index of its text.
+    pub text_of: Vec<u32>,
     /// The axes that any composition asked for.
     pub reads: BTreeSet<String>,
     /// How often anything was composed.
@@ -31,114 +32,146 @@ pub struct Woven {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Compiles an entry point for every permutation.
+/// Makes something of a text that is new.
+pub type Make<'a> = dyn Fn(&Text, &Entry) -> Result<Compiled, Diagnostics> + Sync + 'a;
+
+/// Composes every entry point for every permutation, and makes something of each text, a batch of permutations at a time.
 pub fn weave(
-    entry: &Entry,
+    entries: &[Entry],
     space: &Space,
-    points: &[(Key, Assignment)],
-    targets: &[Target],
+    points: &[Assignment],
+    make: &Make<'_>,
     progress: &(dyn Fn(Progress) + Sync),
-) -> Result<Woven, Diagnostics> {
-    let mut loom = Loom::new(entry);
-    progress(Progress { stage: entry.title(), done: 0, total: points.len() });
-    for batch in points.chunks(BATCH) {
-        let texts = loom.compose(entry, space, batch)?;
-        let units: Vec<Result<(Unit, Diagnostics), Diagnostics>> =
-            texts.par_iter().map(|(key, composed)| compiled(entry, key, composed, targets)).collect();
-        for (unit, warnings) in collect(units)? {
-            loom.woven.units.push(unit);
-            loom.woven.warnings.extend(warnings);
+) -> Result<Vec<Woven>, Diagnostics> {
+    let mut looms: Vec<Loom<'_>> = entries.iter().map(Loom::new).collect();
+    let stage = entries.first().map_or(String::new(), |entry| entry.program.clone());
+    let at = |done| progress(Progress { stage: stage.clone(), done, total: points.len() });
+    at(0);
+    for start in (0..points.len()).step_by(BATCH) {
+        let batch = start..points.len().min(start + BATCH);
+        let jobs = compose_batch(&mut looms, space, &points[batch.clone()])?;
+        let made = jobs.into_par_iter().map(|job| job.run(entries, space, &points[batch.clone()], make));
+        for (entry, Compiled { digest, warnings }) in collect(made.collect())? {
+            looms[entry].woven.made.push(digest);
+            looms[entry].woven.warnings.extend(warnings);
         }
-        progress(Progress { stage: entry.title(), done: loom.woven.unit_of.len(), total: points.len() });
+        at(batch.end);
     }
-    Ok(loom.woven)
+    Ok(looms.into_iter().map(|loom| loom.woven).collect())
 }
 
-/// A unit with what its author can mend in it; errors and warnings name the permutation.
-fn compiled(entry: &Entry, key: &Key, composed: &Composed, targets: &[Target]) -> Result<(Unit, Diagnostics), Diagnostics> {
-    let (unit, warnings) =
-        compile(composed, &entry.name, targets).map_err(|errors| of_permutation(entry.graph.traced(errors), entry, key))?;
-    Ok((unit, of_permutation(entry.graph.own(warnings), entry, key)))
+/// A text that no earlier permutation of its entry point had.
+struct Job {
+    entry: usize,
+    /// Index of the permutation in the batch.
+    point: usize,
+    text: Box<Text>,
 }
 
-/// What is known so far.
-struct Loom {
+/// A text as its author reads it, and as it is compiled.
+pub struct Text {
+    pub composed: Composed,
+    pub lean: Composed,
+}
+
+impl Job {
+    /// Errors and warnings name the permutation.
+    fn run(self, entries: &[Entry], space: &Space, batch: &[Assignment], make: &Make<'_>) -> Result<(usize, Compiled), Diagnostics> {
+        let entry = &entries[self.entry];
+        let named = |diagnostics| of_permutation(diagnostics, entry, &space.key(&batch[self.point]));
+        let Compiled { digest, warnings } = make(&self.text, entry).map_err(|errors| named(entry.graph.traced(errors)))?;
+        Ok((self.entry, Compiled { digest, warnings: named(entry.graph.own(warnings)) }))
+    }
+}
+
+/// Composes whatever earlier batches did not answer, in parallel; several permutations of a batch
+/// may compose to one text: to compose is cheaper than to wait for each other.
+fn compose_batch(looms: &mut [Loom<'_>], space: &Space, batch: &[Assignment]) -> Result<Vec<Job>, Diagnostics> {
+    let answers = |looms: &[Loom<'_>], point: &Assignment| {
+        let settings = space.settings(point);
+        looms.iter().map(|loom| loom.find(&settings, space, point)).collect::<Result<Vec<_>, _>>()
+    };
+    let found = collect(batch.par_iter().map(|point| answers(looms, point)).collect())?;
+    let mut jobs = Vec::new();
+    for (point, answers) in found.into_iter().enumerate() {
+        for (entry, answer) in answers.into_iter().enumerate() {
+            jobs.extend(looms[entry].place(answer).map(|text| Job { entry, point, text }));
+        }
+    }
+    // Long ones first would balance better still; neighbours of one entry point are alike, which
+    // the caches of the processor and rayon's splitting both like.
+    jobs.sort_by_key(|job| job.entry);
+    Ok(jobs)
+}
+
+/// What is known so far of one entry point.
+struct Loom<'a> {
+    entry: &'a Entry,
     woven: Woven,
     tree: ReadTree<u32>,
-    /// Unit by the hash of its text.
-    texts: BTreeMap<[u8; 32], u32>,
+    /// Index by the hash of the text.
+    texts: BTreeMap<Hash, u32>,
 }
 
-impl Loom {
-    fn new(entry: &Entry) -> Self {
+enum Found {
+    Known(u32),
+    Text { text: Box<Text>, hash: Hash },
+}
+
+impl<'a> Loom<'a> {
+    fn new(entry: &'a Entry) -> Self {
         let woven = Woven {
             label: entry.label.clone(),
             language: entry.language,
-            units: Vec::new(),
-            unit_of: Vec::new(),
+            made: Vec::new(),
+            text_of: Vec::new(),
             reads: BTreeSet::new(),
             compositions: 0,
             warnings: Vec::new(),
         };
-        Self { woven, tree: ReadTree::default(), texts: BTreeMap::new() }
+        Self { entry, woven, tree: ReadTree::default(), texts: BTreeMap::new() }
     }
 
-    /// Gives every permutation of a batch its unit; the texts that are new, in order.
-    ///
-    /// Settings that no earlier batch answered are composed in parallel, some of them to the same
-    /// text: to compose is cheaper than to wait for each other.
-    fn compose<'k>(
-        &mut self,
-        entry: &Entry,
-        space: &Space,
-        batch: &'k [(Key, Assignment)],
-    ) -> Result<Vec<(&'k Key, Composed)>, Diagnostics> {
-        let tree = &self.tree;
-        let composed: Vec<Result<Found, Diagnostics>> = batch
-            .par_iter()
-            .map(|(key, point)| {
-                let settings = space.settings(point);
-                match tree.get(&settings) {
-                    Some(unit) => Ok(Found::Unit(*unit)),
-                    None => compose::compose(&entry.graph, &settings, &entry.options)
-                        .map(|composed| Found::Text(Box::new(composed)))
-                        .map_err(|errors| of_permutation(errors, entry, key)),
-                }
-            })
-            .collect();
-        let found = collect(composed)?;
-        Ok(batch.iter().zip(found).filter_map(|((key, _), found)| self.place(found).map(|composed| (key, composed))).collect())
+    fn find(&self, settings: &crate::permute::Settings, space: &Space, point: &Assignment) -> Result<Found, Diagnostics> {
+        if let Some(text) = self.tree.get(settings) {
+            return Ok(Found::Known(*text));
+        }
+        let composed = compose::compose(&self.entry.graph, settings, &self.entry.options);
+        let composed = composed.map_err(|errors| of_permutation(errors, self.entry, &space.key(point)))?;
+        let lean = lean(&composed);
+        let mut hash = [0; 16];
+        hash.copy_from_slice(&blake3::hash(lean.text.as_bytes()).as_bytes()[..16]);
+        Ok(Found::Text { text: Box::new(Text { composed, lean }), hash })
     }
 
-    /// Records a permutation's unit; its text, if no earlier one had it.
-    fn place(&mut self, found: Found) -> Option<Composed> {
-        let composed = match found {
-            Found::Unit(unit) => {
-                self.woven.unit_of.push(unit);
+    /// Records a permutation's text; gives it back if no earlier one had it.
+    fn place(&mut self, found: Found) -> Option<Box<Text>> {
+        let (text, hash) = match found {
+            Found::Known(index) => {
+                self.woven.text_of.push(index);
                 return None;
             }
-            Found::Text(composed) => composed,
+            Found::Text { text, hash } => (text, hash),
         };
         self.woven.compositions += 1;
-        self.woven.reads.extend(composed.reads.iter().map(|(name, _)| name.clone()));
-        let hash = *blake3::hash(composed.text.as_bytes()).as_bytes();
+        for (name, _) in &text.composed.reads {
+            if !self.woven.reads.contains(name) {
+                self.woven.reads.insert(name.clone());
+            }
+        }
         let next = self.texts.len() as u32;
-        let unit = *self.texts.entry(hash).or_insert(next);
+        let index = *self.texts.entry(hash).or_insert(next);
         // A contradiction would only cost a composition that the tree could have saved.
-        let _ = self.tree.insert(&composed.reads, unit);
-        self.woven.unit_of.push(unit);
-        if unit < next {
+        let _ = self.tree.insert(&text.composed.reads, index);
+        self.woven.text_of.push(index);
+        if index < next {
             return None;
         }
-        let new = composed.warnings.iter().filter(|warning| !self.woven.warnings.contains(warning)).cloned().collect::<Vec<_>>();
+        let warnings = text.composed.warnings.iter().filter(|warning| !self.woven.warnings.contains(warning));
+        let new: Vec<_> = warnings.cloned().collect();
         self.woven.warnings.extend(new);
-        Some(*composed)
+        Some(text)
     }
-}
-
-enum Found {
-    Unit(u32),
-    Text(Box<Composed>),
 }
 
 /// All values, or the first diagnostics of those that failed, each once.
@@ -163,8 +196,5 @@ fn keep(errors: &mut Diagnostics, error: Diagnostic) {
 }
 
 fn of_permutation(errors: Diagnostics, entry: &Entry, key: &Key) -> Diagnostics {
-    errors
-        .into_iter()
-        .map(|error| error.note(format!("in permutation `{key}` of program `{}`, entry point `{}`", entry.program, entry.label)))
-        .collect()
+    errors.into_iter().map(|error| error.note(format!("in permutation `{key}` of {}", entry.title()))).collect()
 }

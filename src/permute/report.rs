@@ -35,6 +35,8 @@ pub struct Report {
 pub struct StageCount {
     pub stage: String,
     pub unique: u64,
+    /// Axes that never change it.
+    pub blind: Vec<String>,
 }
 
 /// What one axis does to the number of permutations.
@@ -102,6 +104,9 @@ impl fmt::Display for Report {
         writeln!(f, "program {}", self.program)?;
         let funnel = self.funnel().into_iter().map(|(name, count)| vec![name, count.to_string()]).collect();
         table(f, &[Align::Left, Align::Right], funnel)?;
+        for stage in self.stages.iter().flatten().filter(|stage| !stage.blind.is_empty()) {
+            writeln!(f, "  {} is blind to {}", stage.stage, stage.blind.join(", "))?;
+        }
         if self.axes.is_empty() {
             return Ok(());
         }

@@ -123,6 +123,12 @@ pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, D
     parse_manifest(&package, &name, sources)
 }
 
+/// A manifest by its path, and the package whose root folder it is in.
+pub fn declared(path: &Path, sources: &mut SourceSet) -> Result<(Manifest, Packages), Diagnostics> {
+    let manifest = read_manifest(path, sources)?;
+    Ok((manifest, packages(path.parent().unwrap_or(Path::new("")), sources)?))
+}
+
 /// File name of the lock that lies beside a manifest.
 pub const LOCK: &str = "lamplight.lock";
 
@@ -149,6 +155,19 @@ pub fn library_manifest() -> Result<(SourceSet, Manifest), (SourceSet, Diagnosti
         Ok(manifest) => Ok((sources, manifest)),
         Err(diagnostics) => Err((sources, diagnostics)),
     }
+}
+
+/// Where results for a manifest are kept when nobody says where: in the `target` folder of the
+/// cargo package it is in, or else in the user's cache folder. `None` where there is neither.
+pub fn cache_folder(manifest: &Path) -> Option<PathBuf> {
+    const NAME: &str = "lamplight-cache";
+    let real = manifest.canonicalize().ok()?;
+    let packages = real.ancestors().filter(|folder| folder.join("Cargo.toml").is_file());
+    if let Some(target) = packages.map(|folder| folder.join("target")).find(|target| target.is_dir()) {
+        return Some(target.join(NAME));
+    }
+    let variable = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    Some(variable("XDG_CACHE_HOME").or_else(|| Some(variable("HOME")?.join(".cache")))?.join(NAME))
 }
 
 fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {

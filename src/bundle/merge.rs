@@ -1,0 +1,58 @@
+//! One bundle of several, and one permutation into a bundle.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::directory::DirectoryWriter;
+use super::{Bundle, Contents, EntryContents, Error, ProgramContents};
+
+/// Everything of several bundles, every byte verified.
+///
+/// # Errors
+/// [`Error::Conflict`] where two have a key or a program's axes and disagree.
+pub fn merge(bundles: &[Bundle]) -> Result<Contents, Error> {
+    let mut all = Contents::default();
+    bundles.iter().try_for_each(|bundle| all.merge(bundle.contents()?))?;
+    Ok(all)
+}
+
+/// [`merge`] into the directory form, unit by unit: memory holds keys and hashes only.
+pub fn merge_directory(bundles: &[Bundle], path: impl AsRef<Path>) -> Result<(), Error> {
+    let writer = DirectoryWriter::create(path)?;
+    let mut all = Contents::default();
+    for bundle in bundles {
+        all.merge(copy(bundle, &writer)?)?;
+    }
+    writer.finish(&all)
+}
+
+/// Replaces or adds permutations of a directory: what it has of others stays, and units that no
+/// key refers to any more stay until it is written anew.
+pub fn patch_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
+    let writer = DirectoryWriter::reopen(path)?;
+    let entries = contents.programs.values().flat_map(|program| program.languages.values()).flat_map(BTreeMap::values);
+    entries.flat_map(|entry| entry.units.values()).try_for_each(|unit| writer.add(unit).map(|_| ()))?;
+    writer.patch(contents)
+}
+
+/// Writes the units of a bundle; its programs and keys.
+fn copy(bundle: &Bundle, writer: &DirectoryWriter) -> Result<Contents, Error> {
+    let mut contents = Contents::default();
+    let mut digests = BTreeMap::new();
+    for name in bundle.programs() {
+        let program = bundle.program(name)?;
+        let mut copied = ProgramContents { axes: program.axes().to_vec(), ..ProgramContents::default() };
+        for (language, entry) in program.entries() {
+            let mut keys = BTreeMap::new();
+            for (key, number) in program.entry(language, entry)?.numbered()? {
+                if !digests.contains_key(&number) {
+                    digests.insert(number, writer.add(&bundle.unit(number)?)?.unit);
+                }
+                keys.extend(digests.get(&number).map(|unit| (key, *unit)));
+            }
+            copied.languages.entry(language).or_default().insert(entry.to_owned(), EntryContents { units: BTreeMap::new(), keys });
+        }
+        contents.programs.insert(name.to_owned(), copied);
+    }
+    Ok(contents)
+}

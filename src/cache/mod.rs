@@ -1,0 +1,158 @@
+//! Results by what they were made of: a text is compiled once, whoever asks, whenever.
+//!
+//! A key covers everything that a result depends on: the composed text (its comments aside), the entry point, the
+//! options, the targets, and [`BUILD`], which stands for the code of this crate and of naga. No
+//! time, path or machine enters it. What is read is verified; whatever is damaged, or of another
+//! version, counts as absent. A cache that cannot be read or written costs time and nothing else.
+
+mod folder;
+mod record;
+mod trace;
+
+pub use folder::Folder;
+pub use trace::{Recorder, Trace};
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::bundle::{Hash, Target};
+use crate::compose::{Composed, Options};
+use crate::diagnostic::Diagnostics;
+use crate::generate::Made;
+
+/// Changes with the sources of this crate, its dependencies' versions and the compiler's target.
+pub const BUILD: &str = env!("LAMPLIGHT_BUILD");
+
+/// Bytes by name. Names are made of lower-case letters, digits and `/`.
+pub trait Storage: Send + Sync {
+    /// The bytes of a name; `None` where there are none.
+    fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String>;
+
+    /// Stores bytes as a whole: no reader ever sees a part of them.
+    fn put(&self, name: &str, bytes: &[u8]) -> Result<(), String>;
+}
+
+/// Storages, the nearest first. What a later one has is copied to the earlier ones.
+pub struct Cache {
+    storages: Vec<Box<dyn Storage>>,
+    hits: AtomicUsize,
+    failures: AtomicUsize,
+}
+
+/// What compiling a text depends on.
+#[derive(Debug, Clone, Copy)]
+pub struct Job<'a> {
+    /// What is compiled.
+    pub text: &'a str,
+    /// The composition it stands for, whose places errors have.
+    pub composed: &'a Composed,
+    pub entry: &'a str,
+    pub options: &'a Options,
+    pub targets: &'a [Target],
+}
+
+impl Cache {
+    pub fn new(storages: Vec<Box<dyn Storage>>) -> Self {
+        Self { storages, hits: AtomicUsize::new(0), failures: AtomicUsize::new(0) }
+    }
+
+    /// The result of an equal job, if there was one.
+    pub fn find(&self, job: Job<'_>) -> Option<Result<Made, Diagnostics>> {
+        let key = unit_key(job);
+        let told = |kind| self.get(kind, told_key(key, job.composed)).and_then(|bytes| record::decode_diagnostics(&bytes));
+        let found = match self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)) {
+            Some((unit, false)) => Some(Ok(Made { unit, warnings: Vec::new() })),
+            Some((unit, true)) => told("warnings").map(|warnings| Ok(Made { unit, warnings })),
+            None => told("errors").map(Err),
+        };
+        self.hits.fetch_add(usize::from(found.is_some()), Ordering::Relaxed);
+        found
+    }
+
+    /// Keeps a result.
+    pub fn keep(&self, job: Job<'_>, result: &Result<Made, Diagnostics>) {
+        let key = unit_key(job);
+        let tell = |kind, diagnostics| self.put(kind, told_key(key, job.composed), record::encode_diagnostics(diagnostics));
+        match result {
+            Ok(Made { unit, warnings }) => {
+                self.put("units", key, record::encode_unit(unit, !warnings.is_empty()));
+                if !warnings.is_empty() {
+                    tell("warnings", warnings);
+                }
+            }
+            Err(errors) => tell("errors", errors),
+        }
+    }
+
+    /// How many jobs were found.
+    pub fn hits(&self) -> usize {
+        self.hits.load(Ordering::Relaxed)
+    }
+
+    /// How many reads and writes a storage refused.
+    pub fn failures(&self) -> usize {
+        self.failures.load(Ordering::Relaxed)
+    }
+
+    fn get(&self, kind: &str, key: Hash) -> Option<Vec<u8>> {
+        let name = name(kind, key);
+        for (index, storage) in self.storages.iter().enumerate() {
+            let bytes = self.count(storage.get(&name)).flatten();
+            if let Some(payload) = bytes.as_deref().and_then(record::open) {
+                if let Some(bytes) = &bytes {
+                    self.storages[..index].iter().for_each(|nearer| self.count(nearer.put(&name, bytes)).unwrap_or_default());
+                }
+                return Some(payload);
+            }
+        }
+        None
+    }
+
+    fn put(&self, kind: &str, key: Hash, payload: Option<Vec<u8>>) {
+        let Some(sealed) = payload.and_then(|payload| record::seal(&payload)) else { return };
+        let name = name(kind, key);
+        self.storages.iter().for_each(|storage| self.count(storage.put(&name, &sealed)).unwrap_or_default());
+    }
+
+    fn count<T>(&self, result: Result<T, String>) -> Option<T> {
+        self.failures.fetch_add(usize::from(result.is_err()), Ordering::Relaxed);
+        result.ok()
+    }
+}
+
+/// Two letters of the hash make a folder, so that none grows too large.
+fn name(kind: &str, key: Hash) -> String {
+    let hex = hex(&key);
+    format!("{kind}/{}/{}", &hex[..2], &hex[2..])
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]).filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
+}
+
+fn unit_key(job: Job<'_>) -> Hash {
+    let Job { text, composed, entry, options, targets } = job;
+    let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
+    let rest = format!("{:?} {:?} {options:?} {entry:?} {names:?}", composed.language, composed.stage);
+    hash(&["unit", BUILD, &rest, text])
+}
+
+/// Diagnostics have places, so they depend on where each part of the text came from too.
+fn told_key(unit: Hash, composed: &Composed) -> Hash {
+    hash(&["told", &hex(&unit), &composed.text, &format!("{:?}", composed.map.segments())])
+}
+
+/// 128 bits over parts that cannot run into each other.
+fn hash(parts: &[&str]) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    for part in parts {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part.as_bytes());
+    }
+    short(&hasher.finalize())
+}
+
+fn short(hash: &blake3::Hash) -> Hash {
+    let mut short = [0; 16];
+    short.copy_from_slice(&hash.as_bytes()[..16]);
+    short
+}

@@ -1,0 +1,120 @@
+//! Results as bytes.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::short;
+use crate::bundle::{Artifact, Native, Reflection, Unit};
+use crate::diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
+use crate::source::{SourceId, Span};
+
+const MAGIC: &[u8; 4] = b"LLC1";
+const SUM_BYTES: usize = 16;
+
+/// Bytes of a payload: bounds what damage can allocate.
+const MOST_BYTES: usize = 1 << 30;
+
+/// zstd's: three texts in one language and others like them pack eight to one, at little cost.
+const LEVEL: i32 = 1;
+
+/// A payload, packed, with its checksum.
+pub fn seal(payload: &[u8]) -> Option<Vec<u8>> {
+    let packed = zstd::bulk::compress(payload, LEVEL).ok()?;
+    let sum = short(&blake3::hash(&packed));
+    Some([MAGIC.as_slice(), &sum, &packed].concat())
+}
+
+/// The payload of a record that is as it was written.
+pub fn open(record: &[u8]) -> Option<Vec<u8>> {
+    let (sum, packed) = record.strip_prefix(MAGIC)?.split_first_chunk::<SUM_BYTES>()?;
+    if short(&blake3::hash(packed)) != *sum {
+        return None;
+    }
+    let size = zstd::zstd_safe::get_frame_content_size(packed).ok().flatten()?;
+    zstd::bulk::decompress(packed, usize::try_from(size).ok().filter(|size| *size <= MOST_BYTES)?).ok()
+}
+
+/// What stands before the bytes of a unit's targets.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    /// Whether warnings belong to it, which have places and so a record of their own.
+    has_warnings: bool,
+    reflection: Reflection,
+    targets: BTreeMap<String, Part>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Part {
+    extension: String,
+    native: Native,
+    bytes: usize,
+}
+
+/// The length of the head, the head, the bytes of each target.
+pub fn encode_unit(unit: &Unit, has_warnings: bool) -> Option<Vec<u8>> {
+    let part = |artifact: &Artifact| Part {
+        extension: artifact.extension.clone(),
+        native: (*artifact.native).clone(),
+        bytes: artifact.bytes.len(),
+    };
+    let targets = unit.targets.iter().map(|(target, artifact)| (target.clone(), part(artifact))).collect();
+    let head = serde_json::to_vec(&Head { has_warnings, reflection: (*unit.reflection).clone(), targets }).ok()?;
+    let mut payload = u32::try_from(head.len()).ok()?.to_le_bytes().to_vec();
+    payload.extend_from_slice(&head);
+    unit.targets.values().for_each(|artifact| payload.extend_from_slice(&artifact.bytes));
+    Some(payload)
+}
+
+pub fn decode_unit(payload: &[u8]) -> Option<(Unit, bool)> {
+    let (length, rest) = payload.split_first_chunk::<4>()?;
+    let (head, mut rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+    let head: Head = serde_json::from_slice(head).ok()?;
+    let mut targets = BTreeMap::new();
+    for (target, part) in head.targets {
+        let (bytes, after) = rest.split_at_checked(part.bytes)?;
+        rest = after;
+        targets.insert(target, Artifact { bytes: bytes.into(), extension: part.extension, native: Arc::new(part.native) });
+    }
+    rest.is_empty().then_some((Unit { reflection: Arc::new(head.reflection), targets }, head.has_warnings))
+}
+
+#[derive(Serialize, Deserialize)]
+struct Told {
+    is_warning: bool,
+    code: String,
+    message: String,
+    labels: Vec<(u32, u32, u32, String)>,
+    notes: Vec<String>,
+}
+
+pub fn encode_diagnostics(errors: &Diagnostics) -> Option<Vec<u8>> {
+    let errors = errors.iter().map(|error| Told {
+        is_warning: error.severity == Severity::Warning,
+        code: error.code.name.to_owned(),
+        message: error.message.clone(),
+        labels: error.labels.iter().map(|label| (label.span.source.0, label.span.start, label.span.end, label.message.clone())).collect(),
+        notes: error.notes.clone(),
+    });
+    serde_json::to_vec(&errors.collect::<Vec<_>>()).ok()
+}
+
+pub fn decode_diagnostics(payload: &[u8]) -> Option<Diagnostics> {
+    let errors: Vec<Told> = serde_json::from_slice(payload).ok()?;
+    errors.into_iter().map(decode_error).collect()
+}
+
+fn decode_error(error: Told) -> Option<Diagnostic> {
+    let labels = error
+        .labels
+        .into_iter()
+        .map(|(source, start, end, message)| Label { span: Span { source: SourceId(source), start, end }, message });
+    Some(Diagnostic {
+        severity: if error.is_warning { Severity::Warning } else { Severity::Error },
+        code: codes::find(&error.code)?,
+        message: error.message,
+        labels: labels.collect(),
+        notes: error.notes,
+    })
+}

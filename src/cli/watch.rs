@@ -1,0 +1,88 @@
+//! `lamplight watch`: the bundle, kept up to date.
+
+use std::io::{Write, stdout};
+use std::path::Path;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use super::failure::{DiagnosticForm, Failure};
+use super::work::{Places, Work};
+use crate::generate::Request;
+use crate::permute::Quoted;
+
+/// Between looks at the files, which are compared by content: no service of the operating system
+/// is needed, and editors may write as they like.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// Compose, compile and bundle again whenever a file changes, until interrupted.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    places: Places,
+    /// The permutation in use: it is in the bundle before the others are compiled.
+    #[arg(long, value_name = "KEY", requires = "program")]
+    key: Option<String>,
+    /// The program of that permutation.
+    #[arg(long, value_name = "P", requires = "key")]
+    program: Option<String>,
+}
+
+pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    loop {
+        match Work::open(&arguments.places) {
+            Ok(mut work) => {
+                told(update(&arguments, &mut work, form), form)?;
+                while work.is_current() {
+                    sleep(PAUSE);
+                }
+            }
+            Err(failure) => {
+                let before = text(&arguments.places.manifest);
+                told(Err(failure), form)?;
+                while text(&arguments.places.manifest) == before {
+                    sleep(PAUSE);
+                }
+            }
+        }
+    }
+}
+
+/// Wrong input is told and waited out; anything else ends the command.
+fn told(outcome: Result<(), Failure>, form: DiagnosticForm) -> Result<(), Failure> {
+    match outcome {
+        Err(failure @ Failure::Input(..)) => {
+            let _ = failure.report(form);
+            Ok(())
+        }
+        outcome => outcome,
+    }
+}
+
+fn text(path: &Path) -> Option<Vec<u8>> {
+    std::fs::read(path).ok()
+}
+
+fn update(arguments: &Arguments, work: &mut Work, form: DiagnosticForm) -> Result<(), Failure> {
+    let start = Instant::now();
+    let all = Request::default();
+    if work.up_to_date(&all).is_some() {
+        return say(&format!("up to date, {:.2} s", start.elapsed().as_secs_f64()));
+    }
+    if let (Some(key), true) = (&arguments.key, work.out.is_dir()) {
+        let id = work.sources.add("--key", key.as_str());
+        let only = Some(Quoted::whole(&work.sources, id));
+        work.patch(&Request { program: arguments.program.clone(), only, ..Request::default() })?;
+        say(&format!("`{key}` ready, {:.2} s", start.elapsed().as_secs_f64()))?;
+    }
+    let summary = work.run(&all, false, form)?;
+    let compiled = summary.texts().saturating_sub(summary.cached);
+    say(&format!("{} permutations, {compiled} texts compiled, {:.2} s", summary.permutations(), start.elapsed().as_secs_f64()))
+}
+
+fn say(line: &str) -> Result<(), Failure> {
+    let mut out = stdout().lock();
+    writeln!(out, "{line}")?;
+    Ok(out.flush()?)
+}

@@ -1,0 +1,161 @@
+//! What `gen` and `watch` share: a package, its manifest, the cache, and a run over them.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::{DiagnosticForm, Failure, warn};
+use super::progress::Bar;
+use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
+use crate::cache::{Cache, Folder, Recorder, Storage, Trace};
+use crate::generate::{Generated, Memory, Request, Sink, Summary, Tools, generate};
+use crate::permute::Manifest;
+use crate::project;
+use crate::resolve::Packages;
+use crate::source::SourceSet;
+
+/// Where things are.
+#[derive(Args)]
+pub struct Places {
+    /// The manifest.
+    #[arg(long, value_name = "FILE", default_value = project::MANIFEST)]
+    pub manifest: PathBuf,
+    /// Folder of the bundle, or a single file that ends in `.lamplight`.
+    #[arg(short, long, value_name = "DIR", default_value = "bundle")]
+    pub out: PathBuf,
+    /// Folder for results that later runs need not compute again [default: `lamplight-cache` in
+    /// the package's cargo target folder, or else in the user's cache folder].
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Compute everything, keep nothing.
+    #[arg(long, conflicts_with = "cache")]
+    no_cache: bool,
+}
+
+/// Everything a run needs, read and ready.
+pub struct Work {
+    pub sources: SourceSet,
+    pub out: PathBuf,
+    /// Of the manifest.
+    path: PathBuf,
+    packages: Packages,
+    manifest: Manifest,
+    recorder: Recorder,
+    cache: Option<Cache>,
+    /// The manifest and what declares packages: all that is read before the packages are.
+    declared: SourceSet,
+}
+
+impl Work {
+    pub fn open(places: &Places) -> Result<Self, Failure> {
+        let mut sources = SourceSet::default();
+        let opened = project::declared(&places.manifest, &mut sources);
+        let (manifest, packages) = opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+        let recorder = Recorder::default();
+        Ok(Self {
+            declared: sources.clone(),
+            sources,
+            out: places.out.clone(),
+            path: places.manifest.clone(),
+            packages: recorder.observe(packages),
+            manifest,
+            recorder,
+            cache: cache(places)?,
+        })
+    }
+
+    /// Whether files are as they were when they were read.
+    pub fn is_current(&self) -> bool {
+        let mut sources = SourceSet::default();
+        let declared = project::declared(&self.path, &mut sources).is_ok()
+            && sources.iter().map(|(_, source)| &source.text).eq(self.declared.iter().map(|(_, source)| &source.text));
+        declared && self.recorder.is_current(&self.packages)
+    }
+
+    /// The account of an earlier run, if there is nothing to do since.
+    pub fn up_to_date(&self, request: &Request) -> Option<Summary> {
+        let trace = Trace::find(self.cache.as_ref()?, &self.declared, request, &self.packages, &self.out)?;
+        Some(Summary { up_to_date: true, ..trace.summary })
+    }
+
+    /// Generates, and writes the bundle or compares with it.
+    pub fn run(&mut self, request: &Request, check: bool, form: DiagnosticForm) -> Result<Summary, Failure> {
+        let bar = Bar::new();
+        let outcome = if check || is_file(&self.out) { self.in_memory(request, check, &bar) } else { self.streamed(request, &bar) };
+        bar.clear();
+        let Generated { summary, warnings, .. } = outcome?;
+        warn(&self.sources, &warnings, form);
+        if let (Some(cache), true) = (&self.cache, warnings.is_empty()) {
+            Trace::new(&self.recorder, &self.out, summary.clone()).into_iter().for_each(|trace| trace.keep(cache, &self.declared, request));
+        }
+        Ok(summary)
+    }
+
+    /// One permutation into the bundle directory that is there, before all others.
+    pub fn patch(&mut self, request: &Request) -> Result<(), Failure> {
+        let memory = Memory::default();
+        let mut generated = self.generate(request, &memory, &Bar::new())?;
+        memory.fill(&mut generated.contents);
+        bundle::patch_directory(&generated.contents, &self.out).map_err(|error| unwritable(&self.out, &error))
+    }
+
+    /// Writes a directory as its units are made.
+    fn streamed(&mut self, request: &Request, bar: &Bar) -> Result<Generated, Failure> {
+        let writer = DirectoryWriter::create(&self.out).map_err(|error| unwritable(&self.out, &error))?;
+        let generated = self.generate(request, &writer, bar)?;
+        writer.finish(&generated.contents).map_err(|error| unwritable(&self.out, &error))?;
+        Ok(generated)
+    }
+
+    /// Compares with what is there, or writes a single file, whose order is known at the end only.
+    fn in_memory(&mut self, request: &Request, check: bool, bar: &Bar) -> Result<Generated, Failure> {
+        let memory = Memory::default();
+        let mut generated = self.generate(request, &memory, bar)?;
+        memory.fill(&mut generated.contents);
+        match check {
+            true => compare(&generated.contents, &self.out)?,
+            false => bundle::write_file(&generated.contents, &self.out).map_err(|error| unwritable(&self.out, &error))?,
+        }
+        Ok(generated)
+    }
+
+    fn generate(&mut self, request: &Request, sink: &dyn Sink, bar: &Bar) -> Result<Generated, Failure> {
+        let tools = Tools { sink, cache: self.cache.as_ref(), progress: &|progress| bar.show(progress) };
+        let generated = generate(&mut self.sources, &self.packages, &self.manifest, request, &tools);
+        generated.map_err(|diagnostics| {
+            bar.clear();
+            Failure::Input(self.sources.clone(), diagnostics)
+        })
+    }
+}
+
+fn cache(places: &Places) -> Result<Option<Cache>, Failure> {
+    if places.no_cache {
+        return Ok(None);
+    }
+    let folder = places.cache.clone().or_else(|| project::cache_folder(&places.manifest));
+    let storages: Vec<Box<dyn Storage>> = folder.into_iter().map(|folder| Box::new(Folder::new(folder)) as Box<dyn Storage>).collect();
+    Ok((!storages.is_empty()).then(|| Cache::new(storages)))
+}
+
+pub fn is_file(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "lamplight")
+}
+
+fn unwritable(out: &Path, error: &bundle::Error) -> Failure {
+    Failure::environment(format!("cannot write `{}`: {error}", out.display()))
+}
+
+fn compare(contents: &Contents, out: &Path) -> Result<(), Failure> {
+    let there = Bundle::open(out).and_then(|bundle| bundle.contents());
+    let there = there.map_err(|error| Failure::check(format!("`{}`: {error}", out.display())))?;
+    let difference = bundle::diff(&there, contents);
+    if difference.is_empty() {
+        return Ok(());
+    }
+    let changes = difference.permutations.iter().take(20);
+    let lines: Vec<String> =
+        changes.map(|change| format!("  {} {} {} {}", change.kind, change.program, change.entry, change.key)).collect();
+    let count = difference.permutations.len();
+    Err(Failure::check(format!("`{}` is not up to date: {count} permutations differ\n{}", out.display(), lines.join("\n"))))
+}

@@ -1,0 +1,351 @@
+//! `gen`, `merge` and `watch` over a small package: what is done again and what is not, that
+//! caches and shards change no byte, and that mistakes are told alike from a cache.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use libtest_mimic::{Failed, Trial};
+use serde_json::Value;
+use tempfile::TempDir;
+
+type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [Case; 12] = [
+        ("a_second_run_does_nothing", nothing_to_do),
+        ("an_edit_compiles_what_it_reaches", edits),
+        ("what_is_not_reached_is_not_compiled", unreached),
+        ("caches_change_no_byte", caching),
+        ("damaged_records_are_made_again", damage),
+        ("lost_blobs_are_written_again", lost_blobs),
+        ("mistakes_come_from_the_cache_in_their_new_place", mistakes),
+        ("check_compares", check),
+        ("shards_merge_to_the_whole", shards),
+        ("missing_and_foreign_shards_are_noticed", wrong_shards),
+        ("a_key_and_a_target_can_be_chosen", choices),
+        ("watch_follows_edits", watch),
+    ];
+    cases.into_iter().map(|(name, case)| Trial::test(format!("generate::{name}"), case)).collect()
+}
+
+const MANIFEST: &str = r#"
+[program.small]
+wesl = "small.wesl"
+glsl = { vertex = "small.vert.glsl" }
+targets = ["wgsl", "spirv", "glsl330"]
+
+[program.small.axis]
+tint = { values = ["red", "green", "blue"], default = "red" }
+steps = { values = [1, 2], default = 1 }
+shaded = { values = [false, true] }
+"#;
+
+const ROOT: &str = "import package::tint::{red, green, blue};
+import package::shade::{shade, unused};
+import constants::steps;
+
+@vertex
+fn vs_main(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(position, 1.0);
+}
+
+@fragment
+fn fs_main(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> {
+    var color = vec4<f32>(0.0);
+    @if(tint == red) color = red(place);
+    @if(tint == green) color = green(place);
+    @if(tint == blue) color = blue(place);
+    @if(shaded) color = shade(color, steps);
+    return color * f32(steps);
+}
+";
+
+const TINT: &str = "fn red(p: vec4<f32>) -> vec4<f32> { return p * vec4<f32>(1.0, 0.0, 0.0, 1.0); }
+fn green(p: vec4<f32>) -> vec4<f32> { return p * vec4<f32>(0.0, 1.0, 0.0, 1.0); }
+fn blue(p: vec4<f32>) -> vec4<f32> { return p * vec4<f32>(0.0, 0.0, 1.0, 1.0); }
+";
+
+const SHADE: &str = "fn shade(color: vec4<f32>, steps: i32) -> vec4<f32> { return color / f32(steps + 1); }
+fn unused() -> f32 { return 1.0; }
+";
+
+const VERTEX: &str = "#version 450
+layout(location = 0) in vec3 position;
+void main() {
+#if SHADED
+    gl_Position = vec4(position, 2.0);
+#else
+    gl_Position = vec4(position, 1.0);
+#endif
+}
+";
+
+/// Permutations, and distinct texts of all entry points: twelve fragment shaders, one vertex
+/// shader in WESL and two in GLSL.
+const PERMUTATIONS: u64 = 12;
+const TEXTS: u64 = 15;
+
+struct Package(TempDir);
+
+impl Package {
+    fn new() -> Result<Self, Failed> {
+        let package = Self(tempfile::tempdir()?);
+        for (name, text) in
+            [("lamplight.toml", MANIFEST), ("small.wesl", ROOT), ("tint.wesl", TINT), ("shade.wesl", SHADE), ("small.vert.glsl", VERTEX)]
+        {
+            package.write(name, text)?;
+        }
+        Ok(package)
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn write(&self, name: &str, text: &str) -> Outcome {
+        Ok(fs::write(self.path().join(name), text)?)
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+        command.args(arguments).current_dir(self.path()).env("RAYON_NUM_THREADS", "2");
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Result<Output, Failed> {
+        Ok(self.command(arguments).output()?)
+    }
+
+    /// Runs `gen`, which succeeds; its summary.
+    fn generate(&self, arguments: &[&str]) -> Result<Value, Failed> {
+        let all = [&["gen", "--json", "--cache", "cache"], arguments].concat();
+        let output = self.run(&all)?;
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+        }
+        Ok(serde_json::from_slice(&output.stdout)?)
+    }
+
+    /// Every file below a folder.
+    fn files(&self, folder: &str) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
+        let mut found = BTreeMap::new();
+        let mut folders = vec![self.path().join(folder)];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder)? {
+                let path = entry?.path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    let name = path.strip_prefix(self.path())?.to_string_lossy().into_owned();
+                    found.insert(name.split_once('/').map_or(name.clone(), |(_, rest)| rest.to_owned()), fs::read(&path)?);
+                }
+            }
+        }
+        Ok(found)
+    }
+}
+
+fn ensure(holds: bool, message: impl Into<String>) -> Outcome {
+    if holds { Ok(()) } else { Err(message.into().into()) }
+}
+
+fn equal<T: PartialEq + std::fmt::Debug>(found: T, expected: T) -> Outcome {
+    ensure(found == expected, format!("found {found:?}, expected {expected:?}"))
+}
+
+fn texts(summary: &Value) -> u64 {
+    let entries = summary["programs"].as_array().into_iter().flatten().filter_map(|program| program["entries"].as_array());
+    entries.flatten().filter_map(|entry| entry["unique"].as_u64()).sum()
+}
+
+fn compiled(summary: &Value) -> u64 {
+    texts(summary) - summary["cached"].as_u64().unwrap_or_default()
+}
+
+fn nothing_to_do() -> Outcome {
+    let package = Package::new()?;
+    let first = package.generate(&[])?;
+    equal((texts(&first), compiled(&first)), (TEXTS, TEXTS))?;
+    equal(first["programs"][0]["permutations"].as_u64(), Some(PERMUTATIONS))?;
+    let second = package.generate(&[])?;
+    equal(&second["up_to_date"], &Value::Bool(true))?;
+    let seconds = second["seconds"].as_f64().unwrap_or(f64::MAX);
+    // A hundredth of that in an optimised build on a machine that does nothing else.
+    ensure(seconds < 1.0, format!("it took {seconds} s to find that out"))?;
+    package.write("lamplight.toml", &format!("{MANIFEST}\n# a comment\n"))?;
+    let third = package.generate(&[])?;
+    equal((&third["up_to_date"], compiled(&third)), (&Value::Bool(false), 0))
+}
+
+fn edits() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&[])?;
+    // `green` is in the fragment shaders of four permutations.
+    package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", "0.0, 0.5, 0.0"))?;
+    equal(compiled(&package.generate(&[])?), 4)?;
+    // `shade` in those of six.
+    package.write("shade.wesl", &SHADE.replace("steps + 1", "steps + 2"))?;
+    equal(compiled(&package.generate(&[])?), 6)?;
+    // One of the two GLSL texts.
+    package.write("small.vert.glsl", &VERTEX.replace("position, 2.0", "position, 3.0"))?;
+    equal(compiled(&package.generate(&[])?), 1)?;
+    // Everything as before again.
+    package.write("tint.wesl", TINT)?;
+    equal(compiled(&package.generate(&[])?), 2)
+}
+
+fn unreached() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&[])?;
+    package.write("shade.wesl", &SHADE.replace("return 1.0", "return 2.0"))?;
+    package.write("tint.wesl", &TINT.replace("fn red", "/* Of /* all */ colours. */ fn red // the first\n"))?;
+    let second = package.generate(&[])?;
+    equal((&second["up_to_date"], compiled(&second)), (&Value::Bool(false), 0))
+}
+
+fn caching() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&["-o", "first"])?;
+    equal(compiled(&package.generate(&["-o", "second"])?), 0)?;
+    ensure(package.run(&["gen", "--no-cache", "-o", "third"])?.status.success(), "it failed without a cache")?;
+    equal(package.files("first")?, package.files("second")?)?;
+    equal(package.files("first")?, package.files("third")?)
+}
+
+fn damage() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&["-o", "first"])?;
+    for name in package.files("cache")?.keys() {
+        let path = package.path().join("cache").join(name);
+        let mut bytes = fs::read(&path)?;
+        let last = bytes.len() - 1;
+        bytes[last] ^= 1;
+        fs::write(path, bytes)?;
+    }
+    equal(compiled(&package.generate(&["-o", "second"])?), TEXTS)?;
+    equal(package.files("first")?, package.files("second")?)?;
+    equal(compiled(&package.generate(&["-o", "third"])?), 0)
+}
+
+fn lost_blobs() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&[])?;
+    let before = package.files("bundle")?;
+    let blob = fs::read_dir(package.path().join("bundle/blobs"))?.next().ok_or("no blob")??.path();
+    fs::remove_file(blob)?;
+    equal(compiled(&package.generate(&[])?), 0)?;
+    equal(package.files("bundle")?, before)
+}
+
+fn mistakes() -> Outcome {
+    let package = Package::new()?;
+    let wrong = TINT.replace("0.0, 0.0, 1.0, 1.0", "0.0, 0.0, true, 1.0");
+    package.write("tint.wesl", &wrong)?;
+    let run = |place: &str| -> Result<String, Failed> {
+        let output = package.run(&["--diagnostics", "short", "gen", "--cache", "cache"])?;
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        equal(output.status.code(), Some(1))?;
+        equal(told.matches(place).count(), 1).map_err(|_| Failed::from(format!("not once at {place}: {told}")))?;
+        Ok(told)
+    };
+    let first = run("tint.wesl:3:")?;
+    ensure(package.files("cache")?.keys().any(|name| name.starts_with("errors/")), "mistakes are not kept")?;
+    equal(run("tint.wesl:3:")?, first)?;
+    package.write("tint.wesl", &format!("\n// Moved down.\n{wrong}"))?;
+    run("tint.wesl:5:")?;
+    package.write("tint.wesl", TINT)?;
+    package.generate(&[])?;
+    Ok(())
+}
+
+fn check() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&[])?;
+    let run = || Ok::<_, Failed>(package.run(&["gen", "--check", "--cache", "cache"])?.status.code());
+    equal(run()?, Some(0))?;
+    package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", "0.0, 0.5, 0.0"))?;
+    let before = package.files("bundle")?;
+    equal(run()?, Some(3))?;
+    equal(package.files("bundle")?, before)?;
+    package.generate(&[])?;
+    equal(run()?, Some(0))
+}
+
+fn shards() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&["-o", "whole"])?;
+    // Each in a process of its own, as under GNU parallel or in an array of jobs.
+    let names: Vec<(String, String)> = (1..=5).map(|index| (format!("{index}/5"), format!("shard-{index}"))).collect();
+    let children =
+        names.iter().map(|(shard, out)| package.command(&["gen", "--no-cache", "--shard", shard, "-o", out]).stdout(Stdio::null()).spawn());
+    for mut child in children.collect::<Result<Vec<_>, _>>()? {
+        ensure(child.wait()?.success(), "a shard failed")?;
+    }
+    for order in [[1, 2, 3, 4, 5], [4, 1, 5, 3, 2]] {
+        let shards: Vec<String> = order.iter().map(|index| format!("shard-{index}")).collect();
+        let arguments: Vec<&str> = ["merge", "merged"].into_iter().chain(shards.iter().map(String::as_str)).collect();
+        let output = package.run(&[arguments.as_slice(), &["--manifest", "lamplight.toml"]].concat())?;
+        ensure(output.status.success(), String::from_utf8_lossy(&output.stderr))?;
+        equal(package.files("merged")?, package.files("whole")?)?;
+    }
+    Ok(())
+}
+
+fn wrong_shards() -> Outcome {
+    let package = Package::new()?;
+    for (shard, out) in [("1/2", "one"), ("2/2", "two")] {
+        package.generate(&["--shard", shard, "-o", out])?;
+    }
+    equal(package.run(&["merge", "merged", "one", "--manifest", "lamplight.toml"])?.status.code(), Some(3))?;
+    package.write("tint.wesl", &TINT.replace("1.0, 0.0, 0.0", "0.5, 0.0, 0.0"))?;
+    package.generate(&["--shard", "1/1", "-o", "other"])?;
+    equal(package.run(&["merge", "merged", "one", "other"])?.status.code(), Some(3))?;
+    let blob = fs::read_dir(package.path().join("two/blobs"))?.next().ok_or("no blob")??.path();
+    fs::write(blob, "something else")?;
+    equal(package.run(&["merge", "merged", "one", "two"])?.status.code(), Some(3))?;
+    equal(package.run(&["gen", "--shard", "3/2"])?.status.code(), Some(2))
+}
+
+fn choices() -> Outcome {
+    let package = Package::new()?;
+    let summary = package.generate(&["--program", "small", "--only", "tint=blue,shaded", "--target", "wgsl"])?;
+    equal(summary["programs"][0]["permutations"].as_u64(), Some(1))?;
+    equal(summary["targets"].as_array().map(Vec::len), Some(1))?;
+    equal(package.run(&["gen", "--program", "smal"])?.status.code(), Some(1))?;
+    equal(package.run(&["gen", "--only", "tint=purple"])?.status.code(), Some(1))
+}
+
+fn watch() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&[])?;
+    let arguments = ["watch", "--cache", "cache", "--program", "small", "--key", "tint=green"];
+    let mut child = package.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
+    let outcome = followed(&package);
+    child.kill()?;
+    child.wait()?;
+    outcome?;
+    equal(&package.generate(&[])?["up_to_date"], &Value::Bool(true))
+}
+
+fn followed(package: &Package) -> Outcome {
+    let manifest = || fs::read(package.path().join("bundle/manifest.json"));
+    for text in ["0.0, 0.5, 0.0", "nonsense", "0.0, 0.25, 0.0"] {
+        let before = manifest()?;
+        package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", text))?;
+        if text == "nonsense" {
+            // It goes on watching.
+            std::thread::sleep(Duration::from_millis(300));
+            continue;
+        }
+        let start = Instant::now();
+        while manifest()? == before || package.generate(&["--check"]).is_err() {
+            ensure(start.elapsed() < Duration::from_secs(20), "the bundle did not change")?;
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+    Ok(())
+}
