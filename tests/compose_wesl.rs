@@ -287,6 +287,7 @@ fn settings(values: &[(&str, Setting)]) -> Settings {
         values: values.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
         enums: [("shadow".to_owned(), ["none", "hard", "soft"].map(str::to_owned).to_vec())].into(),
         integers: ["lights".to_owned()].into(),
+        open: Default::default(),
     }
 }
 

@@ -8,11 +8,14 @@ mod compose_wesl;
 mod emit;
 mod eval;
 mod harness;
+mod keys;
 mod permute;
 mod pipelines;
 mod programs;
+mod robust;
 mod shaderlib;
 mod snapshot;
+mod specialise;
 
 use std::process::ExitCode;
 
@@ -25,11 +28,14 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     emit::trials,
     eval::trials,
     harness::trials,
+    keys::trials,
     permute::trials,
     pipelines::trials,
     programs::trials,
+    robust::trials,
     shaderlib::trials,
     snapshot::trials,
+    specialise::trials,
 ];
 
 fn main() -> ExitCode {

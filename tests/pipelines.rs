@@ -60,7 +60,9 @@ fn wrong_reflections() -> Result<(), Failed> {
     let lit = find(&|pair| pair.title.starts_with("forward"))?;
     let changes: [(&str, &Pair, &dyn Fn(&mut Reflection)); 5] = [
         ("a binding is missing", &lit, &|reflection| reflection.bindings.truncate(1)),
-        ("a buffer is too small", &lit, &|reflection| reflection.bindings.iter_mut().for_each(|binding| binding.size = binding.size.map(|size| size - 16))),
+        ("a buffer is too small", &lit, &|reflection| {
+            reflection.bindings.iter_mut().for_each(|binding| binding.size = binding.size.map(|size| size - 16))
+        }),
         ("an input is missing", &lit, &|reflection| reflection.inputs.truncate(1)),
         ("an input has another type", &lit, &|reflection| reflection.inputs.iter_mut().for_each(|input| "u32".clone_into(&mut input.ty))),
         ("a group is another", &lit, &|reflection| reflection.bindings.iter_mut().for_each(|binding| binding.group += 1)),
@@ -80,7 +82,8 @@ fn wrong_reflections() -> Result<(), Failed> {
 
 /// The bundle of the library: what ships, or a set that has every pair of values of two axes.
 fn bundle(everything: bool) -> Result<Bundle, Failed> {
-    let (mut sources, mut manifest) = project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    let (mut sources, mut manifest) =
+        project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
     for program in &mut manifest.programs {
         program.targets = vec![Target::WGSL, Target::SPIRV];
         if !everything {
@@ -149,7 +152,12 @@ fn pairs_of(program: &Loaded<'_>, language: Language, pairs: &mut Vec<Pair>) -> 
         };
         let [vertex, fragment] = stages(Target::WGSL)?;
         let title = format!("{} {language:?} {key}", program.name());
-        pairs.push(Pair { vertex: vertex.ok_or_else(|| format!("{title} has no vertex stage"))?, title, fragment, spirv: stages(Target::SPIRV)? });
+        pairs.push(Pair {
+            vertex: vertex.ok_or_else(|| format!("{title} has no vertex stage"))?,
+            title,
+            fragment,
+            spirv: stages(Target::SPIRV)?,
+        });
     }
     Ok(())
 }
@@ -162,7 +170,8 @@ struct Device {
 
 impl Device {
     fn open(backend: wgpu::Backends) -> Result<Self, Failed> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { backends: backend, ..wgpu::InstanceDescriptor::new_without_display_handle() });
+        let instance =
+            wgpu::Instance::new(wgpu::InstanceDescriptor { backends: backend, ..wgpu::InstanceDescriptor::new_without_display_handle() });
         let mut adapters = block_on(instance.enumerate_adapters(backend));
         adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
         let adapter = adapters.into_iter().next().ok_or_else(|| format!("no adapter for {backend:?}: cargo xtask test installs one"))?;

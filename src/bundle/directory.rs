@@ -24,6 +24,7 @@ pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<()
     let path = path.as_ref();
     let blobs = path.join(BLOBS);
     fs::create_dir_all(&blobs)?;
+    let _turn = turn(path);
     let mut names = BTreeSet::new();
     for artifact in artifacts(contents) {
         let blob = hex(&checksum(&artifact.bytes));
@@ -34,6 +35,14 @@ pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<()
     }
     replace(&path.join(MANIFEST), manifest::write(contents)?.as_bytes())?;
     remove_stale(&blobs, &names)
+}
+
+/// Waits until no other run writes there: one would remove what the other is about to name.
+/// The system ends a turn with its process. Where folders cannot be locked there are no turns.
+fn turn(path: &Path) -> Option<fs::File> {
+    let folder = fs::File::open(path).ok()?;
+    folder.lock().ok()?;
+    Some(folder)
 }
 
 /// Writes a file beside and renames it into place, unless it is there with these bytes already.

@@ -197,7 +197,8 @@ impl Shader<'_> {
 
     /// What the key says of the axes that are overrides of the shader.
     fn constants(&self, key: &str, reflection: &Reflection) -> Result<Vec<Constant>, Error> {
-        let open = |axis: &&Axis| axis.mode == "spec" && reflection.overrides.iter().any(|constant| constant.name.as_ref() == Some(&axis.name));
+        let open =
+            |axis: &&Axis| axis.mode == "spec" && reflection.overrides.iter().any(|constant| constant.name.as_ref() == Some(&axis.name));
         let open: Vec<&Axis> = self.axes.iter().filter(open).collect();
         if open.is_empty() {
             return Ok(Vec::new());

@@ -75,8 +75,7 @@ fn put(path: &Path, text: &str, check: bool) -> Result<(), Failure> {
     match (known, check) {
         (true, _) => Ok(()),
         (false, true) => Err(Failure::check(format!("`{}` is not up to date: run the command without `--check`", path.display()))),
-        (false, false) => {
-            output::write(path, text.as_bytes()).map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display())))
-        }
+        (false, false) => output::write(path, text.as_bytes())
+            .map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display()))),
     }
 }

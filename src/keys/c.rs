@@ -10,10 +10,56 @@ pub const LANGUAGE: Language = Language { name: "c", about: "a header for C99 an
 
 /// Keywords of both languages that an axis may be called.
 const KEYWORDS: &[&str] = &[
-    "and", "asm", "auto", "bool", "case", "catch", "char", "class", "delete", "do", "double", "enum", "explicit", "export", "extern",
-    "float", "friend", "goto", "inline", "int", "long", "mutable", "namespace", "new", "not", "operator", "or", "private", "protected",
-    "public", "register", "restrict", "short", "signed", "sizeof", "static", "template", "this", "throw", "try", "typedef", "typeid",
-    "typename", "union", "unsigned", "using", "virtual", "void", "volatile", "xor",
+    "and",
+    "asm",
+    "auto",
+    "bool",
+    "case",
+    "catch",
+    "char",
+    "class",
+    "delete",
+    "do",
+    "double",
+    "enum",
+    "explicit",
+    "export",
+    "extern",
+    "float",
+    "friend",
+    "goto",
+    "inline",
+    "int",
+    "long",
+    "mutable",
+    "namespace",
+    "new",
+    "not",
+    "operator",
+    "or",
+    "private",
+    "protected",
+    "public",
+    "register",
+    "restrict",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "template",
+    "this",
+    "throw",
+    "try",
+    "typedef",
+    "typeid",
+    "typename",
+    "union",
+    "unsigned",
+    "using",
+    "virtual",
+    "void",
+    "volatile",
+    "xor",
 ];
 
 const START: &str = "/* Written by `lamplight keys --lang c`; do not edit. */
@@ -89,9 +135,7 @@ fn named<'a>(axis: &'a Axis, program: &str, taken: &mut Taken, fields: &mut Take
     let prefix = format!("{program}_{}", axis.name).to_uppercase();
     let constants = match axis.kind {
         Kind::Bool => Vec::new(),
-        Kind::Enum | Kind::Int => {
-            axis.values.iter().map(|known| taken.give(format!("{prefix}_{}", value(known).to_uppercase()))).collect()
-        }
+        Kind::Enum | Kind::Int => axis.values.iter().map(|known| taken.give(format!("{prefix}_{}", value(known).to_uppercase()))).collect(),
     };
     Named { axis, field: fields.give(axis.name.clone()), ty, constants }
 }
@@ -120,7 +164,8 @@ fn longest(axes: &[Named<'_>]) -> usize {
 }
 
 fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String {
-    let mut text = format!("\n/* Writes the canonical key into {bytes} bytes; its length. A value that is no value counts as the default. */\n");
+    let mut text =
+        format!("\n/* Writes the canonical key into {bytes} bytes; its length. A value that is no value counts as the default. */\n");
     let _ = writeln!(text, "static inline size_t {to_key}(const {name} *key, char *text)\n{{\n    size_t length = 0;");
     if axes.is_empty() {
         text.push_str("    (void)key;\n");
@@ -134,7 +179,13 @@ fn append(named: &Named<'_>) -> String {
     let Named { axis, field, .. } = named;
     if axis.kind == Kind::Bool {
         let other = axis.values.iter().find(|value| *value != default(axis));
-        let append = |value| format!("    if (key->{field} != {})\n        length = lamplight_key_part(text, length, \"{}\");\n", named.default(), part(axis, value));
+        let append = |value| {
+            format!(
+                "    if (key->{field} != {})\n        length = lamplight_key_part(text, length, \"{}\");\n",
+                named.default(),
+                part(axis, value)
+            )
+        };
         return other.map_or(String::new(), append);
     }
     let parts: Vec<String> = axis.values.iter().map(|value| format!("\"{}\"", part(axis, value))).collect();

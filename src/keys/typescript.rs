@@ -31,7 +31,8 @@ fn write(manifest: &Manifest) -> String {
 fn program(program: &Program, taken: &mut Taken) -> String {
     let ty = taken.give(format!("{}Key", camel(&program.name)));
     let function = taken.give(format!("{}Key", lower_camel(&program.name)));
-    let mut text = format!("\n/** One permutation of program `{}`; what is left out is at its default. */\nexport interface {ty} {{\n", program.name);
+    let mut text =
+        format!("\n/** One permutation of program `{}`; what is left out is at its default. */\nexport interface {ty} {{\n", program.name);
     for axis in axes(program) {
         text.push_str(&axis.doc.as_deref().map_or(String::new(), |doc| format!("  /**\n{}   */\n", comment("   *", doc))));
         let _ = writeln!(text, "  {}?: {};", axis.name, values(axis));
@@ -39,8 +40,15 @@ fn program(program: &Program, taken: &mut Taken) -> String {
     text.push_str("}\n");
     let defaults: Vec<String> = axes(program).map(|axis| format!("  [\"{}\", {}],\n", axis.name, literal(default(axis)))).collect();
     let list = if defaults.is_empty() { String::new() } else { format!("\n{}", defaults.concat()) };
-    let _ = writeln!(text, "\n/** The canonical key, as a bundle's loader takes it. */\nexport function {function}(key: {ty} = {{}}): string {{");
-    let _ = writeln!(text, "  return keyText(key, [{}]);\n}}", list.replace("\n  ", "\n    ").trim_end_matches(' ').to_owned() + if list.is_empty() { "" } else { "  " });
+    let _ = writeln!(
+        text,
+        "\n/** The canonical key, as a bundle's loader takes it. */\nexport function {function}(key: {ty} = {{}}): string {{"
+    );
+    let _ = writeln!(
+        text,
+        "  return keyText(key, [{}]);\n}}",
+        list.replace("\n  ", "\n    ").trim_end_matches(' ').to_owned() + if list.is_empty() { "" } else { "  " }
+    );
     text
 }
 

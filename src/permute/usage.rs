@@ -21,7 +21,9 @@ pub fn narrow(program: &mut Program, sources: &mut SourceSet, list: SourceId) ->
         match parse(&program.space, &key) {
             Ok(point) if program.space.is_valid(&point) => include.push(point),
             Ok(_) => warnings.push(gone(&key, "a constraint excludes it")),
-            Err(problems) => warnings.push(gone(&key, &problems.iter().map(|problem| problem.message.clone()).collect::<Vec<_>>().join("; "))),
+            Err(problems) => {
+                warnings.push(gone(&key, &problems.iter().map(|problem| problem.message.clone()).collect::<Vec<_>>().join("; ")))
+            }
         }
     }
     include.sort();

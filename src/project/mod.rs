@@ -137,7 +137,8 @@ pub fn library_manifest() -> Result<(SourceSet, Manifest), (SourceSet, Diagnosti
 
 fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
     let id = source::read(sources, package, name).map_err(|error| vec![error])?;
-    let id = id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
+    let id =
+        id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
     let mut manifest = manifest::parse(sources, id)?;
     for program in &mut manifest.programs {
         let Some(file) = program.usage.clone() else { continue };

@@ -2,9 +2,9 @@
 
 use super::evaluate::Evaluator;
 use crate::compose::{Keep, Options};
-use crate::permute::Setting;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::wesl::{Event, ItemKind, Name, Reference};
+use crate::permute::Setting;
 use crate::resolve::wesl::{Graph, Target};
 use crate::source::Span;
 

@@ -50,11 +50,8 @@ pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, Stri
 
 fn finish(mut emitted: Emitted, opens: &[Open], target: Target) -> Result<Emitted, String> {
     // A variable that the entry point does not use is not written.
-    let choices = if target == Target::SPIRV {
-        spirv::open(&mut emitted.bytes, opens)?
-    } else {
-        text::open(&mut emitted.bytes, opens, target)?
-    };
+    let choices =
+        if target == Target::SPIRV { spirv::open(&mut emitted.bytes, opens)? } else { text::open(&mut emitted.bytes, opens, target)? };
     emitted.native.choices = choices;
     Ok(emitted)
 }

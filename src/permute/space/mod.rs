@@ -184,7 +184,12 @@ impl Space {
             values: self.axes.iter().enumerate().map(|(index, axis)| (axis.name.clone(), self.value(index, point).clone())).collect(),
             enums: of_kind(Kind::Enum).map(|axis| (axis.name.clone(), axis.value_names())).collect(),
             integers: of_kind(Kind::Int).map(|axis| axis.name.clone()).collect(),
-            open: self.axes.iter().filter(|axis| axis.mode == Mode::Spec).map(|axis| (axis.name.clone(), axis.values[axis.default].clone())).collect(),
+            open: self
+                .axes
+                .iter()
+                .filter(|axis| axis.mode == Mode::Spec)
+                .map(|axis| (axis.name.clone(), axis.values[axis.default].clone()))
+                .collect(),
         }
     }
 
