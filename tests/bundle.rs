@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use lamplight::bundle::{
     Artifact, Axis, Bundle, Contents, EntryContents, Error, Language, Native, ProgramContents, Reflection, SCHEMA, Stage, Target, Unit,
-    canonical, diff, pack, write_directory, write_file,
+    Usage, canonical, diff, pack, write_directory, write_file,
 };
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
@@ -15,7 +15,8 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 12] = [
+    let cases: [Case; 13] = [
+        ("recorded_keys_are_listed", recording),
         ("both_forms_give_back_what_was_written", round_trips),
         ("keys_come_in_any_order_with_defaults", keys_in_any_order),
         ("a_miss_names_the_nearest", misses),
@@ -136,6 +137,36 @@ fn misses() -> Outcome {
         check(miss.nearest.as_deref() == Some("shadow=hard,taps=5,two_sided"), &error.to_string())?;
     }
     Ok(())
+}
+
+/// Canonical, each once, missing ones too, from many threads; lists merge in their file.
+fn recording() -> Outcome {
+    let mut bundle = Bundle::from_bytes(pack(&small())?)?;
+    check(
+        bundle.program("forward")?.shader("fs_main")?.find("shadow=hard").is_ok() && bundle.usage().keys.is_empty(),
+        "nobody asked for a list",
+    )?;
+    bundle.record();
+    let shader = bundle.program("forward")?.shader("fs_main")?;
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                ["two_sided,shadow=hard", "shadow=hard,two_sided=true", "", "default", "taps=16"].map(|key| shader.find(key).is_ok())
+            });
+        }
+    });
+    let text = bundle.usage().to_string();
+    let lines: Vec<&str> = text.lines().skip(1).collect();
+    check(lines == ["forward default", "forward shadow=hard,two_sided", "forward taps=16"], &text)?;
+    let path = tempfile::tempdir()?;
+    let path = path.path().join("used");
+    std::fs::write(&path, "# earlier\nblur direction=across\n")?;
+    bundle.usage().save(&path)?;
+    bundle.usage().save(&path)?;
+    let list = Usage::parse(&std::fs::read_to_string(&path)?).map_err(|line| format!("line {line}"))?;
+    check(list.keys.len() == 2 && list.keys["forward"].len() == 3, "the lists did not merge")?;
+    std::fs::write(&path, "word\n")?;
+    check(bundle.usage().save(&path).is_err() && std::fs::read_to_string(&path)? == "word\n", "what is no list was overwritten")
 }
 
 fn unknown_names() -> Outcome {

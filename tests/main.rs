@@ -15,13 +15,16 @@ mod external;
 mod examples;
 mod frames;
 mod harness;
+mod keys;
 mod library;
 mod permute;
 mod pipelines;
 mod programs;
+mod robust;
 mod scale;
 mod shaderlib;
 mod snapshot;
+mod specialise;
 
 use std::process::ExitCode;
 
@@ -39,12 +42,15 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     frames::trials,
     generate::trials,
     harness::trials,
+    keys::trials,
     library::trials,
     permute::trials,
     pipelines::trials,
     programs::trials,
+    robust::trials,
     scale::trials,
     shaderlib::trials,
+    specialise::trials,
 ];
 
 fn main() -> ExitCode {

@@ -31,6 +31,8 @@ pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<()
 /// or the new one, whole.
 pub struct DirectoryWriter {
     path: PathBuf,
+    /// Held until the writer is gone.
+    _turn: Option<fs::File>,
     manifest: Mutex<Manifest>,
 }
 
@@ -39,7 +41,8 @@ impl DirectoryWriter {
     pub fn create(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref().to_owned();
         fs::create_dir_all(path.join(BLOBS))?;
-        Ok(Self { path, manifest: Mutex::default() })
+        let turn = turn(&path);
+        Ok(Self { path, _turn: turn, manifest: Mutex::default() })
     }
 
     /// Writes the blobs of a unit; keys refer to it by the digest's hash.
@@ -73,8 +76,9 @@ impl DirectoryWriter {
     /// Goes on with the bundle at `path`.
     pub(super) fn reopen(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref().to_owned();
+        let turn = turn(&path);
         let manifest = read_manifest(&path)?;
-        Ok(Self { path, manifest: Mutex::new(manifest) })
+        Ok(Self { path, _turn: turn, manifest: Mutex::new(manifest) })
     }
 
     /// Sets the keys of `contents` and leaves all others as they are.
@@ -112,6 +116,14 @@ impl DirectoryWriter {
         // A thread that panicked here left the manifest without its unit, which no key names.
         self.manifest.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Waits until no other run writes there: one would remove what the other is about to name.
+/// The system ends a turn with its process. Where folders cannot be locked there are no turns.
+fn turn(path: &Path) -> Option<fs::File> {
+    let folder = fs::File::open(path).ok()?;
+    folder.lock().ok()?;
+    Some(folder)
 }
 
 /// Writes a file beside and renames it into place, unless it is there with these bytes already.

@@ -114,9 +114,10 @@ fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error>
     if next == bytes.len() { Ok(sections) } else { Err(Error::corrupt("data", "bytes follow the last section")) }
 }
 
-/// The four numbers of a slot.
+/// The four numbers of a slot, read at once.
 fn words(slot: &[u8; SLOT_BYTES]) -> [u32; 4] {
-    std::array::from_fn(|index| u32::from_le_bytes(std::array::from_fn(|byte| slot[index * 4 + byte])))
+    let slot = u128::from_le_bytes(*slot);
+    [slot as u32, (slot >> 32) as u32, (slot >> 64) as u32, (slot >> 96) as u32]
 }
 
 impl Packed {

@@ -103,7 +103,9 @@ pub fn hash(key: &[u8]) -> u64 {
     let mut last = [0; 8];
     last[..rest.len()].copy_from_slice(rest);
     state = mix(state, last);
-    state ^ (state >> 32)
+    // A product spreads upwards only: folded and multiplied once more, all bits depend on all.
+    state = (state ^ (state >> 32)).wrapping_mul(MULTIPLIER);
+    state ^ (state >> 29)
 }
 
 /// `length` bytes from `at`.

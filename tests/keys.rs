@@ -1,0 +1,293 @@
+//! Typed keys compile and say what `permute` says; dense keys never change.
+
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::keys;
+use lamplight::permute::{Kind, Lock, Manifest, Mode, Setting, lock, manifest};
+use lamplight::project;
+use lamplight::source::SourceSet;
+use libtest_mimic::{Failed, Trial};
+
+type Outcome = Result<(), Failed>;
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("keys::rust", || in_language(&RUST)),
+        Trial::test("keys::c", || in_language(&C)),
+        Trial::test("keys::typescript", || in_language(&TYPESCRIPT)),
+        Trial::test("keys::awkward_names_in_rust", || {
+            awkward("rust", "keys.rs", &["rustc", "--edition", "2024", "--crate-type", "lib", "--emit", "metadata"])
+        }),
+        Trial::test("keys::awkward_names_in_c", || {
+            awkward("c", "keys.h", &["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only"])
+        }),
+        Trial::test("keys::lock_is_up_to_date", up_to_date),
+        Trial::test("keys::growth_changes_no_key", growth),
+    ]
+}
+
+/// How a language's keys are put to use: a program that reads a line of ordinals for each key.
+struct Harness {
+    language: &'static str,
+    file: &'static str,
+    main: fn(&Manifest) -> String,
+    source: &'static str,
+    /// `{}` stands for the folder.
+    compile: &'static [&'static str],
+    run: &'static [&'static str],
+    edit: fn(String) -> String,
+}
+
+const RUST: Harness = Harness {
+    language: "rust",
+    file: "keys.rs",
+    main: rust_main,
+    source: "main.rs",
+    compile: &["rustc", "--edition", "2024", "-Dwarnings", "-Cdebuginfo=0", "-o", "{}/main", "{}/main.rs"],
+    run: &["{}/main"],
+    edit: |text| text,
+};
+
+const C: Harness = Harness {
+    language: "c",
+    file: "keys.h",
+    main: c_main,
+    source: "main.c",
+    compile: &["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o", "{}/main", "{}/main.c"],
+    run: &["{}/main"],
+    edit: |text| text,
+};
+
+/// The types are stripped by hand: node does so itself only since version 22.
+const TYPESCRIPT: Harness = Harness {
+    language: "ts",
+    file: "keys.mjs",
+    main: typescript_main,
+    source: "main.mjs",
+    compile: &["node", "--check", "{}/keys.mjs"],
+    run: &["node", "{}/main.mjs"],
+    edit: stripped,
+};
+
+fn in_language(harness: &Harness) -> Outcome {
+    let manifest = library()?;
+    let folder = tempfile::tempdir()?;
+    let language = keys::find(harness.language).ok_or("no such language")?;
+    std::fs::write(folder.path().join(harness.file), (harness.edit)(keys::write(&manifest, language)))?;
+    std::fs::write(folder.path().join(harness.source), (harness.main)(&manifest))?;
+    execute(folder.path(), harness.compile, "")?;
+    let (mut asked, mut expected) = (String::new(), String::new());
+    for (index, program) in manifest.programs.iter().enumerate() {
+        for point in program.space.enumerate() {
+            let ordinals: Vec<String> = point.ordinals().iter().map(ToString::to_string).collect();
+            asked += &format!("{index} {}\n", ordinals.join(" "));
+            expected += &format!("{}\n", program.space.key(&point));
+        }
+    }
+    let found = execute(folder.path(), harness.run, &asked)?;
+    if found.lines().eq(expected.lines()) {
+        println!("{}: {} keys", harness.language, expected.lines().count());
+        return Ok(());
+    }
+    let differing = found.lines().zip(expected.lines()).find(|(found, expected)| found != expected);
+    Err(format!("{differing:?}, {} of {} lines", found.lines().count(), expected.lines().count()).into())
+}
+
+fn execute(folder: &Path, command: &[&str], input: &str) -> Result<String, Failed> {
+    let words: Vec<String> = command.iter().map(|word| word.replace("{}", &folder.to_string_lossy())).collect();
+    let mut child = Command::new(&words[0])
+        .args(&words[1..])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| format!("{}: {error}", words[0]))?;
+    let mut stdin = child.stdin.take().ok_or("no input")?;
+    let input = input.to_owned();
+    let writer = std::thread::spawn(move || stdin.write_all(input.as_bytes()));
+    let output = child.wait_with_output()?;
+    let _ = writer.join();
+    if output.status.success() {
+        return Ok(String::from_utf8(output.stdout)?);
+    }
+    Err(format!("{}: {}{}", words[0], String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr)).into())
+}
+
+fn library() -> Result<Manifest, Failed> {
+    let found = project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    Ok(found.1)
+}
+
+fn camel(name: &str) -> String {
+    name.split('_').map(|word| word[..1].to_uppercase() + &word[1..]).collect()
+}
+
+fn rust_main(manifest: &Manifest) -> String {
+    let mut arms = String::new();
+    for (index, program) in manifest.programs.iter().enumerate() {
+        let field = |(at, axis): (usize, &lamplight::permute::Axis)| match axis.kind {
+            Kind::Bool => format!("{}: o[{at}] == 1, ", axis.name),
+            _ => format!("{}: {}::{}::ALL[o[{at}]], ", axis.name, program.name, camel(&axis.name)),
+        };
+        let fields: String = program.space.axes().iter().enumerate().map(field).collect();
+        arms += &format!("            {index} => {}::Key {{ {fields} }}.to_key(),\n", program.name);
+    }
+    let start = "include!(\"keys.rs\");\nfn main() {\n    for line in std::io::stdin().lines() {\n        let line = line.unwrap();\n";
+    let parse = "        let n: Vec<usize> = line.split_whitespace().map(|n| n.parse().unwrap()).collect();\n        let o = &n[1..];\n        let _ = o;\n";
+    format!("{start}{parse}        println!(\"{{}}\", match n[0] {{\n{arms}            _ => String::new(),\n        }});\n    }}\n}}\n")
+}
+
+fn c_main(manifest: &Manifest) -> String {
+    let mut cases = String::new();
+    for (index, program) in manifest.programs.iter().enumerate() {
+        let name = format!("lamplight_{}", program.name);
+        let field = |axis: &lamplight::permute::Axis| match axis.kind {
+            Kind::Bool => format!("            key.{} = next() == 1;\n", axis.name),
+            _ => format!("            key.{} = ({name}_{})next();\n", axis.name, axis.name),
+        };
+        let fields: String = program.space.axes().iter().map(field).collect();
+        let bytes = name.to_uppercase();
+        cases += &format!(
+            "        case {index}: {{\n            char text[{bytes}_KEY_BYTES];\n            {name} key = {name}_default();\n{fields}            {name}_to_key(&key, text);\n            puts(text);\n            break;\n        }}\n"
+        );
+    }
+    format!(
+        "#include <stdio.h>\n#include \"keys.h\"\nstatic int next(void) {{ int value = -1; return scanf(\"%d\", &value) == 1 ? value : -1; }}\nint main(void) {{\n    int program;\n    while ((program = next()) >= 0)\n        switch (program) {{\n{cases}        }}\n    return 0;\n}}\n"
+    )
+}
+
+fn typescript_main(manifest: &Manifest) -> String {
+    let mut text = String::from("import * as keys from './keys.mjs';\nimport { readFileSync } from 'node:fs';\nconst programs = [\n");
+    for program in &manifest.programs {
+        let camel = camel(&program.name);
+        let axes: Vec<String> = program
+            .space
+            .axes()
+            .iter()
+            .map(|axis| {
+                let values: Vec<String> = axis
+                    .values
+                    .iter()
+                    .map(|value| match value {
+                        Setting::Name(name) => format!("'{name}'"),
+                        other => other.to_string(),
+                    })
+                    .collect();
+                format!("['{}', [{}]]", axis.name, values.join(", "))
+            })
+            .collect();
+        text += &format!("  [keys.{}{}Key, [{}]],\n", camel[..1].to_lowercase(), &camel[1..], axes.join(", "));
+    }
+    text + "];\nfor (const line of readFileSync(0, 'utf8').trim().split('\\n')) {\n  const [program, ...ordinals] = line.split(' ').map(Number);\n  const [key, axes] = programs[program];\n  console.log(key(Object.fromEntries(axes.map(([name, values], index) => [name, values[ordinals[index]]]))));\n}\n"
+}
+
+/// What a runtime does that strips types: interfaces and aliases go, and annotations.
+fn stripped(text: String) -> String {
+    let mut out = String::new();
+    let mut inside = false;
+    for line in text.lines() {
+        inside |= line.starts_with("export interface");
+        if !inside && !line.starts_with("type ") {
+            let line = line.replace("(key: object, axes: readonly (readonly [string, Value])[]): string", "(key, axes)");
+            let line = line.replace(" as Record<string, Value | undefined>", "");
+            let line = match (line.find("(key: "), line.find(" = {}): string")) {
+                (Some(start), Some(end)) => format!("{}(key{}", &line[..start], line[end..].replace("): string", ")")),
+                _ => line,
+            };
+            out += &format!("{line}\n");
+        }
+        inside &= line != "}";
+    }
+    out
+}
+
+const AWKWARD: &str = r#"
+[program.type]
+wesl = "a.wesl"
+[program.type.axis]
+key = { values = ["self", "Key", "a_b", "ab", "n1"], doc = "Ends */ here." }
+int = { values = [false, true], default = true }
+key_bytes = { values = [-1, 1, 9223372036854775807] }
+string = { values = ["i3", "none"] }
+dyn = { values = ["match", "crate"] }
+option = { values = ["some", "ok"] }
+moving = { values = ["on", "off"], mode = "dynamic" }
+[program.type_key]
+wesl = "a.wesl"
+[program.type_key.axis.bytes]
+values = ["x"]
+"#;
+
+fn parsed(text: &str) -> Result<Manifest, Failed> {
+    let mut sources = SourceSet::default();
+    let id = sources.add("lamplight.toml", text);
+    Ok(manifest::parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human))?)
+}
+
+fn awkward(language: &str, file: &str, command: &[&str]) -> Outcome {
+    let manifest = parsed(AWKWARD)?;
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join(file);
+    std::fs::write(&path, keys::write(&manifest, keys::find(language).ok_or("no such language")?))?;
+    let path = path.to_string_lossy().into_owned();
+    let mut command = command.to_vec();
+    let metadata = folder.path().join("out").to_string_lossy().into_owned();
+    if language == "rust" {
+        command.extend(["-o", &metadata]);
+    }
+    command.push(&path);
+    execute(folder.path(), &command, "").map(|_| ())
+}
+
+const MANIFEST: &str = include_str!("../shaderlib/lamplight.toml");
+const LOCK: &str = include_str!("../shaderlib/lamplight.lock");
+
+fn read_lock() -> Result<Lock, Failed> {
+    let mut sources = SourceSet::default();
+    let id = sources.add("lamplight.lock", LOCK);
+    Ok(lock::parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human))?)
+}
+
+fn extended(lock: &Lock, manifest: &Manifest) -> Lock {
+    manifest.programs.iter().fold(lock.clone(), |lock, program| lock.extended(&program.name, &program.space))
+}
+
+fn up_to_date() -> Outcome {
+    let text = extended(&read_lock()?, &library()?).to_string();
+    if text == LOCK { Ok(()) } else { Err("run `lamplight keys --lock --manifest shaderlib/lamplight.toml` and commit the lock".into()) }
+}
+
+/// Every shipped key keeps its text and its number when an axis and values are added.
+fn growth() -> Outcome {
+    let (old, lock) = (parsed(MANIFEST)?, read_lock()?);
+    let grown = MANIFEST
+        .replace("values = [\"lambert\", \"half_lambert\"", "values = [\"burley\", \"lambert\", \"half_lambert\"")
+        .replace("values = [1, 4, 10]", "values = [1, 2, 4, 10, 32]")
+        .replace(
+            "[program.forward.axis.cone]",
+            "[program.forward.axis.anisotropy]\nvalues = [\"none\", \"hair\"]\n\n[program.forward.axis.cone]",
+        );
+    let new = parsed(&grown)?;
+    let new_lock = extended(&lock, &new);
+    let mut count = 0;
+    for program in &old.programs {
+        let after = new.program(&program.name).ok_or("a program is gone")?;
+        for point in program.space.enumerate() {
+            let (key, dense) = (program.space.key(&point), lock.dense(&program.name, &program.space, &point));
+            let mut sources = SourceSet::default();
+            let id = sources.add("key", key.as_str());
+            let text = lamplight::permute::Quoted::whole(&sources, id);
+            let same = lamplight::permute::key::parse(&after.space, &text).map_err(|problems| render(&sources, &problems, Form::Human))?;
+            if after.space.key(&same) != key || new_lock.dense(&program.name, &after.space, &same) != dense || dense.is_none() {
+                return Err(format!("{} {key} changed: {dense:?}", program.name).into());
+            }
+            count += 1;
+        }
+    }
+    let dynamic = old.programs.iter().flat_map(|program| program.space.axes()).filter(|axis| axis.mode == Mode::Dynamic).count();
+    println!("{count} keys kept, {dynamic} dynamic axes");
+    Ok(())
+}

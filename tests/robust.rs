@@ -1,0 +1,222 @@
+//! What can go wrong around a bundle: killed, at once, no place, no room, damaged. The bundle that
+//! was there stays whole, and the exit code says whose fault it is.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use lamplight::bundle::Bundle;
+use libtest_mimic::{Failed, Trial};
+use tempfile::TempDir;
+
+type Outcome = Result<(), Failed>;
+
+const LAMPLIGHT: &str = env!("CARGO_BIN_EXE_lamplight");
+const KILLS: u32 = 50;
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [(&str, fn() -> Outcome); 6] = [
+        ("killed_at_any_point", killed),
+        ("two_runs_at_once", at_once),
+        ("no_place_to_write", no_place),
+        ("no_room_to_write", no_room),
+        ("damaged_bundles", damaged),
+        ("wrong_versions", versions),
+    ];
+    cases.into_iter().map(|(name, case)| Trial::test(format!("robust::{name}"), case)).collect()
+}
+
+const MANIFEST: &str = r#"
+[program.small]
+wesl = "small.wesl"
+targets = ["wgsl", "glsl330"]
+[program.small.axis]
+color = { values = ["red", "green", "blue", "grey"] }
+count = { values = [1, 2, 3, 4] }
+"#;
+
+/// A package of sixteen permutations, whose outputs a number makes different.
+struct Package {
+    folder: TempDir,
+}
+
+impl Package {
+    fn new() -> Result<Self, Failed> {
+        let package = Self { folder: tempfile::tempdir()? };
+        std::fs::write(package.folder.path().join("lamplight.toml"), MANIFEST)?;
+        package.change(0)?;
+        Ok(package)
+    }
+
+    fn change(&self, number: u32) -> Outcome {
+        let text = format!(
+            "@fragment fn fs_main(@location(0) x: f32) -> @location(0) vec4f {{
+                var sum = {number}.0;
+                for (var i = 0; i < constants::count; i++) {{ sum += x * f32(i); }}
+                @if(color == red) {{ return vec4f(sum, 0.0, 0.0, 1.0); }}
+                @elif(color == green) {{ return vec4f(0.0, sum, 0.0, 1.0); }}
+                @elif(color == blue) {{ return vec4f(0.0, 0.0, sum, 1.0); }}
+                @else {{ return vec4f(sum); }}
+            }}"
+        );
+        Ok(std::fs::write(self.folder.path().join("small.wesl"), text)?)
+    }
+
+    fn bundle(&self) -> PathBuf {
+        self.folder.path().join("bundle")
+    }
+
+    fn command(&self, out: &Path) -> Command {
+        let mut command = Command::new(LAMPLIGHT);
+        command.args(["gen", "--manifest"]).arg(self.folder.path().join("lamplight.toml")).arg("-o").arg(out);
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    fn generate(&self) -> Outcome {
+        let output = self.command(&self.bundle()).output()?;
+        if output.status.success() { Ok(()) } else { Err(said(&output).into()) }
+    }
+
+    /// Opens, has every permutation, and every byte is as written.
+    fn check(&self) -> Outcome {
+        let bundle = Bundle::open(self.bundle())?;
+        bundle.verify()?;
+        let keys = bundle.program("small")?.shader("fs_main")?.keys()?.len();
+        if keys == 16 { Ok(()) } else { Err(format!("{keys} permutations").into()) }
+    }
+}
+
+fn said(output: &Output) -> String {
+    format!("{:?}: {}", output.status.code(), String::from_utf8_lossy(&output.stderr))
+}
+
+/// Fails with the code, in words, without a panic.
+fn fails(output: &Output, code: i32, words: &str) -> Outcome {
+    let error = String::from_utf8_lossy(&output.stderr);
+    let as_told = output.status.code() == Some(code) && error.contains(words) && !error.contains("panicked");
+    if as_told { Ok(()) } else { Err(format!("expected {code} and `{words}`, got {}", said(output)).into()) }
+}
+
+fn killed() -> Outcome {
+    let package = Package::new()?;
+    let start = Instant::now();
+    for round in 1..=4 {
+        package.change(KILLS + round)?;
+        package.generate()?;
+    }
+    let whole = start.elapsed() / 4;
+    let mut state = 0x9e37_79b9_u32;
+    let mut died = 0;
+    for round in 1..=KILLS {
+        package.change(round)?;
+        let mut child = package.command(&package.bundle()).spawn()?;
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        // Most of a run is over before anything is written: aim at its second half.
+        std::thread::sleep(whole.mul_f64(0.2 + 1.1 * f64::from(state) / f64::from(u32::MAX)));
+        child.kill()?;
+        died += u32::from(!child.wait()?.success());
+        package.check().map_err(|failed| format!("round {round}: {failed:?}"))?;
+    }
+    package.generate()?;
+    package.check()?;
+    let left = std::fs::read_dir(package.bundle().join("blobs"))?.filter_map(Result::ok);
+    let left = left.filter(|entry| entry.file_name().to_string_lossy().starts_with('.')).count();
+    println!("{died} of {KILLS} runs of {whole:.0?} killed");
+    if left == 0 { Ok(()) } else { Err(format!("{left} temporary files are left").into()) }
+}
+
+/// Runs of different sources into one folder: each waits for the other to finish writing.
+fn at_once() -> Outcome {
+    let packages = [Package::new()?, Package::new()?];
+    let bundle = packages[0].bundle();
+    for round in 0..8 {
+        let mut children = Vec::new();
+        for (index, package) in packages.iter().enumerate() {
+            package.change(round * 2 + index as u32)?;
+            children.push(package.command(&bundle).spawn()?);
+        }
+        for child in children {
+            let output = child.wait_with_output()?;
+            if !output.status.success() {
+                return Err(said(&output).into());
+            }
+        }
+        packages[0].check().map_err(|failed| format!("round {round}: {failed:?}"))?;
+    }
+    Ok(())
+}
+
+fn no_place() -> Outcome {
+    let package = Package::new()?;
+    let file = package.folder.path().join("file");
+    std::fs::write(&file, "in the way")?;
+    fails(&package.command(&file).output()?, 4, "cannot write")?;
+    fails(&package.command(&file.join("below")).output()?, 4, "cannot write")?;
+    // Nobody may write there, not even the superuser.
+    fails(&package.command(Path::new("/proc/lamplight")).output()?, 4, "cannot write")?;
+    fails(&package.command(Path::new("/proc/bundle.lamplight")).output()?, 4, "cannot write")?;
+    let kept = std::fs::read_to_string(&file)?;
+    if kept == "in the way" { Ok(()) } else { Err("a file was overwritten".into()) }
+}
+
+/// A limit on file sizes stands for a disk that is full.
+fn no_room() -> Outcome {
+    let package = Package::new()?;
+    package.generate()?;
+    package.change(7)?;
+    let command = package.command(&package.bundle());
+    let words: Vec<String> = command.get_args().map(|word| word.to_string_lossy().into_owned()).collect();
+    for blocks in [0, 1, 4] {
+        let output = Command::new("sh")
+            .args(["-c", &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\""), "sh", LAMPLIGHT])
+            .args(&words)
+            .output()?;
+        fails(&output, 4, "cannot write").map_err(|failed| format!("{blocks} blocks: {failed:?}"))?;
+        package.check()?;
+    }
+    package.generate()?;
+    package.check()
+}
+
+fn damaged() -> Outcome {
+    let package = Package::new()?;
+    let file = package.folder.path().join("small.lamplight");
+    let made = package.command(&file).output()?;
+    if !made.status.success() {
+        return Err(said(&made).into());
+    }
+    let whole = std::fs::read(&file)?;
+    for length in [0, 7, 100, 300, whole.len() / 2, whole.len() - 1] {
+        std::fs::write(&file, &whole[..length])?;
+        fails(&inspect("list", &file)?, 1, "damaged")?;
+    }
+    std::fs::write(&file, "not a bundle at all, but long enough to have a header".repeat(10))?;
+    fails(&inspect("list", &file)?, 1, "not a Lamplight bundle")?;
+    fails(&inspect("list", &package.folder.path().join("nowhere"))?, 1, "cannot be read")?;
+    let mut flipped = whole.clone();
+    *flipped.last_mut().ok_or("empty")? ^= 1;
+    std::fs::write(&file, flipped)?;
+    fails(&inspect("verify", &file)?, 3, "damaged")?;
+    std::fs::write(&file, whole)?;
+    let output = inspect("verify", &file)?;
+    if output.status.success() { Ok(()) } else { Err(said(&output).into()) }
+}
+
+fn versions() -> Outcome {
+    let package = Package::new()?;
+    package.generate()?;
+    let manifest = package.bundle().join("manifest.json");
+    let text = std::fs::read_to_string(&manifest)?;
+    std::fs::write(&manifest, text.replacen("\"version\": 1", "\"version\": 99", 1))?;
+    fails(&inspect("list", &package.bundle())?, 1, "version 99")?;
+    // The next run replaces what it cannot read.
+    package.generate()?;
+    package.check()
+}
+
+fn inspect(command: &str, bundle: &Path) -> Result<Output, Failed> {
+    let start = Instant::now();
+    let output = Command::new(LAMPLIGHT).args(["bundle", command]).arg(bundle).output()?;
+    if start.elapsed() < Duration::from_secs(10) { Ok(output) } else { Err("it took too long".into()) }
+}

@@ -1,0 +1,282 @@
+//! Axes that the pipeline chooses: one shader for all their values, in every target.
+
+use std::path::Path;
+use std::process::Command;
+
+use lamplight::bundle::{Bundle, Found, Target, pack};
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::generate::{Request, generate};
+use lamplight::project;
+use lamplight::source::SourceSet;
+use libtest_mimic::{Failed, Trial};
+use pollster::block_on;
+
+type Outcome = Result<(), Failed>;
+
+const MANIFEST: &str = r#"
+[program.spec]
+wesl = "spec.wesl"
+[program.spec.axis]
+taps = { values = [5, 9, 16], default = 9, mode = "spec" }
+negative = { values = [false, true], mode = "spec" }
+tint = { values = ["red", "green"] }
+"#;
+
+const TEXT: &str = "
+fn weight(i: i32) -> f32 {
+    return f32(i + constants::taps * 2);
+}
+@fragment fn fs_main(@location(0) x: f32) -> @location(0) vec4f {
+    var sum = 0.0;
+    for (var i = 0; i < constants::taps; i++) { sum += weight(i); }
+    if constants::negative { sum = -sum; }
+    @if(tint == red) { return vec4f(sum, x, 0.0, 1.0); }
+    @else { return vec4f(0.0, sum, x, 1.0); }
+}";
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [(&str, fn() -> Outcome); 6] = [
+        ("values_arrive", values),
+        ("one_shader_for_all_values", shared),
+        ("spirv", spirv),
+        ("glsl", glsl),
+        ("texts", texts),
+        ("usage_lists_narrow_a_manifest", usage),
+    ];
+    cases.into_iter().map(|(name, case)| Trial::test(format!("specialise::{name}"), case)).collect()
+}
+
+fn bundle_of(folder: &Path) -> Result<Bundle, Failed> {
+    let mut sources = SourceSet::default();
+    let made = (|| {
+        let manifest = project::read_manifest(&folder.join("lamplight.toml"), &mut sources)?;
+        let packages = project::packages(folder, &mut sources)?;
+        generate(&mut sources, &packages, &manifest, &Request::default(), &|_| ())
+    })();
+    let made = made.map_err(|problems| render(&sources, &problems, Form::Human))?;
+    Ok(Bundle::from_bytes(pack(&made.contents)?)?)
+}
+
+fn bundle() -> Result<Bundle, Failed> {
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("lamplight.toml"), MANIFEST)?;
+    std::fs::write(folder.path().join("spec.wesl"), TEXT)?;
+    bundle_of(folder.path())
+}
+
+fn found(key: &str, target: Target) -> Result<Found, Failed> {
+    Ok(bundle()?.program("spec")?.shader("fs_main")?.get(key, target)?)
+}
+
+fn check(condition: bool, what: &str) -> Outcome {
+    if condition { Ok(()) } else { Err(what.into()) }
+}
+
+fn shared() -> Outcome {
+    let bundle = bundle()?;
+    let shader = bundle.program("spec")?.shader("fs_main")?;
+    let keys = shader.keys()?;
+    let mut units = keys.iter().map(|key| shader.find(key)).collect::<Result<Vec<_>, _>>()?;
+    units.sort_unstable();
+    units.dedup();
+    check(keys.len() == 12 && units.len() == 2, &format!("{} keys, {} shaders", keys.len(), units.len()))?;
+    for target in Target::ALL {
+        let found = shader.get("taps=16,negative", *target)?;
+        let values: Vec<String> = found.constants.iter().map(|constant| format!("{}={}", constant.name, constant.value)).collect();
+        check(values == ["negative=true", "taps=16"], &format!("{values:?}"))?;
+        let mut choices: Vec<&str> = found.native.choices.iter().map(|choice| choice.name.as_str()).collect();
+        choices.sort_unstable();
+        check(choices == ["negative", "taps"], &format!("{target}: {choices:?}"))?;
+    }
+    Ok(())
+}
+
+/// Runs a tool of the distribution.
+fn run(tool: &str, arguments: &[&str]) -> Result<String, Failed> {
+    let output = Command::new(tool).args(arguments).output().map_err(|error| format!("{tool}: {error}"))?;
+    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    if output.status.success() { Ok(said) } else { Err(format!("{tool}: {said}").into()) }
+}
+
+fn spirv() -> Outcome {
+    let found = found("default", Target::SPIRV)?;
+    let folder = tempfile::tempdir()?;
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    std::fs::write(path("a.spv"), &found.bytes)?;
+    run("spirv-val", &["--target-env", "vulkan1.1", &path("a.spv")])?;
+    let id = |name: &str| found.native.choices.iter().find(|choice| choice.name == name).and_then(|choice| choice.id).ok_or("no id");
+    let chosen = format!("{}:16 {}:true", id("taps")?, id("negative")?);
+    run("spirv-opt", &["--set-spec-const-default-value", &chosen, "--freeze-spec-const", "-O", &path("a.spv"), "-o", &path("b.spv")])?;
+    run("spirv-val", &["--target-env", "vulkan1.1", &path("b.spv")])?;
+    let text = run("spirv-dis", &["--raw-id", &path("a.spv")])?;
+    check(text.matches("OpSpecConstant").count() == 2 && text.matches("SpecId").count() == 2, &text)?;
+    check(!text.lines().any(|line| line.contains("OpVariable") && line.contains("Private")), &text)?;
+    let text = run("spirv-dis", &["--raw-id", &path("b.spv")])?;
+    check(!text.contains("OpSpecConstant"), &text)
+}
+
+/// The pixel that the shader draws, by its override in WGSL and by its constant in SPIR-V.
+fn values() -> Outcome {
+    let device = Drawing::open()?;
+    for (key, expected) in [("default", 198.0), ("taps=5", 60.0), ("negative,taps=16", -632.0)] {
+        let found = found(key, Target::WGSL)?;
+        let number = |value: &str| value.parse().unwrap_or(f64::from(u8::from(value == "true")));
+        let constants: Vec<(&str, f64)> =
+            found.constants.iter().map(|constant| (constant.name.as_str(), number(&constant.value))).collect();
+        let source = wgpu::ShaderSource::Wgsl(std::str::from_utf8(&found.bytes)?.into());
+        let module = device.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let drawn = device.draw(&module, &constants)?;
+        check(drawn == [expected, 1.0, 0.0, 1.0], &format!("WGSL {key}: {drawn:?}"))?;
+        let drawn = device.draw(&device.chosen(key)?, &[])?;
+        check(drawn == [expected, 1.0, 0.0, 1.0], &format!("SPIR-V {key}: {drawn:?}"))?;
+    }
+    Ok(())
+}
+
+/// A device that draws one pixel.
+struct Drawing {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    vertex: wgpu::ShaderModule,
+}
+
+const VERTEX: &str = "
+struct Out { @builtin(position) position: vec4f, @location(0) x: f32 }
+@vertex fn triangle(@builtin(vertex_index) index: u32) -> Out {
+    let corner = vec2u((index << 1u) & 2u, index & 2u);
+    return Out(vec4f(vec2f(corner) * 2.0 - 1.0, 0.0, 1.0), 1.0);
+}";
+
+impl Drawing {
+    fn open() -> Result<Self, Failed> {
+        let backends = wgpu::Backends::VULKAN;
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle() });
+        let mut adapters = block_on(instance.enumerate_adapters(backends));
+        adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
+        let adapter = adapters.into_iter().next().ok_or("no Vulkan driver: cargo xtask test installs one")?;
+        let descriptor = wgpu::DeviceDescriptor {
+            required_features: wgpu::Features::PASSTHROUGH_SHADERS,
+            required_limits: adapter.limits(),
+            // SAFETY: the shaders that pass through were validated.
+            experimental_features: unsafe { wgpu::ExperimentalFeatures::enabled() },
+            ..Default::default()
+        };
+        let (device, queue) = block_on(adapter.request_device(&descriptor))?;
+        let source = wgpu::ShaderSource::Wgsl(VERTEX.into());
+        let vertex = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        Ok(Self { device, queue, vertex })
+    }
+
+    /// The SPIR-V of a key with its constants set, as a driver would when it makes a pipeline:
+    /// wgpu has no way to pass them to a shader it does not translate.
+    fn chosen(&self, key: &str) -> Result<wgpu::ShaderModule, Failed> {
+        let found = found(key, Target::SPIRV)?;
+        let folder = tempfile::tempdir()?;
+        let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+        std::fs::write(path("a.spv"), &found.bytes)?;
+        let id = |name: &str| found.native.choices.iter().find(|choice| choice.name == name).and_then(|choice| choice.id);
+        let values = found.constants.iter().filter_map(|constant| Some(format!("{}:{}", id(&constant.name)?, constant.value)));
+        let values: Vec<String> = values.collect();
+        run("spirv-opt", &["--set-spec-const-default-value", &values.join(" "), &path("a.spv"), "-o", &path("b.spv")])?;
+        let bytes = std::fs::read(path("b.spv"))?;
+        let words: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        let entry = wgpu::PassthroughShaderEntryPoint { name: found.native.entry_name.as_str().into(), workgroup_size: (0, 0, 0) };
+        let entry_points = std::slice::from_ref(&entry).into();
+        let descriptor = wgpu::ShaderModuleDescriptorPassthrough { entry_points, spirv: Some(words.into()), ..Default::default() };
+        // SAFETY: `spirv-val` accepts the words.
+        Ok(unsafe { self.device.create_shader_module_passthrough(descriptor) })
+    }
+
+    fn draw(&self, fragment: &wgpu::ShaderModule, constants: &[(&str, f64)]) -> Result<Vec<f32>, Failed> {
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let layout = wgpu::PipelineLayoutDescriptor { label: None, bind_group_layouts: &[], immediate_size: 0 };
+        let pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: Some(&self.device.create_pipeline_layout(&layout)),
+            vertex: wgpu::VertexState {
+                module: &self.vertex,
+                entry_point: Some("triangle"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: fragment,
+                entry_point: Some("fs_main"),
+                compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let size = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 };
+        let target = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 256, usage, mapped_at_creation: false });
+        let view = target.create_view(&Default::default());
+        let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
+        let attachment = wgpu::RenderPassColorAttachment { view: &view, depth_slice: None, resolve_target: None, ops };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let mut pass =
+            encoder.begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: &[Some(attachment)], ..Default::default() });
+        pass.set_pipeline(&pipeline);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(256), rows_per_image: None };
+        encoder.copy_texture_to_buffer(target.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, size);
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |_| ());
+        self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(std::time::Duration::from_secs(30)) })?;
+        let bytes = buffer.get_mapped_range(..).map_err(|error| format!("{error:?}"))?;
+        Ok(bytes[..16].as_chunks::<4>().0.iter().map(|word| f32::from_le_bytes(*word)).collect())
+    }
+}
+
+fn glsl() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("a.frag").to_string_lossy().into_owned();
+    for target in [Target::GLSL450, Target::GLSL330, Target::ESSL300] {
+        let found = found("default", target)?;
+        let text = String::from_utf8(found.bytes)?;
+        let (version, rest) = text.split_once('\n').ok_or("no lines")?;
+        for chosen in ["", "#define LAMPLIGHT_TAPS 16\n#define LAMPLIGHT_NEGATIVE 1\n"] {
+            std::fs::write(&path, format!("{version}\n{chosen}{rest}"))?;
+            run("glslangValidator", &["-S", "frag", &path])?;
+        }
+    }
+    Ok(())
+}
+
+fn texts() -> Outcome {
+    for target in [Target::WGSL, Target::GLSL330, Target::HLSL, Target::MSL] {
+        let text = String::from_utf8(found("default", target)?.bytes)?;
+        crate::snapshot::check("specialise", target.name(), &text)?;
+    }
+    Ok(())
+}
+
+/// Exactly what was asked for is generated; keys that are none any more are told.
+fn usage() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let used = "spec tint=green\nspec taps=16\nspec gone=1\nspec tint=mauve\nother x\n";
+    std::fs::write(folder.path().join("lamplight.toml"), MANIFEST.replace("wesl =", "usage = \"spec.used\"\nwesl ="))?;
+    std::fs::write(folder.path().join("spec.wesl"), TEXT)?;
+    std::fs::write(folder.path().join("spec.used"), used)?;
+    let keys = bundle_of(folder.path())?.program("spec")?.shader("fs_main")?.keys()?;
+    check(keys == ["taps=16", "tint=green"], &format!("{keys:?}"))?;
+    let mut sources = SourceSet::default();
+    let manifest = project::read_manifest(&folder.path().join("lamplight.toml"), &mut sources).map_err(|_| "no manifest")?;
+    let told: Vec<&str> = manifest.warnings.iter().map(|warning| warning.message.as_str()).collect();
+    check(told.len() == 2 && told[0].contains("`gone=1`"), &format!("{told:?}"))
+}
