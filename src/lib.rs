@@ -15,6 +15,8 @@ pub mod diagnostic;
 #[cfg(feature = "compile")]
 pub mod emit;
 #[cfg(feature = "compile")]
+pub mod eval;
+#[cfg(feature = "compile")]
 pub mod generate;
 #[cfg(feature = "compile")]
 pub mod output;
@@ -31,8 +33,6 @@ pub mod source;
 #[cfg(feature = "compile")]
 pub mod validate;
 
-#[cfg(feature = "harness")]
-pub mod eval;
 #[cfg(feature = "harness")]
 pub mod harness;
 

@@ -5,11 +5,14 @@
 mod bundle;
 mod compose_glsl;
 mod compose_wesl;
+mod determinism;
+mod differential;
 mod emit;
 mod eval;
 mod harness;
 mod permute;
 mod programs;
+mod regressions;
 mod shaderlib;
 mod snapshot;
 
@@ -21,11 +24,14 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     bundle::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    determinism::trials,
+    differential::trials,
     emit::trials,
     eval::trials,
     harness::trials,
     permute::trials,
     programs::trials,
+    regressions::trials,
     shaderlib::trials,
     snapshot::trials,
 ];

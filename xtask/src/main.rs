@@ -2,8 +2,10 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod bench;
 mod ci;
 mod external;
+mod fuzz;
 mod generate;
 mod machine;
 mod test;
@@ -49,6 +51,8 @@ const COMMANDS: &[Command] = &[
     ("gen", "write the library's bundle to target/bundles/ and validate it", generate::run),
     ("test", "install what the tests need, then run every test", test::run),
     ("validate", "run the external validators over a bundle", validate::run),
+    ("bench", "compare with peers: compose, or eval", bench::run),
+    ("fuzz", "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...", fuzz::run),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];
 
