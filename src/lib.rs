@@ -17,6 +17,8 @@ pub mod diagnostic;
 #[cfg(feature = "compile")]
 pub mod emit;
 #[cfg(feature = "compile")]
+pub mod eval;
+#[cfg(feature = "compile")]
 pub mod generate;
 #[cfg(feature = "compile")]
 pub mod keys;
@@ -35,8 +37,6 @@ pub mod source;
 #[cfg(feature = "compile")]
 pub mod validate;
 
-#[cfg(feature = "harness")]
-pub mod eval;
 #[cfg(feature = "harness")]
 pub mod harness;
 #[cfg(feature = "harness")]

@@ -6,20 +6,23 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod determinism;
 mod diagnostics;
+mod differential;
 mod emit;
 mod eval;
-mod generate;
+mod examples;
 #[path = "../xtask/src/external.rs"]
 mod external;
-mod examples;
 mod frames;
+mod generate;
 mod harness;
 mod keys;
 mod library;
 mod permute;
 mod pipelines;
 mod programs;
+mod regressions;
 mod robust;
 mod scale;
 mod shaderlib;
@@ -35,7 +38,9 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    determinism::trials,
     diagnostics::trials,
+    differential::trials,
     emit::trials,
     eval::trials,
     examples::trials,
@@ -47,6 +52,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     permute::trials,
     pipelines::trials,
     programs::trials,
+    regressions::trials,
     robust::trials,
     scale::trials,
     shaderlib::trials,

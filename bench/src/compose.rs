@@ -1,11 +1,17 @@
 //! Composition: Lamplight, `wesl` and `naga_oil` over the same roots, flags and modules.
+//!
+//! Each tool is used as its documentation says and told to check nothing twice: `wesl` without its
+//! own validation and source map, `naga_oil` with its modules added once and its inner validation
+//! off. The last step of the way to a module is naga's validator for all.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::error::Error;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use lamplight::compose::{Options, wesl as composer};
+use lamplight::diagnostic::Diagnostics;
 use lamplight::permute::{Setting, Settings};
 use lamplight::resolve::{self, Packages, wesl::Graph};
 use lamplight::source::{Memory, Package, SourceSet};
@@ -13,70 +19,95 @@ use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescript
 
 use crate::Outcome;
 use crate::corpus::{self, Dialect, FLAGS, MODULES, ROOTS};
+use crate::library;
 
 /// Permutations of each root.
 const PERMUTATIONS: usize = 8;
+const JOBS: usize = ROOTS * PERMUTATIONS;
 
 /// Prints every figure; the last line is the two ratios.
 pub fn run() -> Outcome {
-    println!(
-        "corpus: {MODULES} modules, {} lines, {ROOTS} roots, {PERMUTATIONS} permutations of {FLAGS} flags each",
-        corpus::lines(Dialect::Wesl)
-    );
-    let (graphs, loading) = load()?;
-    println!("lamplight: corpus loaded and indexed, all roots: {}", millis(loading));
-    let ours = compose(&graphs)?;
+    let lines = corpus::lines(Dialect::Wesl);
+    println!("corpus: {MODULES} modules, {lines} lines, {ROOTS} roots, {PERMUTATIONS} permutations of {FLAGS} flags each");
+    let files = files();
+    println!("lamplight: all modules loaded and indexed in {}", millis(loading(&files)?));
+    let graphs = timed(|| load(&files));
+    println!("lamplight: {ROOTS} roots loaded, each with what it reaches, in {}", millis(graphs.elapsed));
+    let ours = compose(&graphs.value?)?;
+    println!("lamplight: {} lines of text a permutation", ours.value.iter().map(|text| text.lines().count()).sum::<usize>() / JOBS);
     let theirs = wesl_texts()?;
-    let jobs = (ROOTS * PERMUTATIONS) as f64;
-    let to_text = theirs.as_secs_f64() / ours.elapsed.as_secs_f64();
-    println!("to text: lamplight {:.0}/s, wesl {:.1}/s", jobs / ours.elapsed.as_secs_f64(), jobs / theirs.as_secs_f64());
-    let naga = parse(&ours.texts)?;
-    println!(
-        "composition adds {:.1} % to naga's parsing ({} over {})",
-        100.0 * ours.elapsed.as_secs_f64() / naga.parse.as_secs_f64(),
-        millis(ours.elapsed),
-        millis(naga.parse)
-    );
+    println!("to text: lamplight {}, wesl {}", ours.rate(), theirs.rate());
+    let naga = parse(&ours.value)?;
+    let share = 100.0 * ours.elapsed.as_secs_f64() / naga.parse.as_secs_f64();
+    println!("composition adds {share:.1} % to naga's parsing ({} to {})", millis(ours.elapsed), millis(naga.parse));
     let oil = naga_oil_modules()?;
-    let whole = ours.elapsed + naga.parse + naga.validate;
-    let to_module = oil.as_secs_f64() / whole.as_secs_f64();
-    println!("to a validated module: lamplight {:.1}/s, naga_oil {:.1}/s", jobs / whole.as_secs_f64(), jobs / oil.as_secs_f64());
-    println!("compose: {to_text:.1}x wesl, {to_module:.2}x naga_oil");
+    let whole = Timed { value: (), elapsed: ours.elapsed + naga.parse + naga.validate };
+    println!("to a validated module: lamplight {}, naga_oil {}", whole.rate(), oil.rate());
+    library::run()?;
+    println!("compose: {:.1}x wesl, {:.2}x naga_oil", ours.times_faster(&theirs), whole.times_faster(&oil));
     Ok(())
 }
 
-fn load() -> Result<(Vec<Graph>, Duration), String> {
-    let mut files = Memory::default();
-    for module in 0..MODULES {
-        files.0.insert(format!("{}.wesl", corpus::path(module).join("/")), corpus::module(module, Dialect::Wesl));
-    }
-    for root in 0..ROOTS {
-        files.0.insert(format!("root_{root}.wesl"), corpus::root(root, Dialect::Wesl));
-    }
-    let packages = Packages { root: Package { name: "package".to_owned(), files: Box::new(files) }, dependencies: Vec::new() };
-    let start = Instant::now();
-    let graphs: Result<Vec<Graph>, _> =
-        (0..ROOTS).map(|root| resolve::wesl::load(&mut SourceSet::default(), &packages, &format!("root_{root}.wesl"))).collect();
-    let elapsed = start.elapsed();
-    Ok((graphs.map_err(|diagnostics| format!("{diagnostics:?}"))?, elapsed))
-}
-
-struct Texts {
-    texts: Vec<String>,
+/// What was made, and how long all [`JOBS`] took.
+struct Timed<T> {
+    value: T,
     elapsed: Duration,
 }
 
-fn compose(graphs: &[Graph]) -> Result<Texts, String> {
-    let settings: Vec<Settings> = (0..PERMUTATIONS).map(settings).collect();
-    let start = Instant::now();
-    let mut texts = Vec::new();
-    for graph in graphs {
-        for settings in &settings {
-            let composed = composer::compose(graph, settings, &Options::default()).map_err(|diagnostics| format!("{diagnostics:?}"))?;
-            texts.push(composed.text);
-        }
+impl<T> Timed<T> {
+    fn rate(&self) -> String {
+        format!("{:.1}/s", JOBS as f64 / self.elapsed.as_secs_f64())
     }
-    Ok(Texts { texts, elapsed: start.elapsed() })
+
+    fn times_faster<U>(&self, other: &Timed<U>) -> f64 {
+        other.elapsed.as_secs_f64() / self.elapsed.as_secs_f64()
+    }
+}
+
+fn timed<T>(make: impl FnOnce() -> T) -> Timed<T> {
+    let start = Instant::now();
+    let value = make();
+    Timed { value, elapsed: start.elapsed() }
+}
+
+fn files() -> BTreeMap<String, String> {
+    let modules = (0..MODULES).map(|module| (format!("{}.wesl", corpus::path(module).join("/")), corpus::module(module, Dialect::Wesl)));
+    let roots = (0..ROOTS).map(|root| (format!("root_{root}.wesl"), corpus::root(root, Dialect::Wesl)));
+    modules.chain(roots).chain([("everything.wesl".to_owned(), corpus::everything())]).collect()
+}
+
+fn packages(files: &BTreeMap<String, String>) -> Packages {
+    Packages { root: Package { name: "package".to_owned(), files: Box::new(Memory(files.clone())) }, dependencies: Vec::new() }
+}
+
+/// The best of several: the first one touches memory that no engine would touch twice.
+fn loading(files: &BTreeMap<String, String>) -> Result<Duration, String> {
+    let packages = packages(files);
+    let mut best = Duration::MAX;
+    for _ in 0..5 {
+        let loaded = timed(|| resolve::wesl::load(&mut SourceSet::default(), &packages, "everything.wesl"));
+        loaded.value.map_err(told)?;
+        best = best.min(loaded.elapsed);
+    }
+    Ok(best)
+}
+
+fn load(files: &BTreeMap<String, String>) -> Result<Vec<Graph>, String> {
+    let packages = packages(files);
+    let load = |root| resolve::wesl::load(&mut SourceSet::default(), &packages, &format!("root_{root}.wesl")).map_err(told);
+    (0..ROOTS).map(load).collect()
+}
+
+fn told(diagnostics: Diagnostics) -> String {
+    format!("{diagnostics:?}")
+}
+
+fn compose(graphs: &[Graph]) -> Result<Timed<Vec<String>>, String> {
+    let settings: Vec<Settings> = (0..PERMUTATIONS).map(settings).collect();
+    let options = Options::default();
+    let jobs = || graphs.iter().flat_map(|graph| settings.iter().map(move |settings| (graph, settings)));
+    let texts = timed(|| jobs().map(|(graph, settings)| Ok(composer::compose(graph, settings, &options)?.text)).collect::<Result<_, _>>());
+    Ok(Timed { value: texts.value.map_err(told)?, elapsed: texts.elapsed })
 }
 
 fn settings(permutation: usize) -> Settings {
@@ -84,7 +115,7 @@ fn settings(permutation: usize) -> Settings {
     Settings { values: values.collect(), ..Settings::default() }
 }
 
-fn wesl_texts() -> Result<Duration, Box<dyn std::error::Error>> {
+fn wesl_texts() -> Result<Timed<()>, Box<dyn Error>> {
     let mut resolver = wesl::VirtualResolver::new();
     let module_path = |segments| wesl::ModulePath::new(wesl::syntax::PathOrigin::Absolute, segments);
     for module in 0..MODULES {
@@ -94,8 +125,7 @@ fn wesl_texts() -> Result<Duration, Box<dyn std::error::Error>> {
         resolver.add_module(module_path(vec![format!("root_{root}")]), Cow::Owned(corpus::root(root, Dialect::Wesl)));
     }
     let mut compiler = wesl::Wesl::new_barebones().set_custom_resolver(resolver);
-    compiler.use_imports(true).use_condcomp(true).use_stripping(true);
-    compiler.set_mangler(wesl::ManglerKind::None);
+    compiler.set_options(wesl::CompileOptions { validate: false, ..wesl::CompileOptions::default() });
     let start = Instant::now();
     for root in 0..ROOTS {
         for permutation in 0..PERMUTATIONS {
@@ -106,7 +136,7 @@ fn wesl_texts() -> Result<Duration, Box<dyn std::error::Error>> {
             black_box(compiler.compile(&path)?.to_string());
         }
     }
-    Ok(start.elapsed())
+    Ok(Timed { value: (), elapsed: start.elapsed() })
 }
 
 struct Naga {
@@ -115,15 +145,12 @@ struct Naga {
 }
 
 fn parse(texts: &[String]) -> Result<Naga, String> {
-    let start = Instant::now();
-    let modules: Result<Vec<_>, _> =
-        texts.iter().map(|text| naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))).collect();
-    let (modules, parse) = (modules?, start.elapsed());
-    let start = Instant::now();
-    for module in &modules {
-        validator().validate(module).map_err(|error| error.to_string())?;
-    }
-    Ok(Naga { parse, validate: start.elapsed() })
+    let parse = |text: &String| naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text));
+    let parsed = timed(|| texts.iter().map(parse).collect::<Result<Vec<_>, _>>());
+    let modules = parsed.value?;
+    let validated = timed(|| modules.iter().try_for_each(|module| validator().validate(module).map(drop)));
+    validated.value.map_err(|error| error.to_string())?;
+    Ok(Naga { parse: parsed.elapsed, validate: validated.elapsed })
 }
 
 fn validator() -> naga::valid::Validator {
@@ -131,16 +158,16 @@ fn validator() -> naga::valid::Validator {
 }
 
 /// Modules are added once; each permutation then makes a module and validates it.
-fn naga_oil_modules() -> Result<Duration, Box<dyn std::error::Error>> {
-    let mut composer = Composer::default();
-    for module in 0..MODULES {
-        let source = corpus::module(module, Dialect::NagaOil);
-        composer.add_composable_module(ComposableModuleDescriptor {
-            source: &source,
-            file_path: &corpus::path(module).join("/"),
-            ..Default::default()
-        })?;
-    }
+fn naga_oil_modules() -> Result<Timed<()>, Box<dyn Error>> {
+    let mut composer = Composer::non_validating();
+    let added = timed(|| {
+        (0..MODULES).try_for_each(|module| {
+            let (source, path) = (corpus::module(module, Dialect::NagaOil), corpus::path(module).join("/"));
+            composer.add_composable_module(ComposableModuleDescriptor { source: &source, file_path: &path, ..Default::default() }).map(drop)
+        })
+    });
+    added.value?;
+    println!("naga_oil: modules added in {}", millis(added.elapsed));
     let roots: Vec<String> = (0..ROOTS).map(|root| corpus::root(root, Dialect::NagaOil)).collect();
     let start = Instant::now();
     for source in &roots {
@@ -151,7 +178,7 @@ fn naga_oil_modules() -> Result<Duration, Box<dyn std::error::Error>> {
             validator().validate(&module)?;
         }
     }
-    Ok(start.elapsed())
+    Ok(Timed { value: (), elapsed: start.elapsed() })
 }
 
 fn naga_oil_defs(permutation: usize) -> HashMap<String, ShaderDefValue> {

@@ -1,15 +1,24 @@
-//! A generated module tree with the density of imports and conditions of a real engine, in the
-//! dialects of each composer. The same number always gives the same text.
+//! A generated module tree of an engine's shape, in the dialects of each composer. The same
+//! number always gives the same text.
+//!
+//! Like Bevy's shaders: some 200 modules of 140 lines in layers, each importing from four or five
+//! others; eight directive lines in a hundred, imports among them; a root reaches a quarter of it.
 
 use std::fmt::Write as _;
 
 /// Number of modules; 28,000 lines in all.
-pub const MODULES: usize = 200;
+pub const MODULES: usize = LAYERS * PARTS * UNITS;
 /// Flags that conditions read.
 pub const FLAGS: usize = 32;
 /// Root shaders, each with one entry point.
 pub const ROOTS: usize = 16;
 
+/// Modules import from layers below their own.
+const LAYERS: usize = 10;
+/// Parts of the engine: three of four imports stay in their own.
+const PARTS: usize = 4;
+/// Modules of one part in one layer.
+const UNITS: usize = 5;
 const FUNCTIONS: usize = 7;
 
 /// How imports and conditions are written.
@@ -21,7 +30,7 @@ pub enum Dialect {
 
 /// Path segments of a module.
 pub fn path(module: usize) -> Vec<String> {
-    vec![format!("group_{}", letters(module / 40)), format!("part_{}", letters(module / 8 % 5)), format!("unit_{}", letters(module))]
+    vec![format!("part_{}", letters(part(module))), format!("layer_{}", letters(layer(module))), format!("unit_{}", letters(module))]
 }
 
 /// The text of a module.
@@ -32,10 +41,8 @@ pub fn module(module: usize, dialect: Dialect) -> String {
     if dialect == Dialect::NagaOil {
         let _ = writeln!(text, "#define_import_path {}\n", path(module).join("::"));
     }
-    for (imported, function) in &imports {
-        import(&mut text, *imported, *function, dialect);
-    }
-    preamble(&mut text, module);
+    import(&mut text, &imports, &mut random, dialect);
+    preamble(&mut text, module, random.below(FLAGS), dialect);
     for function in 0..FUNCTIONS {
         write_function(&mut text, module, function, &imports, &mut random, dialect);
     }
@@ -45,17 +52,27 @@ pub fn module(module: usize, dialect: Dialect) -> String {
 /// The text of a root shader.
 pub fn root(root: usize, dialect: Dialect) -> String {
     let mut random = Random::new(root as u64 + 7_001);
+    let top = (LAYERS - 1) * PARTS * UNITS;
+    let used: Vec<Import> = (0..UNITS)
+        .map(|unit| Import { module: top + root % PARTS * UNITS + unit, function: random.below(FUNCTIONS), instead: None })
+        .collect();
     let mut text = String::new();
-    let used: Vec<(usize, usize)> = (0..6).map(|k| (20 + (root * 11 + k * 29) % (MODULES - 20), random.below(FUNCTIONS))).collect();
-    for (imported, function) in &used {
-        import(&mut text, *imported, *function, dialect);
-    }
+    import(&mut text, &used, &mut random, dialect);
     text.push_str("\n@fragment\nfn fs_main(@location(0) normal: vec3<f32>, @location(1) light: vec3<f32>) -> @location(0) vec4<f32> {\n    var sum = 0.0;\n");
-    for (imported, function) in &used {
-        let _ = writeln!(text, "    sum += {}(normal, light, 2.0);", name(*imported, *function));
+    for import in &used {
+        let _ = writeln!(text, "    sum += {}(normal, light, 2.0);", import.local());
     }
     text.push_str("    return vec4<f32>(sum);\n}\n");
     text
+}
+
+/// A root that imports from every module.
+pub fn everything() -> String {
+    let mut text = String::new();
+    for module in 0..MODULES {
+        let _ = writeln!(text, "import package::{}::{};", path(module).join("::"), name(module, 0));
+    }
+    text + "\n@compute @workgroup_size(1)\nfn main() {}\n"
 }
 
 /// Whether a flag is on in a permutation.
@@ -74,33 +91,89 @@ pub fn lines(dialect: Dialect) -> usize {
     (0..MODULES).map(|index| module(index, dialect).lines().count()).sum()
 }
 
-fn imports(module: usize, random: &mut Random) -> Vec<(usize, usize)> {
-    let mut found: Vec<(usize, usize)> =
-        (0..module.min(4)).map(|_| (module - 1 - random.below(module.min(24)), random.below(FUNCTIONS))).collect();
-    found.sort_unstable();
-    found.dedup_by_key(|(imported, _)| *imported);
+/// A function of another module, by its name or, where a flag chooses between two, by another.
+struct Import {
+    module: usize,
+    function: usize,
+    /// The module whose function of that number is imported where the flag is off.
+    instead: Option<usize>,
+}
+
+impl Import {
+    fn local(&self) -> String {
+        match self.instead {
+            Some(_) => format!("chosen_{}", letters(self.module)),
+            None => name(self.module, self.function),
+        }
+    }
+}
+
+fn layer(module: usize) -> usize {
+    module / (PARTS * UNITS)
+}
+
+fn part(module: usize) -> usize {
+    module / UNITS % PARTS
+}
+
+/// Modules of the layers just below, one of four from another part.
+fn imports(module: usize, random: &mut Random) -> Vec<Import> {
+    let below = |random: &mut Random| {
+        let layer = layer(module) - 1 - random.below(layer(module).min(2));
+        let part = if random.below(4) == 0 { random.below(PARTS) } else { part(module) };
+        (layer * PARTS + part) * UNITS + random.below(UNITS)
+    };
+    let mut found: Vec<Import> = Vec::new();
+    for index in 0..if layer(module) == 0 { 0 } else { 6 } {
+        let (imported, function) = (below(random), random.below(FUNCTIONS));
+        let instead = (index == 0).then(|| below(random)).filter(|other| *other != imported);
+        if !found.iter().any(|known| known.module == imported || known.instead == Some(imported)) {
+            found.push(Import { module: imported, function, instead });
+        }
+    }
     found
 }
 
-fn import(text: &mut String, module: usize, function: usize, dialect: Dialect) {
-    let path = path(module).join("::");
-    let name = name(module, function);
-    let _ = match dialect {
-        Dialect::Wesl => writeln!(text, "import package::{path}::{name};"),
-        Dialect::NagaOil => writeln!(text, "#import {path}::{name}"),
-    };
+fn import(text: &mut String, imports: &[Import], random: &mut Random, dialect: Dialect) {
+    let path = |module: usize| path(module).join("::");
+    for Import { module, function, instead } in imports {
+        let (here, name_here) = (path(*module), name(*module, *function));
+        let unit = letters(*module);
+        let Some(other) = instead else {
+            let _ = match dialect {
+                Dialect::Wesl => writeln!(text, "import package::{here}::{{{name_here}, GAIN_{unit}}};"),
+                Dialect::NagaOil => writeln!(text, "#import {here}::{{{name_here}, GAIN_{unit}}}"),
+            };
+            continue;
+        };
+        let (there, name_there, flag) = (path(*other), name(*other, *function), flag_name(random.below(FLAGS), dialect));
+        let _ = match dialect {
+            Dialect::Wesl => writeln!(
+                text,
+                "@if({flag}) import package::{here}::{name_here} as chosen_{unit};\n@else import package::{there}::{name_there} as chosen_{unit};"
+            ),
+            Dialect::NagaOil => writeln!(
+                text,
+                "#ifdef {flag}\n#import {here}::{name_here} as chosen_{unit}\n#else\n#import {there}::{name_there} as chosen_{unit}\n#endif"
+            ),
+        };
+    }
 }
 
-fn preamble(text: &mut String, module: usize) {
-    let unit = letters(module);
+fn preamble(text: &mut String, module: usize, flag: usize, dialect: Dialect) {
+    let (unit, flag) = (letters(module), flag_name(flag, dialect));
+    let member = match dialect {
+        Dialect::Wesl => format!("    @if({flag}) bent: vec3<f32>,\n"),
+        Dialect::NagaOil => format!("#ifdef {flag}\n    bent: vec3<f32>,\n#endif\n"),
+    };
     let _ = write!(
         text,
         "\n// Coefficients of unit {unit}: each in [0, 1], without a unit.\nconst GAIN_{unit}: f32 = 0.{module:03}5;\nconst BIAS_{unit}: f32 = 0.25;\n\n\
-         /* What one evaluation\n   carries between its steps. */\nstruct State_{unit} {{\n    weight: f32,\n    // The direction so far, unit length.\n    direction: vec3<f32>,\n    taps: array<vec4<f32>, 4>,\n}}\n"
+         /* What one evaluation\n   carries between its steps. */\nstruct State_{unit} {{\n    weight: f32,\n    // The direction so far, unit length.\n    direction: vec3<f32>,\n    taps: array<vec4<f32>, 4>,\n{member}}}\n"
     );
 }
 
-fn write_function(text: &mut String, module: usize, function: usize, imports: &[(usize, usize)], random: &mut Random, dialect: Dialect) {
+fn write_function(text: &mut String, module: usize, function: usize, imports: &[Import], random: &mut Random, dialect: Dialect) {
     let unit = letters(module);
     let _ = write!(
         text,
@@ -112,8 +185,12 @@ fn write_function(text: &mut String, module: usize, function: usize, imports: &[
     if random.below(10) < 7 {
         condition(text, random.below(FLAGS), dialect);
     }
-    if let Some((imported, other)) = imports.get(function) {
-        let _ = writeln!(text, "    sum += {}(state.direction, l, s * 0.5);", name(*imported, *other));
+    if let Some(import) = imports.get(function) {
+        let gain = if import.instead.is_some() { "0.5".to_owned() } else { format!("GAIN_{}", letters(import.module)) };
+        let _ = writeln!(text, "    sum += {}(state.direction, l, s * {gain});", import.local());
+    }
+    if function % 3 == 1 {
+        let _ = writeln!(text, "    sum *= 1.0 + 0.01 * {}(l, n, s);", name(module, function - 1));
     }
     text.push_str("    return sum * clamp(dot(state.direction, n), 0.0, 1.0);\n}\n");
 }

@@ -4,20 +4,22 @@
 
 mod compose;
 mod corpus;
+mod eval;
 mod generate;
+mod library;
 
 use std::error::Error;
 use std::process::ExitCode;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[("compose", compose::run), ("gen", generate::run)];
+const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[("compose", compose::run), ("eval", eval::run), ("gen", generate::run)];
 
 fn main() -> ExitCode {
     let asked = std::env::args().nth(1).unwrap_or_default();
     let Some((_, run)) = BENCHMARKS.iter().find(|(name, _)| *name == asked) else {
         let names: Vec<&str> = BENCHMARKS.iter().map(|(name, _)| *name).collect();
-        eprintln!("usage: cargo xtask bench {} ({} lines)", names.join("|"), corpus::lines(corpus::Dialect::Wesl));
+        eprintln!("usage: cargo xtask bench {}", names.join("|"));
         return ExitCode::from(2);
     };
     match run() {

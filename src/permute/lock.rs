@@ -125,11 +125,11 @@ impl Lock {
         let settings: BTreeMap<&str, &Setting> =
             space.axes().iter().enumerate().map(|(index, axis)| (axis.name.as_str(), space.value(index, point))).collect();
         let mut placed = 0;
-        let mut dense = 0;
+        let mut dense = 0u128;
         for (weight, digit) in self.digits(program) {
             let Some(setting) = settings.get(digit.axis.as_str()) else { continue };
             placed += usize::from(digit.values.contains(setting));
-            dense += digit.of(setting).checked_mul(weight?)?;
+            dense = digit.of(setting).checked_mul(weight?)?.checked_add(dense)?;
         }
         (placed == settings.len()).then_some(dense)
     }

@@ -2,9 +2,11 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod bench;
 mod ci;
 mod docs;
 mod external;
+mod fuzz;
 mod generate;
 mod machine;
 mod mutate;
@@ -53,6 +55,8 @@ const COMMANDS: &[Command] = &[
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
     ("validate", "run the external validators over a bundle", validate::run),
     ("docs", "write the catalogue and the modules made from data (--check: only compare)", docs::run),
+    ("bench", "compare with peers: compose, or eval", bench::run),
+    ("fuzz", "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...", fuzz::run),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];
 

@@ -1,0 +1,196 @@
+//! What hostile input goes into: each kind takes any bytes and answers with text, and must not
+//! panic, take long, or answer twice in different ways.
+//!
+//! `cargo xtask fuzz`, the tests of `tests/regressions/` and the targets of cargo-fuzz share this.
+
+use lamplight::bundle::{Bundle, Target};
+use lamplight::compose::{self, Keep, Language, Options};
+use lamplight::diagnostic::Diagnostics;
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::permute::{Manifest, Quoted, Setting, Settings, Space, cover, key, lock, manifest};
+use lamplight::project;
+use lamplight::resolve::{self, Packages};
+use lamplight::source::{Embedded, Memory, Package, SourceSet};
+use lamplight::validate::validate;
+
+/// A part of the crate that reads what others wrote.
+pub struct Kind {
+    /// Also the folder of its regressions.
+    pub name: &'static str,
+    /// Folders with valid inputs, and how the names of their files end.
+    pub corpus: &'static [(&'static str, &'static str)],
+    /// Words that mean something here.
+    pub words: &'static str,
+    /// The answer to an input.
+    pub run: fn(&[u8]) -> String,
+}
+
+/// Every kind.
+pub const KINDS: &[Kind] = &[
+    Kind {
+        name: "wesl",
+        corpus: &[("tests/compose_wesl", ".wesl"), ("tests/emit", ".wgsl"), ("shaderlib", ".wesl")],
+        words: WESL,
+        run: wesl,
+    },
+    Kind { name: "glsl", corpus: &[("tests/compose_glsl", ".glsl"), ("shaderlib", ".glsl")], words: GLSL, run: glsl },
+    Kind { name: "manifest", corpus: &[("tests/permute", ".toml"), ("shaderlib", "lamplight.toml")], words: MANIFEST, run: manifest },
+    Kind { name: "key", corpus: &[("tests/regressions/key", "")], words: KEY, run: key },
+    Kind { name: "lock", corpus: &[("tests/regressions/lock", "")], words: LOCK, run: lock },
+    Kind { name: "bundle", corpus: &[("tests/regressions/bundle", "")], words: "", run: bundle },
+];
+
+const WESL: &str = "@if( @elif( @else import package super self as :: { } ( ) [ ] < > ; , . = == != && || ! - -> \
+    const override var<private> let fn struct alias const_assert loop continuing switch case default for while if else \
+    return break discard enable requires diagnostic f16 f32 vec3<f32> array< ptr<function, _ @fragment @vertex @compute \
+    @workgroup_size( @location(0) @group(0) @binding(0) @builtin(position) @id(1) lamplight::math::safe::safe_normalize \
+    constants::max_lights // /* */ true false 0 1 1.0 0x1p-3 4294967296 1e999 \u{feff} \u{0} \u{1f4a1} é \r\n";
+const GLSL: &str = "#if #ifdef #ifndef #elif #else #endif #define #undef #include #pragma #version #extension #line #error \
+    defined ( ) [ ] { } < > ; , . = == != && || ! ## # \\\n \" ' // /* */ 450 330 300 es once void main float vec3 mat4 \
+    uniform layout(location=0) in out struct const if else for while do switch case return discard __LINE__ __VERSION__ \
+    GL_GOOGLE_include_directive <lamplight/math/safe.glsl> \"main.frag.glsl\" TWO_SIDED SHADOW SHADOW_NONE MAX_LIGHTS 0 1 \
+    1.0 0x80000000 99999999999999999999 -1 << >> / % ? : \u{feff} \u{0} é \r\n";
+const MANIFEST: &str = "[program.a] [program.a.axis.b] [[program.a.constraint]] wesl glsl targets axis values default mode \
+    require doc only exclude include = [ ] { } , . \" ' \"\"\" true false 0 1 -1 9223372036854775807 \"spec\" \"static\" \
+    \"dynamic\" \"*\" == != => && || ! ( ) in >= < none vertex fragment # \n \\u00e9 \\ \u{feff} \u{0}";
+const KEY: &str = "shadow=pcf_3x3 , = two_sided max_lights=4 lights=none none true false * ; ! é \u{0} 99999999999999999999 -0";
+const LOCK: &str = "forward shadow max_lights two_sided + # \n none hard true false 0 1 4 10 -1 99999999999999999999 é \u{0}";
+
+/// Several files in one input: lines `%% PATH` start all but the first, which is the root.
+fn files(root: &str, text: &str) -> Memory {
+    let mut files = Memory::default();
+    let mut path = root;
+    for line in text.split_inclusive('\n') {
+        match line.strip_prefix("%% ") {
+            Some(next) => path = next.trim(),
+            None => files.0.entry(path.to_owned()).or_default().push_str(line),
+        }
+    }
+    files.0.entry(root.to_owned()).or_default();
+    files
+}
+
+fn wesl(bytes: &[u8]) -> String {
+    composed(bytes, "main.wesl", Language::Wesl)
+}
+
+fn glsl(bytes: &[u8]) -> String {
+    composed(bytes, "main.frag.glsl", Language::Glsl)
+}
+
+fn composed(bytes: &[u8], root: &str, language: Language) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let own = Package { name: "package".to_owned(), files: Box::new(files(root, &text)) };
+    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let packages = Packages { root: own, dependencies: vec![library] };
+    let mut sources = SourceSet::default();
+    let graph = match resolve::load(&mut sources, &packages, root, language) {
+        Ok(graph) => graph,
+        Err(problems) => return told(&sources, &problems),
+    };
+    let settings = settings(&text);
+    let mut answer = String::new();
+    for keep in [Keep::EntryPoints, Keep::All] {
+        let options = Options { keep, ..Options::default() };
+        let composed = compose::compose(&graph, &settings, &options);
+        answer += &match composed.and_then(|composed| validate(&composed).map(|_| composed)) {
+            Ok(composed) => composed.text + &told(&sources, &composed.warnings),
+            Err(problems) => told(&sources, &problems),
+        };
+    }
+    answer
+}
+
+/// A value for every name that a condition may ask for, and the axes of the library.
+fn settings(text: &str) -> Settings {
+    let mut settings = forward().map(|space| space.settings(&space.default_assignment())).unwrap_or_default();
+    let word = |c: char| !(c.is_alphanumeric() || c == '_');
+    for condition in text.split("if(").skip(1).take(1000) {
+        for name in condition.split(')').next().unwrap_or_default().split(word).filter(|name| !name.is_empty()) {
+            settings.values.entry(name.to_owned()).or_insert(Setting::Bool(name.len() % 2 == 0));
+        }
+    }
+    settings
+}
+
+fn manifest(bytes: &[u8]) -> String {
+    let mut sources = SourceSet::default();
+    let id = sources.add("lamplight.toml", String::from_utf8_lossy(bytes).into_owned());
+    match manifest::parse(&sources, id) {
+        Err(problems) => told(&sources, &problems),
+        Ok(Manifest { programs, warnings }) => {
+            let spaces = programs.iter().map(|program| format!("{}: {}\n", program.name, space(&program.space)));
+            spaces.collect::<String>() + &told(&sources, &warnings)
+        }
+    }
+}
+
+fn space(space: &Space) -> String {
+    let counts = format!("{} {} {}", space.full_count(), space.valid_count(), space.count());
+    if space.count() > 2_000 {
+        return counts;
+    }
+    let points = space.enumerate();
+    let keys: Vec<String> = points.iter().map(|point| space.key(point).to_string()).collect();
+    format!("{counts} {} {}", keys.join(";"), cover::pairwise(space).points.len())
+}
+
+fn forward() -> Option<Space> {
+    let (_, manifest) = project::library_manifest().ok()?;
+    Some(manifest.programs.into_iter().find(|program| program.name == "forward")?.space)
+}
+
+fn key(bytes: &[u8]) -> String {
+    let Some(space) = forward() else { return String::new() };
+    let mut sources = SourceSet::default();
+    let id = sources.add("key", String::from_utf8_lossy(bytes).into_owned());
+    let text = match key::parse(&space, &Quoted::whole(&sources, id)) {
+        Ok(point) => space.key(&point).to_string(),
+        Err(problems) => told(&sources, &problems),
+    };
+    let axes: Vec<lamplight::bundle::Axis> = space.axes().iter().map(shipped).collect();
+    format!("{text}\n{:?}", lamplight::bundle::canonical(&axes, &sources.get(id).text))
+}
+
+fn shipped(axis: &lamplight::permute::Axis) -> lamplight::bundle::Axis {
+    let values = axis.value_names();
+    let default = values.get(axis.default).cloned().unwrap_or_default();
+    lamplight::bundle::Axis { name: axis.name.clone(), values, default, mode: axis.mode.name().to_owned() }
+}
+
+fn lock(bytes: &[u8]) -> String {
+    let Some(space) = forward() else { return String::new() };
+    let mut sources = SourceSet::default();
+    let id = sources.add("lock", String::from_utf8_lossy(bytes).into_owned());
+    let lock = match lock::parse(&sources, id) {
+        Ok(lock) => lock.extended("forward", &space),
+        Err(problems) => return told(&sources, &problems),
+    };
+    let dense = lock.dense("forward", &space, &space.default_assignment());
+    let points: Vec<_> = [0, 1, 7, u128::MAX].into_iter().chain(dense).map(|dense| lock.point("forward", &space, dense)).collect();
+    format!("{lock}{dense:?} {points:?}")
+}
+
+fn bundle(bytes: &[u8]) -> String {
+    let bundle = match Bundle::from_bytes(bytes.to_vec()) {
+        Ok(bundle) => bundle,
+        Err(error) => return error.to_string(),
+    };
+    let mut answer = format!("{:?}\n", bundle.verify());
+    for name in bundle.programs() {
+        let Ok(program) = bundle.program(name) else { continue };
+        for (language, entry) in program.entries() {
+            let Ok(shader) = program.entry(language, entry) else { continue };
+            for key in shader.keys().unwrap_or_default().iter().take(20).map(String::as_str).chain(["no=such", ""]) {
+                let bytes = shader.get(key, Target::SPIRV).map(|found| found.bytes.len());
+                answer += &format!("{name} {entry} {key} {bytes:?} {:?}\n", shader.targets(key));
+            }
+        }
+    }
+    answer + &format!("{:?}", bundle.contents().map(|contents| contents.programs.len()))
+}
+
+/// In every form, since each walks the spans in its own way.
+fn told(sources: &SourceSet, problems: &Diagnostics) -> String {
+    [Form::Human, Form::Short, Form::Json].map(|form| render(sources, problems, form)).concat()
+}

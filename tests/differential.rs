@@ -1,0 +1,98 @@
+//! The composer beside the `wesl` crate: the same meaning from the same modules.
+//!
+//! Texts differ in names, order and comments, so both are parsed by naga and compared in a
+//! canonical form. What the two are known to disagree about is listed in [`ACCEPTED`].
+
+mod library;
+mod normal;
+mod peer;
+mod tree;
+
+use lamplight::compose::Mangle;
+use libtest_mimic::{Failed, Trial};
+
+use normal::normal;
+use peer::{Files, Flags, Peer};
+
+/// Generated trees, in trials that run beside each other.
+const TREES: u64 = 240;
+const TRIALS: u64 = 8;
+
+/// Words of one side's error, and why the other side's success is right.
+const ACCEPTED: &[(&str, &str)] = &[(
+    "only lamplight refuses: error[name-conflict]",
+    "an override keeps its name, since an engine sets it by that; wesl renames it, as it does all that is imported",
+)];
+
+/// How much was really compared.
+#[derive(Default)]
+struct Tally {
+    all: usize,
+    composed: usize,
+}
+
+pub fn trials() -> Vec<Trial> {
+    let part = |part: u64| Trial::test(format!("differential::trees_{part}"), move || trees((part..TREES).step_by(TRIALS as usize)));
+    (0..TRIALS).map(part).chain(library::trials()).collect()
+}
+
+fn trees(seeds: impl Iterator<Item = u64>) -> Result<(), Failed> {
+    let (mut failures, mut tally) = (Vec::new(), Tally::default());
+    for seed in seeds {
+        let tree = tree::tree(seed);
+        let mut peer = Peer::new(&tree.files);
+        for flags in &tree.flags {
+            for mangle in [Mangle::Collisions, Mangle::Underscore] {
+                if let Some(difference) = difference(&tree.files, tree.root, flags, mangle, &mut peer, &mut tally) {
+                    failures.push(format!("tree {seed}, {mangle:?}, {}\n{difference}\n{}", shown(flags), texts(&tree.files)));
+                }
+            }
+        }
+    }
+    match failures.first() {
+        // Trees that both refuse compare nothing.
+        None if tally.composed * 10 < tally.all * 9 => Err(format!("only {} of {} compose", tally.composed, tally.all).into()),
+        None => Ok(()),
+        Some(first) => Err(format!("{} differences; the first: {first}", failures.len()).into()),
+    }
+}
+
+fn difference(files: &Files, root: &str, flags: &Flags, mangle: Mangle, peer: &mut Peer, tally: &mut Tally) -> Option<String> {
+    let ours = peer::lamplight(files, root, flags, mangle);
+    let theirs = peer.compose(root, flags);
+    tally.all += 1;
+    tally.composed += usize::from(ours.is_ok() && theirs.is_ok());
+    match (ours, theirs) {
+        (Ok(ours), Ok(theirs)) => compare(&ours, &theirs),
+        (Err(_), Err(_)) => None,
+        (Err(error), Ok(_)) => unless_accepted(format!("only lamplight refuses: {error}")),
+        (Ok(_), Err(error)) => unless_accepted(format!("only wesl refuses: {error}")),
+    }
+}
+
+fn compare(ours: &str, theirs: &str) -> Option<String> {
+    let (our_meaning, their_meaning) = (normal(ours), normal(theirs));
+    if our_meaning == their_meaning && our_meaning.is_ok() {
+        return None;
+    }
+    let meaning = |meaning: Result<String, String>| meaning.unwrap_or_else(|error| error);
+    let words = format!(
+        "--- lamplight\n{ours}\n--- wesl\n{theirs}\n--- meaning, lamplight\n{}\n--- meaning, wesl\n{}",
+        meaning(our_meaning),
+        meaning(their_meaning)
+    );
+    unless_accepted(words)
+}
+
+fn unless_accepted(difference: String) -> Option<String> {
+    let accepted = ACCEPTED.iter().any(|(words, _)| difference.contains(words));
+    (!accepted).then_some(difference)
+}
+
+fn shown(flags: &Flags) -> String {
+    flags.iter().filter(|(_, on)| **on).map(|(name, _)| format!("{name} ")).collect()
+}
+
+fn texts(files: &Files) -> String {
+    files.iter().map(|((package, path), text)| format!("=== {package}/{path}\n{text}\n")).collect()
+}

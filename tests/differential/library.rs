@@ -1,0 +1,140 @@
+//! The shader library through the `wesl` crate: whoever uses that composer can use the library.
+//!
+//! Our conditions over enum axes are an addition to WESL: the crate gets them as one boolean a
+//! value, `shadow == vsm` as `shadow_is_vsm`.
+
+use lamplight::compose::Mangle;
+use lamplight::permute::{Assignment, Program, Setting, Settings, cover};
+use lamplight::project;
+use lamplight::source::{Embedded, Files as _};
+use libtest_mimic::{Failed, Trial};
+
+use super::normal::{normal, normal_functions};
+use super::peer::{Files, Flags, Peer, lamplight_with};
+
+/// Permutations of one program: evenly spread over those that cover all pairs of values.
+const POINTS: usize = 48;
+
+pub fn trials() -> Vec<Trial> {
+    let modules = Embedded.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
+    let modules = modules.map(|path| Trial::test(format!("differential::library::{path}"), move || module(&path)));
+    let programs = project::library_manifest().map(|(_, manifest)| manifest.programs).unwrap_or_default();
+    let programs =
+        programs.into_iter().map(|found| Trial::test(format!("differential::programs::{}", found.name), move || program(&found)));
+    modules.chain(programs).collect()
+}
+
+fn text(path: &str) -> String {
+    Embedded.read(path).ok().flatten().unwrap_or_default()
+}
+
+/// The whole library as a package.
+fn package(name: &str) -> Files {
+    Embedded.list(&["wesl"]).into_iter().map(|path| ((name.to_owned(), path.clone()), text(&path))).collect()
+}
+
+/// A module as the root: all of its functions must mean the same.
+fn module(path: &str) -> Result<(), Failed> {
+    let files = package("");
+    let functions: Vec<String> =
+        text(path).lines().filter_map(|line| Some(line.strip_prefix("fn ")?.split_once('(')?.0.to_owned())).collect();
+    let ours = lamplight_with(&files, path, &Settings::default(), Mangle::Collisions)?;
+    let theirs = Peer::keeping_root(&files).compose(path, &Flags::new())?;
+    let (our_meaning, their_meaning) = (normal_functions(&ours, &functions)?, normal_functions(&theirs, &functions)?);
+    if our_meaning == their_meaning { Ok(()) } else { Err(format!("--- lamplight\n{our_meaning}\n--- wesl\n{their_meaning}").into()) }
+}
+
+/// A program as a user has it: a file of their own that imports from the package `lamplight`.
+fn program(program: &Program) -> Result<(), Failed> {
+    let Some(file) = &program.wesl else { return Ok(()) };
+    let own = text(&file.path).replace("package::", "lamplight::");
+    let mut files = package("lamplight");
+    let root = ("".to_owned(), "main.wesl".to_owned());
+    files.insert(root.clone(), own.clone());
+    let mut translated = files.clone();
+    translated.insert(root, booleans(&own));
+    let points = cover::pairwise(&program.space).points;
+    for point in points.iter().step_by(points.len().div_ceil(POINTS)) {
+        let settings = program.space.settings(point);
+        translated.insert(("constants".to_owned(), String::new()), constants(&settings));
+        let ours = lamplight_with(&files, "main.wesl", &settings, Mangle::Collisions)?;
+        let theirs = Peer::new(&translated).compose("main.wesl", &flags(program, point))?;
+        let (our_meaning, their_meaning) = (normal(&ours)?, normal(&theirs)?);
+        if our_meaning != their_meaning {
+            return Err(format!("{}\n--- lamplight\n{our_meaning}\n--- wesl\n{their_meaning}", program.space.key(point)).into());
+        }
+    }
+    Ok(())
+}
+
+/// Each comparison within a condition as a flag.
+fn booleans(text: &str) -> String {
+    let mut output = String::new();
+    for (index, part) in text.split("if(").enumerate() {
+        if index == 0 {
+            output += part;
+            continue;
+        }
+        let end = end_of_condition(part);
+        output += "if(";
+        // Not in the runtime's `if (`, which has a blank.
+        output += &comparisons(&part[..end]);
+        output += &part[end..];
+    }
+    output
+}
+
+fn end_of_condition(text: &str) -> usize {
+    let mut depth = 1;
+    for (at, byte) in text.bytes().enumerate() {
+        depth += i32::from(byte == b'(') - i32::from(byte == b')');
+        if depth == 0 {
+            return at;
+        }
+    }
+    text.len()
+}
+
+fn comparisons(condition: &str) -> String {
+    let words: Vec<&str> = condition.split(' ').collect();
+    let mut output: Vec<String> = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        match words.get(at + 1) {
+            Some(operator) if ["==", "!="].contains(operator) => {
+                let name = words[at].trim_start_matches(['(', '!']);
+                let before = &words[at][..words[at].len() - name.len()];
+                let value = words[at + 2].trim_end_matches(')');
+                let not = if *operator == "!=" { "!" } else { "" };
+                output.push(format!("{before}{not}{}{}", flag(name, value), &words[at + 2][value.len()..]));
+                at += 3;
+            }
+            _ => {
+                output.push(words[at].to_owned());
+                at += 1;
+            }
+        }
+    }
+    output.join(" ")
+}
+
+fn flag(axis: &str, value: &str) -> String {
+    format!("{axis}_is_{value}")
+}
+
+fn flags(program: &Program, point: &Assignment) -> Flags {
+    let mut flags = Flags::new();
+    for (index, axis) in program.space.axes().iter().enumerate() {
+        let chosen = program.space.value(index, point);
+        match chosen {
+            Setting::Bool(on) => drop(flags.insert(axis.name.clone(), *on)),
+            _ => flags.extend(axis.values.iter().map(|value| (flag(&axis.name, &value.to_string()), value == chosen))),
+        }
+    }
+    flags
+}
+
+fn constants(settings: &Settings) -> String {
+    let numbers = settings.values.iter().filter(|(_, value)| matches!(value, Setting::Int(_)));
+    numbers.map(|(name, value)| format!("const {name} = {value};\n")).collect()
+}

@@ -1,0 +1,555 @@
+//! Generated module trees: packages, every form of import, conditions wherever WESL has them,
+//! colliding and shadowed names. A seed always gives the same tree.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+use super::peer::{Files, Flags};
+
+/// A tree that both composers should read alike.
+pub struct Tree {
+    pub files: Files,
+    /// Path of the root module.
+    pub root: &'static str,
+    /// Permutations to compose.
+    pub flags: Vec<Flags>,
+}
+
+const FLAGS: [&str; 5] = ["cold", "dim", "even", "fast", "grey"];
+const NAMES: [&str; 14] =
+    ["alpha", "beta", "gamma", "delta", "scale", "bias", "gain", "blend", "Shape", "Tap", "Real", "seed", "tone", "warp"];
+const MODULES: [(&str, &str); 10] = [
+    ("", "a.wesl"),
+    ("", "a/b.wesl"),
+    ("", "a/b/c.wesl"),
+    ("", "a/d.wesl"),
+    ("", "e.wgsl"),
+    ("", "f/g/h.wesl"),
+    ("left", "a.wesl"),
+    ("left", "f/g.wesl"),
+    ("left", "f/h.wesl"),
+    ("right", "a/b.wesl"),
+];
+const ROOT: &str = "main.wesl";
+
+/// The tree of a seed.
+pub fn tree(seed: u64) -> Tree {
+    let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d);
+    let modules = 1 + random.below(MODULES.len());
+    let items = items(&mut random, modules);
+    let mut bodies: Vec<Vec<String>> = vec![Vec::new(); modules + 1];
+    let mut imports: Vec<Imports> = (0..=modules).map(|module| Imports::new(module, &items)).collect();
+    for index in 0..items.len() {
+        let mut writer =
+            Writer { random: &mut random, items: &items[..index], imports: &mut imports[items[index].module], hidden: Vec::new() };
+        let text = writer.item(&items[index]);
+        bodies[items[index].module].push(text);
+    }
+    let entries = 1 + random.below(3);
+    for entry in 0..entries {
+        let mut writer = Writer { random: &mut random, items: &items, imports: &mut imports[0], hidden: Vec::new() };
+        let text = writer.entry(entry);
+        bodies[0].push(text);
+    }
+    let mut files = Files::new();
+    for (module, (mut body, imports)) in bodies.into_iter().zip(&imports).enumerate() {
+        random.shuffle(&mut body);
+        files.insert(file(module), imports.text(&mut random) + &body.join("\n"));
+    }
+    let flags = (0..3).map(|_| FLAGS.iter().map(|flag| ((*flag).to_owned(), random.chance(50))).collect()).collect();
+    Tree { files, root: ROOT, flags }
+}
+
+/// Number 0 is the root.
+fn file(module: usize) -> (String, String) {
+    let (package, path) = if module == 0 { ("", ROOT) } else { MODULES[module - 1] };
+    (package.to_owned(), path.to_owned())
+}
+
+fn segments(module: usize) -> Vec<String> {
+    let (_, path) = file(module);
+    path.trim_end_matches(".wesl").trim_end_matches(".wgsl").split('/').map(str::to_owned).collect()
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// `const NAME: f32`.
+    Real,
+    /// `const NAME = 4`.
+    Count,
+    /// A function of that many numbers, perhaps with a structure after them.
+    Function { arity: usize, shape: Option<usize> },
+    /// Has a member `b: f32`.
+    Structure,
+    /// Stands for `f32`.
+    Alias,
+    /// `var<private> NAME: f32`.
+    Private,
+    /// `override NAME: f32`.
+    Override,
+}
+
+struct Item {
+    module: usize,
+    name: &'static str,
+    kind: Kind,
+    /// The item exists, and may be used, only where this holds.
+    guard: Option<String>,
+    id: usize,
+}
+
+/// Each may use those before it, whatever module they are in: modules import each other in circles.
+fn items(random: &mut Random, modules: usize) -> Vec<Item> {
+    let mut taken: BTreeSet<(usize, &str)> = BTreeSet::new();
+    let mut items: Vec<Item> = Vec::new();
+    for id in 0..6 + random.below(22) {
+        let (module, name) = (random.below(modules + 1), NAMES[random.below(NAMES.len())]);
+        if !taken.insert((module, name)) {
+            continue;
+        }
+        let visible = |item: &Item| item.kind == Kind::Structure && item.guard.is_none() && reaches(module, item.module);
+        let shape = items.iter().position(visible).filter(|_| random.chance(30));
+        let kind = match random.below(14) {
+            0 | 1 => Kind::Real,
+            2 => Kind::Count,
+            3 | 4 => Kind::Structure,
+            5 => Kind::Alias,
+            6 => Kind::Private,
+            7 => Kind::Override,
+            _ => Kind::Function { arity: random.below(3), shape },
+        };
+        let guard = random.chance(20).then(|| random.condition());
+        items.push(Item { module, name, kind, guard, id });
+    }
+    items
+}
+
+/// The root's package may import the others; they import themselves.
+fn reaches(from: usize, to: usize) -> bool {
+    let (from, to) = (file(from).0, file(to).0);
+    from == to || from.is_empty()
+}
+
+/// What a module imports: local names, and the statements that bring them in.
+struct Imports {
+    module: usize,
+    locals: BTreeSet<String>,
+    spelling: BTreeMap<usize, String>,
+    statements: Vec<(Vec<String>, String)>,
+    plain: Vec<String>,
+}
+
+impl Imports {
+    fn new(module: usize, items: &[Item]) -> Self {
+        let own = items.iter().filter(|item| item.module == module).map(|item| item.name.to_owned());
+        Self { module, locals: own.collect(), spelling: BTreeMap::new(), statements: Vec::new(), plain: Vec::new() }
+    }
+
+    /// How this module calls an item.
+    fn reference(&mut self, item: &Item, hidden: &[String], random: &mut Random) -> String {
+        if item.module == self.module {
+            return item.name.to_owned();
+        }
+        if let Some(known) = self.spelling.get(&item.id).filter(|known| random.chance(80) && !hidden.contains(known)) {
+            return known.clone();
+        }
+        let path = path(self.module, item.module, random);
+        let inline = format!("{}::{}", path.join("::"), item.name);
+        let free = |name: &str, imports: &Self| !imports.locals.contains(name) && !hidden.iter().any(|other| other == name);
+        match random.below(5) {
+            0 => inline,
+            1 if free(path.last().unwrap(), self) && path.len() > 1 && !path.last().is_some_and(|last| last == "super") => {
+                // The module by name, the item by a path from it.
+                let last = path.last().unwrap().clone();
+                self.locals.insert(last.clone());
+                self.statements.push((path, String::new()));
+                let found = format!("{last}::{}", item.name);
+                self.spelling.insert(item.id, found.clone());
+                found
+            }
+            2 | 3 if free(item.name, self) => self.named(item, path, item.name.to_owned()),
+            _ => {
+                let alias = format!("{}_{}", item.name, ["here", "there", "now"][random.below(3)]);
+                if free(&alias, self) { self.named(item, path, alias) } else { inline }
+            }
+        }
+    }
+
+    fn named(&mut self, item: &Item, path: Vec<String>, local: String) -> String {
+        self.locals.insert(local.clone());
+        let renamed = if local == item.name { local.clone() } else { format!("{} as {local}", item.name) };
+        let guard = item.guard.clone().filter(|_| item.id % 2 == 0);
+        match guard {
+            Some(guard) => self.plain.push(format!("@if({guard}) import {}::{renamed};\n", path.join("::"))),
+            None => self.statements.push((path, renamed)),
+        }
+        self.spelling.insert(item.id, local.clone());
+        local
+    }
+
+    /// Statements one by one, or grouped in braces by their first segment.
+    fn text(&self, random: &mut Random) -> String {
+        let mut groups: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        let mut text = self.plain.concat();
+        for (path, item) in &self.statements {
+            let below = |from: usize| {
+                path[from..].iter().map(String::as_str).chain((!item.is_empty()).then_some(item.as_str())).collect::<Vec<_>>().join("::")
+            };
+            if random.chance(50) && path[0] != "super" && !below(1).is_empty() {
+                groups.entry(&path[0]).or_default().push(below(1));
+            } else {
+                let _ = writeln!(text, "import {};", below(0));
+            }
+        }
+        for (first, rest) in groups {
+            let nested: Vec<String> = rest.into_iter().map(|path| if random.chance(30) { nest(&path) } else { path }).collect();
+            let _ = writeln!(text, "import {first}::{{ {}, }};", nested.join(", "));
+        }
+        text
+    }
+}
+
+/// `a::b as c` as `a::{b as c}`.
+fn nest(path: &str) -> String {
+    path.split_once("::").map_or(path.to_owned(), |(first, rest)| format!("{first}::{{{rest}}}"))
+}
+
+/// One of the ways to name a module from another.
+fn path(from: usize, to: usize, random: &mut Random) -> Vec<String> {
+    let (start, end) = (segments(from), segments(to));
+    let (own, other) = (file(from).0, file(to).0);
+    if own != other {
+        return [vec![other], end].concat();
+    }
+    let shared = start.iter().zip(&end).take_while(|(a, b)| a == b).count();
+    // `super` is the folder's own module: climb until what remains is below it.
+    let common = shared.min(start.len() - 1).min(end.len() - 1);
+    if random.chance(40) {
+        let climbs = vec!["super".to_owned(); start.len() - common];
+        return [climbs, end[common..].to_vec()].concat();
+    }
+    [vec!["package".to_owned()], end].concat()
+}
+
+struct Writer<'a> {
+    random: &'a mut Random,
+    /// Those that may be used.
+    items: &'a [Item],
+    imports: &'a mut Imports,
+    /// Names that mean something local here.
+    hidden: Vec<String>,
+}
+
+impl Writer<'_> {
+    fn item(&mut self, item: &Item) -> String {
+        let (name, guard) = (item.name, item.guard.as_ref().map_or(String::new(), |guard| format!("@if({guard}) ")));
+        let comment = if self.random.chance(30) { format!("// About {name}.\n") } else { String::new() };
+        let text = match item.kind {
+            Kind::Real => self.either(&guard, |writer| format!("const {name}: f32 = {};", writer.constant())),
+            Kind::Count => format!("{guard}const {name} = {};", 1 + self.random.below(4)),
+            Kind::Alias => format!("{guard}alias {name} = {};", self.real()),
+            Kind::Private => self.either(&guard, |writer| format!("var<private> {name}: {} = {};", writer.real(), writer.constant())),
+            Kind::Override => format!("{guard}@id({}) override {name}: f32 = {};", item.id, self.random.number()),
+            Kind::Structure => format!("{guard}{}", self.structure(name)),
+            Kind::Function { arity, shape } => self.either(&guard, |writer| writer.function(name, arity, shape)),
+        };
+        let assertion = match item.kind {
+            Kind::Real | Kind::Count if item.guard.is_none() && self.random.chance(20) => format!("\nconst_assert {name} < 1000000;"),
+            _ => String::new(),
+        };
+        format!("{comment}{text}{assertion}\n")
+    }
+
+    /// One declaration, or two or three of which a condition chooses one.
+    fn either(&mut self, guard: &str, mut write: impl FnMut(&mut Self) -> String) -> String {
+        if !guard.is_empty() || self.random.chance(70) {
+            return format!("{guard}{}", write(self));
+        }
+        let mut text = format!("@if({}) {}\n", self.random.condition(), write(self));
+        if self.random.chance(40) {
+            let _ = writeln!(text, "@elif({}) {}", self.random.condition(), write(self));
+        }
+        text + "@else " + &write(self)
+    }
+
+    fn structure(&mut self, name: &str) -> String {
+        let mut text = format!("struct {name} {{\n");
+        if self.random.chance(40) {
+            let _ = writeln!(text, "    @if({}) a: {},", self.random.condition(), self.real());
+            let _ = writeln!(text, "    @else a: vec2<{}>,", self.real());
+        }
+        let _ = writeln!(text, "    b: {},", self.real());
+        if self.random.chance(40) {
+            let _ = writeln!(text, "    @if({}) c: array<vec4<f32>, {}>,", self.random.condition(), self.count());
+        }
+        if self.random.chance(30)
+            && let Some(inner) = self.find(|kind| kind == Kind::Structure)
+        {
+            let _ = writeln!(text, "    @if({}) inner: {inner},", self.random.condition());
+        }
+        text + "}"
+    }
+
+    fn function(&mut self, name: &str, arity: usize, shape: Option<usize>) -> String {
+        let names: Vec<&str> = ["x", "y", NAMES[self.random.below(NAMES.len())]].into_iter().take(arity).collect();
+        // Types are resolved outside, where parameters do not hide anything.
+        let mut parameters: Vec<String> = names.iter().map(|name| format!("{name}: {}", self.real())).collect();
+        if let Some(shape) = shape {
+            let item = &self.items[shape];
+            parameters.push(format!("shape: {}", self.imports.reference(item, &self.hidden, self.random)));
+        }
+        if self.random.chance(15) {
+            parameters.iter_mut().for_each(|parameter| *parameter = format!("@if(true) {parameter}"));
+        }
+        let returned = self.real();
+        self.hidden =
+            names.iter().map(|name| (*name).to_owned()).chain(shape.map(|_| "shape".to_owned())).chain(["acc".to_owned()]).collect();
+        let start = names.first().map_or("0.5".to_owned(), |name| format!("{name} * 0.5"));
+        let body = self.block(2, 2);
+        self.hidden.clear();
+        let used = if shape.is_some() { "    acc += shape.b;\n" } else { "" };
+        let must_use = if self.random.chance(10) { "@must_use " } else { "" };
+        let end = self.end();
+        format!("{must_use}fn {name}({}) -> {returned} {{\n    var acc: f32 = {start};\n{used}{body}{end}}}", parameters.join(", "))
+    }
+
+    fn end(&mut self) -> String {
+        match self.random.below(4) {
+            0 => format!("    @if({}) return acc * 2.0;\n    @else return acc;\n", self.random.condition()),
+            1 => format!("    @if({}) {{ return acc; }} @else {{ return -acc; }}\n", self.random.condition()),
+            _ => "    return acc;\n".to_owned(),
+        }
+    }
+
+    fn entry(&mut self, number: usize) -> String {
+        self.hidden = vec!["acc".to_owned(), "place".to_owned()];
+        let body = self.block(5, 2);
+        self.hidden.clear();
+        match self.random.below(3) {
+            0 => format!(
+                "@compute @workgroup_size({})\nfn work_{number}() {{\n    var acc: f32 = 1.0;\n{body}    results_{number} = acc;\n}}\nvar<workgroup> results_{number}: f32;\n",
+                self.count()
+            ),
+            1 => format!(
+                "@vertex\nfn stand_{number}(@location(0) place: {}) -> @builtin(position) vec4<f32> {{\n    var acc: f32 = place;\n{body}    return vec4<f32>(acc);\n}}\n",
+                self.real()
+            ),
+            _ => format!(
+                "@group(0) @binding({number}) var<uniform> given_{number}: vec4<{}>;\n@fragment\nfn shade_{number}(@if({}) @builtin(front_facing) front: bool, @location(0) place: f32) -> @location(0) vec4<f32> {{\n    var acc: f32 = place * given_{number}.x;\n{body}    return vec4<f32>(acc);\n}}\n",
+                self.real(),
+                self.random.condition()
+            ),
+        }
+    }
+
+    fn block(&mut self, statements: usize, depth: usize) -> String {
+        (0..1 + self.random.below(statements)).map(|_| self.statement(depth)).collect()
+    }
+
+    fn statement(&mut self, depth: usize) -> String {
+        let condition = self.random.condition();
+        let deeper = depth.saturating_sub(1);
+        match self.random.below(if depth == 0 { 8 } else { 16 }) {
+            0..=2 => self.guarded(),
+            3 => format!("    @if({condition}) acc = {};\n    @else acc -= {};\n", self.expression(1), self.expression(1)),
+            4 => format!(
+                "    @if({condition}) acc *= 2.0;\n    @elif({}) {{ acc += {}; }}\n    @else {{ acc -= 1.0; }}\n",
+                self.random.condition(),
+                self.expression(1)
+            ),
+            5 => format!("    {{ let q = &acc; *q += {}; }}\n", self.expression(1)),
+            6 => self.shadow(&condition),
+            7 => format!(
+                "    {{ var taps = array<{}, {}>(); acc += taps[0]; _ = taps[0] + {}; }}\n",
+                self.real(),
+                self.count(),
+                self.expression(0)
+            ),
+            8 => self.structured(),
+            9 => format!("    @if({condition}) {{\n{}    }}\n", self.block(2, deeper)),
+            10 => format!(
+                "    if (acc > {}) {{\n{}    }} else {{\n{}    }}\n",
+                self.expression(0),
+                self.block(2, deeper),
+                self.block(1, deeper)
+            ),
+            11 => format!("    for (var i = 0; i < {}; i++) {{\n{}    }}\n", self.count(), self.block(2, deeper)),
+            12 => format!(
+                "    switch i32(acc) {{\n        case 0 {{\n{}        }}\n        @if({condition}) case {}, 9 {{\n{}        }}\n        default {{ }}\n    }}\n",
+                self.block(1, deeper),
+                5 + self.random.below(3),
+                self.block(1, deeper)
+            ),
+            13 => format!(
+                "    loop {{\n{}        if (acc > 4.0) {{ break; }}\n        continuing {{ acc += 1.0; @if({condition}) acc += 0.5; }}\n    }}\n",
+                self.block(1, deeper)
+            ),
+            14 => format!(
+                "    while (acc < {}) {{\n        @if({condition}) {{ break; }}\n        acc += 1.0;\n{}    }}\n",
+                self.expression(0),
+                self.block(1, deeper)
+            ),
+            _ => format!("    @if({condition}) const_assert {} > 0;\n", self.count()),
+        }
+    }
+
+    /// Adds a value; one that only exists under a condition under the same condition.
+    fn guarded(&mut self) -> String {
+        let guarded: Vec<usize> =
+            (0..self.items.len()).filter(|index| self.items[*index].guard.is_some() && self.usable(&self.items[*index])).collect();
+        if guarded.is_empty() || self.random.chance(60) {
+            return format!("    acc += {};\n", self.expression(2));
+        }
+        let item = &self.items[guarded[self.random.below(guarded.len())]];
+        let condition = item.guard.clone().unwrap();
+        match self.value(item, 0) {
+            Some(value) => format!("    @if({condition}) acc += {value};\n"),
+            None => String::new(),
+        }
+    }
+
+    /// A local declaration with the name of something else, perhaps only in some permutations.
+    fn shadow(&mut self, condition: &str) -> String {
+        let constants = self.items.iter().filter(|item| item.kind == Kind::Real && item.guard.is_none());
+        let reals: Vec<&Item> = constants.filter(|item| reaches(self.imports.module, item.module)).collect();
+        if reals.is_empty() || self.random.chance(40) {
+            let name = NAMES[self.random.below(NAMES.len())];
+            return format!("    {{ let {name} = acc * 0.25; acc += {name}; }}\n");
+        }
+        let item = reals[self.random.below(reals.len())];
+        let name = self.imports.reference(item, &self.hidden, self.random);
+        if name.contains("::") || self.hidden.contains(&name) {
+            return format!("    {{ let {} = {name}; acc += {}; }}\n", item.name, item.name);
+        }
+        match self.random.below(3) {
+            0 => format!("    {{ @if({condition}) let {name} = 2.0; acc += {name}; }}\n"),
+            1 => format!("    {{ let {name} = {name} * 3.0; acc += {name}; }}\n"),
+            _ => format!("    for (var {name} = 0; {name} < 2; {name}++) {{ acc += f32({name}); }}\n    acc += {name};\n"),
+        }
+    }
+
+    /// A structure, perhaps given to a function.
+    fn structured(&mut self) -> String {
+        let takes = |item: &&Item| item.guard.is_none() && matches!(item.kind, Kind::Function { shape: Some(_), .. });
+        let calls: Vec<&Item> = self.items.iter().filter(takes).filter(|item| self.usable(item)).collect();
+        if calls.is_empty() || self.random.chance(40) {
+            let Some(structure) = self.find(|kind| kind == Kind::Structure) else { return String::new() };
+            return format!("    {{ var held: {structure}; held.b = {}; acc += held.b; }}\n", self.expression(1));
+        }
+        let item = calls[self.random.below(calls.len())];
+        let Kind::Function { arity, shape: Some(shape) } = item.kind else { return String::new() };
+        let structure = &self.items[shape];
+        if !self.usable(structure) {
+            return String::new();
+        }
+        let structure = self.imports.reference(structure, &self.hidden, self.random);
+        let function = self.imports.reference(item, &self.hidden, self.random);
+        let arguments: String = (0..arity).map(|_| self.expression(0) + ", ").collect();
+        format!("    {{ var held: {structure}; held.b = {}; acc += {function}({arguments}held); }}\n", self.expression(1))
+    }
+
+    fn expression(&mut self, depth: usize) -> String {
+        if depth == 0 || self.random.chance(30) {
+            return if self.random.chance(50) { self.random.number() } else { "acc".to_owned() };
+        }
+        let candidates: Vec<usize> =
+            (0..self.items.len()).filter(|index| self.items[*index].guard.is_none() && self.usable(&self.items[*index])).collect();
+        if candidates.is_empty() {
+            return format!("({} * {})", self.expression(depth - 1), self.random.number());
+        }
+        let item = &self.items[candidates[self.random.below(candidates.len())]];
+        let value = self.value(item, depth - 1).unwrap_or_else(|| "acc".to_owned());
+        if self.random.chance(50) { value } else { format!("({value} + {})", self.expression(depth - 1)) }
+    }
+
+    /// An item as a number, if it is one.
+    fn value(&mut self, item: &Item, depth: usize) -> Option<String> {
+        let arguments = |writer: &mut Self, count: usize| (0..count).map(|_| writer.expression(depth)).collect::<Vec<_>>().join(", ");
+        match item.kind {
+            Kind::Function { shape: Some(_), .. } | Kind::Structure => None,
+            Kind::Function { arity, shape: None } => {
+                let arguments = arguments(self, arity);
+                Some(format!("{}({arguments})", self.imports.reference(item, &self.hidden, self.random)))
+            }
+            Kind::Alias => Some(format!("{}({})", self.imports.reference(item, &self.hidden, self.random), arguments(self, 1))),
+            Kind::Count => Some(format!("f32({})", self.imports.reference(item, &self.hidden, self.random))),
+            Kind::Real | Kind::Private | Kind::Override => Some(self.imports.reference(item, &self.hidden, self.random)),
+        }
+    }
+
+    fn usable(&self, item: &Item) -> bool {
+        let hidden = item.module == self.imports.module && self.hidden.iter().any(|name| name == item.name);
+        reaches(self.imports.module, item.module) && !hidden
+    }
+
+    fn find(&mut self, is: impl Fn(Kind) -> bool) -> Option<String> {
+        let found: Vec<&Item> = self.items.iter().filter(|item| is(item.kind) && item.guard.is_none() && self.usable(item)).collect();
+        if found.is_empty() {
+            return None;
+        }
+        let item = found[self.random.below(found.len())];
+        Some(self.imports.reference(item, &self.hidden, self.random))
+    }
+
+    /// A type that is `f32`.
+    fn real(&mut self) -> String {
+        let alias = if self.random.chance(40) { self.find(|kind| kind == Kind::Alias) } else { None };
+        alias.unwrap_or_else(|| "f32".to_owned())
+    }
+
+    /// A positive constant integer.
+    fn count(&mut self) -> String {
+        let named = if self.random.chance(50) { self.find(|kind| kind == Kind::Count) } else { None };
+        named.unwrap_or_else(|| (1 + self.random.below(3)).to_string())
+    }
+
+    /// A constant number.
+    fn constant(&mut self) -> String {
+        let named = if self.random.chance(50) { self.find(|kind| kind == Kind::Real) } else { None };
+        named.map_or_else(|| self.random.number(), |name| format!("{name} * 0.5"))
+    }
+}
+
+/// splitmix64.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    pub fn below(&mut self, bound: usize) -> usize {
+        (self.next() % bound as u64) as usize
+    }
+
+    pub fn chance(&mut self, percent: usize) -> bool {
+        self.below(100) < percent
+    }
+
+    pub fn shuffle<T>(&mut self, list: &mut [T]) {
+        for last in (1..list.len()).rev() {
+            list.swap(last, self.below(last + 1));
+        }
+    }
+
+    fn number(&mut self) -> String {
+        format!("{}.{}", self.below(8), ["0", "25", "5", "125"][self.below(4)])
+    }
+
+    /// A condition over the flags.
+    fn condition(&mut self) -> String {
+        let flag = |random: &mut Self| FLAGS[random.below(FLAGS.len())].to_owned();
+        match self.below(7) {
+            0 | 1 => flag(self),
+            2 => format!("!{}", flag(self)),
+            3 => format!("{} && {}", flag(self), flag(self)),
+            4 => format!("{} || !{}", flag(self), flag(self)),
+            5 => format!("({} || {}) && !{}", flag(self), flag(self), flag(self)),
+            _ => ["true", "false"][self.below(2)].to_owned(),
+        }
+    }
+}

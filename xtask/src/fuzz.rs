@@ -1,0 +1,196 @@
+//! `cargo xtask fuzz`: hostile inputs for everything that reads what others wrote.
+//!
+//! A worker process mutates and judges; this one watches it, so that an abort or an endless loop
+//! is a finding too. Findings are made small and kept in `tests/regressions/KIND/`.
+
+mod judge;
+#[path = "../../fuzz/src/kinds.rs"]
+mod kinds;
+mod mutate;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant, SystemTime};
+
+use crate::generate::root;
+use crate::{Failure, Outcome};
+use kinds::{KINDS, Kind};
+use mutate::Random;
+
+const USAGE: &str = "usage: cargo xtask fuzz [--seconds N] [--seed N] [KIND]...";
+/// A worker that shows no sign of life for so long is in an endless loop.
+const PATIENCE: Duration = Duration::from_secs(20);
+/// The exit code of a worker that found something.
+const FOUND: i32 = 3;
+/// Inputs a finding is tried to be made smaller with.
+const SHRINKS: usize = 400;
+
+/// What was asked for.
+struct Request {
+    seconds: u64,
+    seed: u64,
+    kinds: Vec<&'static Kind>,
+}
+
+/// Fuzzes every kind for its share of the time; a finding is exit code 3.
+pub fn run(arguments: &[String]) -> Outcome {
+    match arguments {
+        [mode, kind, file] if mode == "--judge" => judge_file(find(kind)?, Path::new(file)),
+        [mode, kind, seed, seconds] if mode == "--work" => work(find(kind)?, number(seed)?, number(seconds)?),
+        _ => watch(&request(arguments)?),
+    }
+}
+
+fn request(arguments: &[String]) -> Result<Request, Failure> {
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let mut request = Request { seconds: 60, seed: now, kinds: Vec::new() };
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        match argument.as_str() {
+            "--seconds" => request.seconds = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?,
+            "--seed" => request.seed = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?,
+            kind => request.kinds.push(find(kind)?),
+        }
+    }
+    if request.kinds.is_empty() {
+        request.kinds = KINDS.iter().collect();
+    }
+    Ok(request)
+}
+
+fn number(text: &str) -> Result<u64, Failure> {
+    text.parse().map_err(|_| Failure::usage(USAGE))
+}
+
+fn find(name: &str) -> Result<&'static Kind, Failure> {
+    let names: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+    let found = KINDS.iter().find(|kind| kind.name == name);
+    found.ok_or_else(|| Failure::usage(format!("{USAGE}\nkinds: {}", names.join(", "))))
+}
+
+fn watch(request: &Request) -> Outcome {
+    println!("seed {}", request.seed);
+    let share = (request.seconds / request.kinds.len() as u64).max(1);
+    let mut findings = 0;
+    for kind in &request.kinds {
+        findings += fuzz(kind, request.seed, share)?;
+    }
+    if findings == 0 { Ok(()) } else { Err(Failure::check(format!("{findings} findings in tests/regressions/"))) }
+}
+
+/// Runs workers until the time is over; each finding ends one.
+fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, Failure> {
+    let (started, mut told, mut round) = (Instant::now(), BTreeSet::new(), 0);
+    while started.elapsed().as_secs() < seconds {
+        let rest = seconds - started.elapsed().as_secs();
+        let worker = spawn(&["--work", kind.name, &seed.wrapping_add(round).to_string(), &rest.to_string()])?;
+        let Some(reason) = outcome(worker, Some(&current(kind))) else { break };
+        round += 1;
+        let input = fs::read(current(kind)).map_err(environment)?;
+        if told.insert(reason.clone()) {
+            keep(kind, input, &reason)?;
+        }
+    }
+    Ok(told.len())
+}
+
+/// Where a worker leaves the input it is about to judge.
+fn current(kind: &Kind) -> PathBuf {
+    root().join("target/fuzz").join(kind.name)
+}
+
+fn spawn(arguments: &[&str]) -> Result<Child, Failure> {
+    let program = std::env::current_exe().map_err(environment)?;
+    Command::new(program).arg("fuzz").args(arguments).stderr(Stdio::piped()).spawn().map_err(environment)
+}
+
+/// What is wrong, by how a worker ended; `sign` is a file that shows it is alive.
+fn outcome(mut worker: Child, sign: Option<&Path>) -> Option<String> {
+    let started = Instant::now();
+    loop {
+        if let Ok(Some(status)) = worker.try_wait() {
+            let said = worker.wait_with_output().map(|output| output.stderr).unwrap_or_default();
+            let said = String::from_utf8_lossy(&said).trim().to_owned();
+            return match status.code() {
+                Some(0) => None,
+                Some(FOUND) => Some(said),
+                Some(_) => {
+                    eprintln!("{said}");
+                    None
+                }
+                None => Some(format!("aborts ({status})")),
+            };
+        }
+        let alive = sign.and_then(|sign| fs::metadata(sign).ok()?.modified().ok()?.elapsed().ok());
+        if started.elapsed() > PATIENCE && alive.is_none_or(|since| since > PATIENCE) {
+            let _ = worker.kill();
+            let _ = worker.wait();
+            return Some("does not end".to_owned());
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The worker: mutates and judges until the time is over or something is wrong.
+fn work(kind: &Kind, seed: u64, seconds: u64) -> Outcome {
+    let place = current(kind);
+    fs::create_dir_all(place.parent().unwrap_or(Path::new("."))).map_err(environment)?;
+    let (corpus, words): (_, Vec<&str>) = (mutate::corpus(&root(), kind), kind.words.split(' ').filter(|word| !word.is_empty()).collect());
+    let (mut random, started, mut inputs) = (Random(seed), Instant::now(), 0u64);
+    judge::quiet();
+    while started.elapsed().as_secs() < seconds {
+        let input = mutate::mutated(&mut random, &corpus, &words);
+        fs::write(&place, &input).map_err(environment)?;
+        inputs += 1;
+        if let Some(reason) = judge::judge(kind, &input) {
+            return Err(Failure::check(reason));
+        }
+    }
+    println!("{}: {inputs} inputs, nothing found", kind.name);
+    Ok(())
+}
+
+fn judge_file(kind: &Kind, file: &Path) -> Outcome {
+    let input = fs::read(file).map_err(environment)?;
+    judge::quiet();
+    judge::judge(kind, &input).map_or(Ok(()), |reason| Err(Failure::check(reason)))
+}
+
+/// Saves a finding as small as it can be made while the same is wrong with it.
+fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> Outcome {
+    println!("{}: {reason} ({} bytes)", kind.name, input.len());
+    let small = shrunk(kind, input, reason)?;
+    let folder = root().join("tests/regressions").join(kind.name);
+    fs::create_dir_all(&folder).map_err(environment)?;
+    let name: String = reason.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    println!("  kept as tests/regressions/{}/{name} ({} bytes)", kind.name, small.len());
+    fs::write(folder.join(name), small).map_err(environment)
+}
+
+/// Takes away ever smaller parts.
+fn shrunk(kind: &Kind, mut input: Vec<u8>, reason: &str) -> Result<Vec<u8>, Failure> {
+    let file = current(kind).with_extension("small");
+    let (mut size, mut at, mut tries) = (input.len() / 2, 0, 0);
+    while size > 0 && tries < SHRINKS {
+        if at >= input.len() {
+            (size, at) = (size / 2, 0);
+            continue;
+        }
+        let end = (at + size).min(input.len());
+        let smaller = [&input[..at], &input[end..]].concat();
+        fs::write(&file, &smaller).map_err(environment)?;
+        tries += 1;
+        let worker = spawn(&["--judge", kind.name, &file.to_string_lossy()])?;
+        match outcome(worker, None) {
+            Some(same) if same == reason => input = smaller,
+            _ => at = end,
+        }
+    }
+    Ok(input)
+}
+
+fn environment(error: std::io::Error) -> Failure {
+    Failure::environment(error.to_string())
+}
