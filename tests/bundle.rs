@@ -422,9 +422,9 @@ fn large() -> Outcome {
         looking / 100_000,
         fetching / 1_000
     );
-    // Bounds for the development profile on a busy machine; optimised builds are far below.
-    check(opening < Duration::from_millis(10), &format!("opening took {opening:?}"))?;
-    check(looking / 100_000 < Duration::from_micros(2), &format!("looking up took {looking:?}"))?;
+    // Bounds for an unoptimised build on a busy machine; optimised builds are far below.
+    check(opening < Duration::from_millis(50), &format!("opening took {opening:?}"))?;
+    check(looking / 100_000 < Duration::from_micros(20), &format!("looking up took {looking:?}"))?;
     check(fetching / 1_000 < Duration::from_millis(2), &format!("fetching took {fetching:?}"))
 }
 

@@ -113,7 +113,7 @@ fn killed() -> Outcome {
         let mut child = package.command(&package.bundle()).spawn()?;
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         // Most of a run is over before anything is written: aim at its second half.
-        std::thread::sleep(whole.mul_f64(0.2 + 1.1 * f64::from(state) / f64::from(u32::MAX)));
+        std::thread::sleep(whole.mul_f64(0.1 + 0.8 * f64::from(state) / f64::from(u32::MAX)));
         child.kill()?;
         died += u32::from(!child.wait()?.success());
         package.check().map_err(|failed| format!("round {round}: {failed:?}"))?;
