@@ -34,6 +34,11 @@ pub mod project;
 pub mod resolve;
 #[cfg(feature = "compile")]
 pub mod source;
+#[cfg(feature = "store")]
+pub mod store;
+#[cfg(all(feature = "compile", not(feature = "store")))]
+#[path = "store/absent.rs"]
+pub mod store;
 #[cfg(feature = "compile")]
 pub mod validate;
 

@@ -15,7 +15,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 12] = [
+    let cases: [Case; 14] = [
         ("a_second_run_does_nothing", nothing_to_do),
         ("an_edit_compiles_what_it_reaches", edits),
         ("what_is_not_reached_is_not_compiled", unreached),
@@ -28,6 +28,8 @@ pub fn trials() -> Vec<Trial> {
         ("missing_and_foreign_shards_are_noticed", wrong_shards),
         ("a_key_and_a_target_can_be_chosen", choices),
         ("watch_follows_edits", watch),
+        ("a_folder_can_be_shared", shared_folder),
+        ("a_redis_server_can_be_shared", shared_server),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("generate::{name}"), case)).collect()
 }
@@ -173,6 +175,10 @@ fn nothing_to_do() -> Outcome {
     equal(first["programs"][0]["permutations"].as_u64(), Some(PERMUTATIONS))?;
     let second = package.generate(&[])?;
     equal(&second["up_to_date"], &Value::Bool(true))?;
+    // It still says what is wrong with the texts that it did not read again.
+    let told = |output: Output| String::from_utf8_lossy(&output.stderr).into_owned();
+    let again = told(package.run(&["gen", "--cache", "cache"])?);
+    ensure(again.contains("unused-import") && again.contains("small.wesl:2:32"), format!("the warning is gone: {again}"))?;
     let seconds = second["seconds"].as_f64().unwrap_or(f64::MAX);
     // A hundredth of that in an optimised build on a machine that does nothing else.
     ensure(seconds < 1.0, format!("it took {seconds} s to find that out"))?;
@@ -348,4 +354,47 @@ fn followed(package: &Package) -> Outcome {
         }
     }
     Ok(())
+}
+
+fn shared_folder() -> Outcome {
+    shared(&format!("fs:{}", tempfile::tempdir()?.path().display()))
+}
+
+/// What one machine made, another one takes; a third without a cache of its own too.
+fn shared(store: &str) -> Outcome {
+    let package = Package::new()?;
+    package.generate(&["--store", store, "-o", "one"])?;
+    fs::rename(package.path().join("cache"), package.path().join("cache of another machine"))?;
+    equal(compiled(&package.generate(&["--store", store, "-o", "two"])?), 0)?;
+    equal(package.files("one")?, package.files("two")?)?;
+    // What came from the store is near from now on.
+    equal(compiled(&package.generate(&["-o", "three"])?), 0)
+}
+
+/// With the feature `store` against a server that is started here; without, only that the
+/// command says what is missing.
+fn shared_server() -> Outcome {
+    let package = Package::new()?;
+    let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
+    let address = format!("redis://127.0.0.1:{port}");
+    let unanswered = package.run(&["gen", "--store", &address])?;
+    equal(unanswered.status.code(), Some(4))?;
+    if String::from_utf8_lossy(&unanswered.stderr).contains("--features store") {
+        return Ok(());
+    }
+    let folder = tempfile::tempdir()?;
+    let server = Command::new("redis-server")
+        .args(["--bind", "127.0.0.1", "--port", &port.to_string(), "--save", "", "--dir"])
+        .arg(folder.path())
+        .stdout(Stdio::null())
+        .spawn();
+    let mut server = server.map_err(|error| format!("redis-server: {error}; install it with `apt-get install redis-server`"))?;
+    let start = Instant::now();
+    while std::net::TcpStream::connect(("127.0.0.1", port)).is_err() && start.elapsed() < Duration::from_secs(10) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let outcome = shared(&address);
+    server.kill()?;
+    server.wait()?;
+    outcome
 }

@@ -10,7 +10,7 @@ mod record;
 mod trace;
 
 pub use folder::Folder;
-pub use trace::{Recorder, Trace};
+pub use trace::{Recorder, Run, Told, Trace};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -33,10 +33,17 @@ pub trait Storage: Send + Sync {
 
 /// Storages, the nearest first. What a later one has is copied to the earlier ones.
 pub struct Cache {
-    storages: Vec<Box<dyn Storage>>,
+    storages: Vec<Counted>,
     hits: AtomicUsize,
+}
+
+/// A storage that is left alone once it failed too often: a server that died costs no more time.
+struct Counted {
+    storage: Box<dyn Storage>,
     failures: AtomicUsize,
 }
+
+const MOST_FAILURES: usize = 8;
 
 /// What compiling a text depends on.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +59,8 @@ pub struct Job<'a> {
 
 impl Cache {
     pub fn new(storages: Vec<Box<dyn Storage>>) -> Self {
-        Self { storages, hits: AtomicUsize::new(0), failures: AtomicUsize::new(0) }
+        let counted = |storage| Counted { storage, failures: AtomicUsize::new(0) };
+        Self { storages: storages.into_iter().map(counted).collect(), hits: AtomicUsize::new(0) }
     }
 
     /// The result of an equal job, if there was one.
@@ -88,19 +96,17 @@ impl Cache {
         self.hits.load(Ordering::Relaxed)
     }
 
-    /// How many reads and writes a storage refused.
+    /// How many reads and writes storages refused.
     pub fn failures(&self) -> usize {
-        self.failures.load(Ordering::Relaxed)
+        self.storages.iter().map(|storage| storage.failures.load(Ordering::Relaxed)).sum()
     }
 
     fn get(&self, kind: &str, key: Hash) -> Option<Vec<u8>> {
         let name = name(kind, key);
         for (index, storage) in self.storages.iter().enumerate() {
-            let bytes = self.count(storage.get(&name)).flatten();
-            if let Some(payload) = bytes.as_deref().and_then(record::open) {
-                if let Some(bytes) = &bytes {
-                    self.storages[..index].iter().for_each(|nearer| self.count(nearer.put(&name, bytes)).unwrap_or_default());
-                }
+            let Some(record) = storage.get(&name) else { continue };
+            if let Some(payload) = record::open(&record) {
+                self.storages[..index].iter().for_each(|nearer| nearer.put(&name, &record));
                 return Some(payload);
             }
         }
@@ -108,14 +114,27 @@ impl Cache {
     }
 
     fn put(&self, kind: &str, key: Hash, payload: Option<Vec<u8>>) {
-        let Some(sealed) = payload.and_then(|payload| record::seal(&payload)) else { return };
-        let name = name(kind, key);
-        self.storages.iter().for_each(|storage| self.count(storage.put(&name, &sealed)).unwrap_or_default());
+        let Some(record) = payload.and_then(|payload| record::seal(&payload)) else { return };
+        self.storages.iter().for_each(|storage| storage.put(&name(kind, key), &record));
+    }
+}
+
+impl Counted {
+    fn get(&self, name: &str) -> Option<Vec<u8>> {
+        self.count(|storage| storage.get(name)).flatten()
     }
 
-    fn count<T>(&self, result: Result<T, String>) -> Option<T> {
-        self.failures.fetch_add(usize::from(result.is_err()), Ordering::Relaxed);
-        result.ok()
+    fn put(&self, name: &str, bytes: &[u8]) {
+        self.count(|storage| storage.put(name, bytes));
+    }
+
+    fn count<T>(&self, ask: impl FnOnce(&dyn Storage) -> Result<T, String>) -> Option<T> {
+        if self.failures.load(Ordering::Relaxed) >= MOST_FAILURES {
+            return None;
+        }
+        let answer = ask(&*self.storage);
+        self.failures.fetch_add(usize::from(answer.is_err()), Ordering::Relaxed);
+        answer.ok()
     }
 }
 

@@ -7,6 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use super::{BUILD, Cache, hash, hex, short};
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::render::{Form, render};
 use crate::generate::{Request, Summary};
 use crate::resolve::Packages;
 use crate::source::{Files, Package, ReadError, SourceSet};
@@ -42,7 +44,7 @@ impl Recorder {
     }
 }
 
-/// A run that succeeded without a warning.
+/// A run that succeeded.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Trace {
     /// Package, question, answer.
@@ -50,28 +52,68 @@ pub struct Trace {
     /// Of the bundle that was written.
     output: String,
     pub summary: Summary,
+    pub told: Told,
+}
+
+/// What a run said of the author's texts, which are not read when nothing is to do.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Told {
+    /// As the manifest was named: files are named in the same way.
+    manifest: String,
+    /// In each of [`FORMS`].
+    texts: Vec<String>,
+}
+
+const FORMS: [Form; 3] = [Form::Human, Form::Short, Form::Json];
+
+impl Told {
+    pub fn new(manifest: &Path, sources: &SourceSet, warnings: &[Diagnostic]) -> Self {
+        let texts = FORMS.map(|form| if warnings.is_empty() { String::new() } else { render(sources, warnings, form) });
+        Self { manifest: manifest.to_string_lossy().into_owned(), texts: texts.into() }
+    }
+
+    /// In one form.
+    pub fn text(&self, form: Form) -> &str {
+        FORMS.iter().zip(&self.texts).find(|(known, _)| **known == form).map_or("", |(_, text)| text)
+    }
+
+    /// Whether it is what the run said that named the manifest so.
+    fn is_of(&self, manifest: &Path) -> bool {
+        self.texts.iter().all(String::is_empty) || Path::new(&self.manifest) == manifest
+    }
+}
+
+/// A run that may already have been made.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    pub manifest: &'a Path,
+    /// What was read before the packages were: the manifest and what declares them.
+    pub declared: &'a SourceSet,
+    pub request: &'a Request,
+    pub packages: &'a Packages,
+    /// The bundle.
+    pub out: &'a Path,
 }
 
 impl Trace {
-    /// The trace of what was recorded, for the bundle at `out`.
-    pub fn new(recorder: &Recorder, out: &Path, summary: Summary) -> Option<Self> {
+    /// The trace of what was recorded; `None` where no bundle is.
+    pub fn new(recorder: &Recorder, out: &Path, summary: Summary, told: Told) -> Option<Self> {
         let reads = recorder.answers().into_iter().map(|((package, question), answer)| (package, question, answer));
-        Some(Self { reads: reads.collect(), output: output(out)?, summary })
+        Some(Self { reads: reads.collect(), output: output(out)?, summary, told })
     }
 
-    /// Finds the trace of an equal request if all that it read is the same, and the bundle at
-    /// `out` is what came of it.
-    ///
-    /// `sources` is what was read before the packages were: the manifest and what declares them.
-    pub fn find(cache: &Cache, sources: &SourceSet, request: &Request, packages: &Packages, out: &Path) -> Option<Self> {
-        let trace: Self = serde_json::from_slice(&cache.get("runs", key(sources, request))?).ok()?;
-        let reads = trace.reads.iter().map(|(package, question, answer)| ((package.clone(), question.clone()), answer.clone())).collect();
-        (is_current(&reads, packages) && output(out).as_ref() == Some(&trace.output)).then_some(trace)
+    /// Finds the trace of an equal run if all that it read is the same, and the bundle is what
+    /// came of it.
+    pub fn find(cache: &Cache, run: Run<'_>) -> Option<Self> {
+        let trace: Self = serde_json::from_slice(&cache.get("runs", key(run.declared, run.request))?).ok()?;
+        let reads = trace.reads.iter().map(|(package, question, answer)| ((package.clone(), question.clone()), answer.clone()));
+        let is_same = trace.told.is_of(run.manifest) && is_current(&reads.collect(), run.packages);
+        (is_same && output(run.out).as_ref() == Some(&trace.output)).then_some(trace)
     }
 
     /// Keeps the trace for [`Self::find`].
-    pub fn keep(&self, cache: &Cache, sources: &SourceSet, request: &Request) {
-        cache.put("runs", key(sources, request), serde_json::to_vec(self).ok());
+    pub fn keep(&self, cache: &Cache, run: Run<'_>) {
+        cache.put("runs", key(run.declared, run.request), serde_json::to_vec(self).ok());
     }
 }
 

@@ -42,7 +42,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let start = Instant::now();
     let mut work = Work::open(&arguments.places)?;
     let request = request(&arguments, &mut work.sources);
-    let mut summary = match work.up_to_date(&request) {
+    let mut summary = match work.up_to_date(&request, form) {
         Some(summary) => summary,
         None => work.run(&request, arguments.check, form)?,
     };

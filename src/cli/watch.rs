@@ -67,7 +67,7 @@ fn text(path: &Path) -> Option<Vec<u8>> {
 fn update(arguments: &Arguments, work: &mut Work, form: DiagnosticForm) -> Result<(), Failure> {
     let start = Instant::now();
     let all = Request::default();
-    if work.up_to_date(&all).is_some() {
+    if work.up_to_date(&all, form).is_some() {
         return say(&format!("up to date, {:.2} s", start.elapsed().as_secs_f64()));
     }
     if let (Some(key), true) = (&arguments.key, work.out.is_dir()) {

@@ -1,5 +1,6 @@
 //! What `gen` and `watch` share: a package, its manifest, the cache, and a run over them.
 
+use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -7,12 +8,13 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::progress::Bar;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
-use crate::cache::{Cache, Folder, Recorder, Storage, Trace};
+use crate::cache::{Cache, Folder, Recorder, Run, Storage, Told, Trace};
 use crate::generate::{Generated, Memory, Request, Sink, Summary, Tools, generate};
 use crate::permute::Manifest;
 use crate::project;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
+use crate::store;
 
 /// Where things are.
 #[derive(Args)]
@@ -28,8 +30,11 @@ pub struct Places {
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
     /// Compute everything, keep nothing.
-    #[arg(long, conflicts_with = "cache")]
+    #[arg(long, conflicts_with_all = ["cache", "store"])]
     no_cache: bool,
+    /// A cache that machines share, asked after the folder: `fs:/path` or `redis://host:port`.
+    #[arg(long, value_name = "ADDRESS")]
+    store: Option<String>,
 }
 
 /// Everything a run needs, read and ready.
@@ -72,10 +77,11 @@ impl Work {
         declared && self.recorder.is_current(&self.packages)
     }
 
-    /// The account of an earlier run, if there is nothing to do since.
-    pub fn up_to_date(&self, request: &Request) -> Option<Summary> {
-        let trace = Trace::find(self.cache.as_ref()?, &self.declared, request, &self.packages, &self.out)?;
-        Some(Summary { up_to_date: true, ..trace.summary })
+    /// The account of an earlier run, if there is nothing to do since; says what it said.
+    pub fn up_to_date(&self, request: &Request, form: DiagnosticForm) -> Option<Summary> {
+        let Trace { summary, told, .. } = Trace::find(self.cache.as_ref()?, self.as_run(request))?;
+        let _ = stderr().write_all(told.text(form.into()).as_bytes());
+        Some(Summary { up_to_date: true, ..summary })
     }
 
     /// Generates, and writes the bundle or compares with it.
@@ -85,10 +91,17 @@ impl Work {
         bar.clear();
         let Generated { summary, warnings, .. } = outcome?;
         warn(&self.sources, &warnings, form);
-        if let (Some(cache), true) = (&self.cache, warnings.is_empty()) {
-            Trace::new(&self.recorder, &self.out, summary.clone()).into_iter().for_each(|trace| trace.keep(cache, &self.declared, request));
+        if let Some(cache) = &self.cache {
+            told_failures(cache);
+            let told = Told::new(&self.path, &self.sources, &warnings);
+            let trace = Trace::new(&self.recorder, &self.out, summary.clone(), told);
+            trace.into_iter().for_each(|trace| trace.keep(cache, self.as_run(request)));
         }
         Ok(summary)
+    }
+
+    fn as_run<'a>(&'a self, request: &'a Request) -> Run<'a> {
+        Run { manifest: &self.path, declared: &self.declared, request, packages: &self.packages, out: &self.out }
     }
 
     /// One permutation into the bundle directory that is there, before all others.
@@ -134,8 +147,19 @@ fn cache(places: &Places) -> Result<Option<Cache>, Failure> {
         return Ok(None);
     }
     let folder = places.cache.clone().or_else(|| project::cache_folder(&places.manifest));
-    let storages: Vec<Box<dyn Storage>> = folder.into_iter().map(|folder| Box::new(Folder::new(folder)) as Box<dyn Storage>).collect();
+    let mut storages: Vec<Box<dyn Storage>> = folder.into_iter().map(|folder| Box::new(Folder::new(folder)) as Box<dyn Storage>).collect();
+    if let Some(address) = &places.store {
+        storages.push(store::open(address).map_err(Failure::environment)?);
+    }
     Ok((!storages.is_empty()).then(|| Cache::new(storages)))
+}
+
+/// A cache that fails is no reason to fail, but its user wants to know.
+fn told_failures(cache: &Cache) {
+    if cache.failures() > 0 {
+        let _ =
+            writeln!(stderr(), "warning: the cache or the store refused {} times; everything was computed all the same", cache.failures());
+    }
 }
 
 pub fn is_file(path: &Path) -> bool {

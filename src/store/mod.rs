@@ -1,0 +1,67 @@
+//! A cache that machines share: a folder they all see, or a Redis server, through `opendal`.
+//!
+//! Records are named by what they were made of and verified when read, so that a store needs no
+//! locks, no upkeep and no agreement between those that use it. It must be trusted, as any cache
+//! of build results: whoever can write to it can choose what others take from it.
+
+use std::time::Duration;
+
+use opendal::blocking::Operator;
+use opendal::services::{Fs, Redis};
+use opendal::{ErrorKind, Operator as AsyncOperator};
+use tokio::runtime::{Builder, Runtime};
+use tokio::time::timeout;
+
+use crate::cache::Storage;
+
+/// How long a server may take for its first answer.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Names within the store begin with it, so that others can use the same server.
+const ROOT: &str = "/lamplight";
+
+/// The store at `fs:/path` or `redis://host:port`, if it answers.
+pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
+    let operator = operator(address)?;
+    let runtime = Builder::new_multi_thread().worker_threads(1).enable_all().build().map_err(|error| error.to_string())?;
+    let answer = runtime.block_on(async { timeout(PATIENCE, operator.read("units/00/0")).await });
+    match answer {
+        Ok(Err(error)) if error.kind() != ErrorKind::NotFound => return Err(format!("the store `{address}` refuses: {error}")),
+        Err(_) => return Err(format!("the store `{address}` does not answer within {} s", PATIENCE.as_secs())),
+        Ok(_) => {}
+    }
+    let blocking = {
+        let _inside = runtime.enter();
+        Operator::new(operator).map_err(|error| error.to_string())?
+    };
+    Ok(Box::new(Store { operator: blocking, _runtime: runtime }))
+}
+
+fn operator(address: &str) -> Result<AsyncOperator, String> {
+    let operator = match address.split_once(':') {
+        Some(("fs", path)) => AsyncOperator::new(Fs::default().root(path).atomic_write_dir(&format!("{path}/.tmp"))),
+        Some(("redis", _)) => AsyncOperator::new(Redis::default().endpoint(address).root(ROOT)),
+        _ => return Err(format!("`{address}` is no store: write `fs:/path` or `redis://host:port`")),
+    };
+    operator.map_err(|error| format!("the store `{address}` cannot be opened: {error}"))
+}
+
+struct Store {
+    operator: Operator,
+    /// Carries the operator's work; stops with it.
+    _runtime: Runtime,
+}
+
+impl Storage for Store {
+    fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
+        match self.operator.read(name) {
+            Ok(bytes) => Ok(Some(bytes.to_vec())),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    fn put(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
+        self.operator.write(name, bytes.to_vec()).map(|_| ()).map_err(|error| error.to_string())
+    }
+}
