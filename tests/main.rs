@@ -11,6 +11,7 @@ mod harness;
 mod permute;
 mod programs;
 mod shaderlib;
+mod shadow;
 mod snapshot;
 
 use std::process::ExitCode;
@@ -27,6 +28,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     permute::trials,
     programs::trials,
     shaderlib::trials,
+    shadow::trials,
     snapshot::trials,
 ];
 
