@@ -7,7 +7,7 @@ use lamplight::compose::Language;
 use lamplight::diagnostic::render::Form;
 use lamplight::harness::library::Library;
 use lamplight::harness::{self, check, executors, expression, kernel};
-use lamplight::source::{Memory, SourceSet};
+use lamplight::source::{Embedded, Files as _, Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
 type Run = fn() -> Result<(), Failed>;
@@ -21,12 +21,14 @@ pub fn trials() -> Vec<Trial> {
                 .map_err(Failed::from)
         })
     });
-    let others: [(&str, Run); 5] = [
+    let others: [(&str, Run); 7] = [
         ("library", library),
         ("expressions", expressions),
         ("expression_errors", expression_errors),
         ("case_errors", case_errors),
         ("wrong_function", wrong_function),
+        ("every_function_has_cases", every_function_has_cases),
+        ("vectors", vectors),
     ];
     executors.chain(others.map(|(name, run)| Trial::test(format!("harness::{name}"), run))).collect()
 }
@@ -56,6 +58,39 @@ fn library() -> Result<(), Failed> {
             println!("{}", check::table(&report));
         }
         if report.passed() { Ok(()) } else { Err(check::failures(&report).into()) }
+    })
+}
+
+/// Every function of every module has a numeric case beside it.
+fn every_function_has_cases() -> Result<(), Failed> {
+    let mut missing = Vec::new();
+    for path in Embedded.list(&["wesl"]).iter().filter(|path| !path.starts_with("programs/")) {
+        let read = |path: &str| Embedded.read(path).ok().flatten().unwrap_or_default();
+        let (module, cases) = (read(path), read(&path.replace(".wesl", ".toml")));
+        let names = module.lines().filter_map(|line| Some(line.strip_prefix("fn ")?.split_once('(')?.0));
+        let tried = |name: &&str| cases.lines().any(|line| line == format!("function = \"{name}\""));
+        let module = path.trim_end_matches(".wesl").replace('/', "::");
+        missing.extend(names.filter(|name| !tried(name)).map(|name| format!("{module}::{name}")));
+    }
+    if missing.is_empty() { Ok(()) } else { Err(format!("no case tries\n{}", missing.join("\n")).into()) }
+}
+
+/// A list within a list holds vectors, not numbers.
+fn vectors() -> Result<(), Failed> {
+    let module = "fn length_of(v: vec3f) -> f32 { return length(v); }";
+    let cases = "[[case]]\nfunction = \"length_of\"\nformula = \"length(v)\"\ntolerance = { ulp = 4 }\nlaws = { reaches = [0, 5] }\ninputs = { v = [[[0, 0, 0], [3, 0, 4]]] }\n";
+    let files = [("mine.wesl", module), ("mine.toml", cases)].map(|(path, text)| (path.to_owned(), text.to_owned()));
+    let library = Library::new("mine", Arc::new(Memory(files.into())), Vec::new());
+    opened(|open| {
+        let sources = Mutex::new(SourceSet::default());
+        let report =
+            library.check(&sources, &["mine.toml".to_owned()], &[Language::Wesl], open).map_err(|errors| render(&sources, &errors))?;
+        let inputs: Vec<_> = report.outcomes.iter().map(|outcome| outcome.verdict.as_ref().map_or(0, |verdict| verdict.inputs)).collect();
+        if report.passed() && inputs.iter().all(|count| *count == 2) {
+            Ok(())
+        } else {
+            Err(format!("{inputs:?}\n{}", check::failures(&report)).into())
+        }
     })
 }
 

@@ -26,6 +26,7 @@ mod regressions;
 mod robust;
 mod scale;
 mod shaderlib;
+mod shadow;
 mod snapshot;
 mod specialise;
 
@@ -56,7 +57,12 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     robust::trials,
     scale::trials,
     shaderlib::trials,
+<<<<<<< HEAD
     specialise::trials,
+=======
+    shadow::trials,
+    snapshot::trials,
+>>>>>>> x-cases
 ];
 
 fn main() -> ExitCode {

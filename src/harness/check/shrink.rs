@@ -15,9 +15,10 @@ const ROUNDS: usize = 24;
 /// case ready to paste.
 pub fn shrink(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, failing: usize) -> Result<String, Diagnostic> {
     let mut best = job.rows.row_words(failing).to_vec();
+    let ranges = ranges(job);
     for _ in 0..ROUNDS {
         let mut candidates = candidates(job, &best);
-        candidates.retain(|candidate| complexity(job, candidate) < complexity(job, &best) && meant(job, candidate));
+        candidates.retain(|candidate| complexity(job, candidate) < complexity(job, &best) && meant(job, &ranges, candidate));
         candidates.sort_by_key(|candidate| complexity(job, candidate));
         candidates.truncate(1024);
         let Some(simpler) = first_failing(job, kernel, session, &candidates)? else { break };
@@ -79,15 +80,20 @@ fn simpler(word: u32, kind: ScalarKind) -> Vec<u32> {
     plain.into_iter().chain(shorter).collect()
 }
 
+/// The least and the largest value of each column.
+fn ranges(job: &Job<'_>) -> Vec<(f64, f64)> {
+    let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); job.rows.kinds.len()];
+    for row in 0..job.rows.len() {
+        ranges.iter_mut().zip(job.rows.row(row)).for_each(|(range, value)| *range = (range.0.min(*value), range.1.max(*value)));
+    }
+    ranges
+}
+
 /// Whether the case means such an input: within the columns' values, and not filtered out.
-fn meant(job: &Job<'_>, candidate: &[u32]) -> bool {
+fn meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
     let row = crate::harness::cases::numbers(candidate, &job.rows.kinds);
-    let within = |index: usize| {
-        let column = (0..job.rows.len()).map(|at| job.rows.row(at)[index]);
-        let (low, high) = column.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-        (low..=high).contains(&row[index])
-    };
-    job.filter.as_ref().is_none_or(|filter| filter.scalar(&row) == 1.0) && (0..row.len()).all(within)
+    let is_within = row.iter().zip(ranges).all(|(value, (low, high))| (*low..=*high).contains(value));
+    is_within && job.filter.as_ref().is_none_or(|filter| filter.scalar(&row) == 1.0)
 }
 
 /// Lower is simpler: values other than 0, then mantissa bits, then magnitude.

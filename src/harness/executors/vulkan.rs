@@ -7,5 +7,7 @@ pub const EXECUTOR: Entry = Entry {
     name: "vulkan",
     about: "wgpu on Vulkan, Mesa's lavapipe preferred",
     needs: &["mesa-vulkan-drivers", "libvulkan1"],
-    open: || super::opened(Wanted { backend: wgpu::Backends::VULKAN, named: Named::Without(swiftshader::NAME), shaders: Shaders::Translated }),
+    open: || {
+        super::opened(Wanted { backend: wgpu::Backends::VULKAN, named: Named::Without(swiftshader::NAME), shaders: Shaders::Translated })
+    },
 };

@@ -127,11 +127,8 @@ fn program(gl: &glow::Context, fragment: &str) -> Result<glow::Program, String> 
 
 /// The fixture as a texture, with its target.
 fn texture_of(gl: &glow::Context, texture: &Texture) -> Result<(u32, glow::Texture), String> {
-    let (internal, format) = if texture.kind.is_depth() {
-        (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT)
-    } else {
-        (glow::RGBA32F, glow::RGBA)
-    };
+    let (internal, format) =
+        if texture.kind.is_depth() { (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT) } else { (glow::RGBA32F, glow::RGBA) };
     let cube = texture.kind.layers() == 6;
     let target = if cube { glow::TEXTURE_CUBE_MAP } else { glow::TEXTURE_2D };
     let layer = texture.texels.len() / texture.kind.layers() as usize;

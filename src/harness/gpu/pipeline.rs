@@ -95,7 +95,11 @@ pub fn pipeline(
 
 fn layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
     let inputs = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
-    let rest = kernel.resources().map(|resource| (resource.binding, binding_type(resource.class, &resource.fixture)));
+    // Not every device filters textures of f32: only kernels that filter colours need one that does.
+    let filterable = kernel
+        .resources()
+        .any(|resource| matches!(&*resource.fixture, Fixture::Sampler(sampler) if sampler.linear && sampler.compare.is_none()));
+    let rest = kernel.resources().map(|resource| (resource.binding, binding_type(resource.class, &resource.fixture, filterable)));
     let entries: Vec<_> = std::iter::once((0, inputs))
         .chain(rest)
         .map(|(binding, ty)| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None })
@@ -103,7 +107,7 @@ fn layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
 }
 
-fn binding_type(class: ResourceClass, fixture: &Fixture) -> wgpu::BindingType {
+fn binding_type(class: ResourceClass, fixture: &Fixture, filterable: bool) -> wgpu::BindingType {
     match class {
         ResourceClass::Sampler { comparison: true } => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
         ResourceClass::Sampler { comparison: false } => wgpu::BindingType::Sampler(match fixture {
@@ -117,7 +121,7 @@ fn binding_type(class: ResourceClass, fixture: &Fixture) -> wgpu::BindingType {
             };
             let sample = match class {
                 naga::ImageClass::Depth { .. } => wgpu::TextureSampleType::Depth,
-                _ => wgpu::TextureSampleType::Float { filterable: true },
+                _ => wgpu::TextureSampleType::Float { filterable },
             };
             texture_type(sample, dimension)
         }
