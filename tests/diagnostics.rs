@@ -68,8 +68,16 @@ fn copy(from: &Path, to: &Path) -> Result<(), Failed> {
 
 /// What stands between stages that are right, and is told rather than a panic: no input is known
 /// that leads to it. The last of them needs a device that fails, the first a space beyond counting.
-const INTERNAL: &[&str] =
-    &["space-too-complex", "unknown-function", "untestable-function", "bundle-failed", "eval-internal", "eval-unsupported", "fixture-mismatch", "executor-failed"];
+const INTERNAL: &[&str] = &[
+    "space-too-complex",
+    "unknown-function",
+    "untestable-function",
+    "bundle-failed",
+    "eval-internal",
+    "eval-unsupported",
+    "fixture-mismatch",
+    "executor-failed",
+];
 
 /// Codes that are shown in some file of expectations, or that a test of another kind names.
 fn every_code() -> Result<(), Failed> {

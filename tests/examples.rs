@@ -10,7 +10,7 @@ mod load_bundle;
 use std::process::Command;
 
 use lamplight::bundle::{self, Bundle, Target};
-use lamplight::generate::{Request, generate};
+use lamplight::generate::{Request, in_memory};
 use lamplight::permute::Quoted;
 use lamplight::project;
 use libtest_mimic::{Failed, Trial};
@@ -30,8 +30,13 @@ fn loads_a_bundle() -> Result<(), Failed> {
     let path = folder.path().join("shaders.lamplight");
     let (mut sources, manifest) = project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;
     let id = sources.add("key", "ambient=none,lights=none");
-    let request = Request { program: Some("forward".into()), only: Some(Quoted::whole(&sources, id)), targets: vec![Target::WGSL] };
-    let made = generate(&mut sources, &project::library(), &manifest, &request, &|_| {}).map_err(|problems| format!("{problems:?}"))?;
+    let request = Request {
+        program: Some("forward".into()),
+        only: Some(Quoted::whole(&sources, id)),
+        targets: vec![Target::WGSL],
+        ..Request::default()
+    };
+    let made = in_memory(&mut sources, &project::library(), &manifest, &request, &|_| {}).map_err(|problems| format!("{problems:?}"))?;
     bundle::write_file(&made.contents, &path)?;
     let path = path.to_string_lossy().into_owned();
     // Mesa's thread-local state must be gone before the process ends.

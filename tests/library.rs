@@ -10,7 +10,7 @@ use lamplight::bundle::{Contents, EntryContents, Target, Unit, blob_files, write
 use lamplight::compose::{Keep, Language, Options, compose};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::emit::emit;
-use lamplight::generate::{Request, generate};
+use lamplight::generate::{Request, in_memory};
 use lamplight::permute::{Program, Quoted, key};
 use lamplight::validate::{on_large_stack, validate};
 use lamplight::{project, resolve};
@@ -98,7 +98,7 @@ fn contents() -> Result<&'static Contents, Failed> {
 
 fn library() -> Result<Contents, String> {
     let (mut sources, manifest) = project::library_manifest().map_err(|(sources, errors)| render(&sources, &errors, Form::Human))?;
-    let generated = generate(&mut sources, &project::library(), &manifest, &Request::default(), &|_| {});
+    let generated = in_memory(&mut sources, &project::library(), &manifest, &Request::default(), &|_| {});
     generated.map(|generated| generated.contents).map_err(|errors| render(&sources, &errors, Form::Human))
 }
 

@@ -14,7 +14,6 @@ mod eval;
 mod examples;
 #[path = "../xtask/src/external.rs"]
 mod external;
-mod frames;
 mod generate;
 mod harness;
 mod keys;
@@ -45,7 +44,6 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     emit::trials,
     eval::trials,
     examples::trials,
-    frames::trials,
     generate::trials,
     harness::trials,
     keys::trials,
@@ -57,12 +55,8 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     robust::trials,
     scale::trials,
     shaderlib::trials,
-<<<<<<< HEAD
-    specialise::trials,
-=======
     shadow::trials,
-    snapshot::trials,
->>>>>>> x-cases
+    specialise::trials,
 ];
 
 fn main() -> ExitCode {

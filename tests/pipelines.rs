@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use lamplight::bundle::{Binding, Bundle, Found, Kind, Language, Program as Loaded, Reflection, Stage, Target, Varying, pack};
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::generate::{Request, generate};
+use lamplight::generate::{Request, in_memory};
 use lamplight::permute::axis::ValueSet;
 use lamplight::permute::manifest::Program;
 use lamplight::permute::space::{Lists, Slice};
@@ -99,7 +99,7 @@ fn generated(
     sources: &mut lamplight::source::SourceSet,
     manifest: &Manifest,
 ) -> Result<lamplight::bundle::Contents, lamplight::diagnostic::Diagnostics> {
-    Ok(generate(sources, &project::library(), manifest, &Request::default(), &|_| ())?.contents)
+    Ok(in_memory(sources, &project::library(), manifest, &Request::default(), &|_| ())?.contents)
 }
 
 /// The program's space with nothing wanted but its covering set.

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use lamplight::bundle::{Bundle, Found, Target, pack};
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::generate::{Request, generate};
+use lamplight::generate::{Request, in_memory};
 use lamplight::project;
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
@@ -51,7 +51,7 @@ fn bundle_of(folder: &Path) -> Result<Bundle, Failed> {
     let made = (|| {
         let manifest = project::read_manifest(&folder.join("lamplight.toml"), &mut sources)?;
         let packages = project::packages(folder, &mut sources)?;
-        generate(&mut sources, &packages, &manifest, &Request::default(), &|_| ())
+        in_memory(&mut sources, &packages, &manifest, &Request::default(), &|_| ())
     })();
     let made = made.map_err(|problems| render(&sources, &problems, Form::Human))?;
     Ok(Bundle::from_bytes(pack(&made.contents)?)?)

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::generate::{Generated, Request, generate};
+use lamplight::generate::{Generated, Request, in_memory};
 use lamplight::source::SourceSet;
 use lamplight::{bundle, project};
 
@@ -25,5 +25,5 @@ pub fn compile(package: &Path, bundle: &Path) -> Result<(), Box<dyn Error>> {
 fn generated(package: &Path, sources: &mut SourceSet) -> Result<Generated, Diagnostics> {
     let manifest = project::read_manifest(&package.join(project::MANIFEST), sources)?;
     let packages = project::packages(package, sources)?;
-    generate(sources, &packages, &manifest, &Request::default(), &|_| {})
+    in_memory(sources, &packages, &manifest, &Request::default(), &|_| {})
 }

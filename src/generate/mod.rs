@@ -125,6 +125,23 @@ pub fn generate(
     Ok(generated)
 }
 
+/// [`generate`] with every unit in the contents, for callers that want the bundle in memory.
+///
+/// # Errors
+/// As of [`generate`].
+pub fn in_memory(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &Manifest,
+    request: &Request,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Generated, Diagnostics> {
+    let sink = Memory::default();
+    let mut generated = generate(sources, packages, manifest, request, &Tools { sink: &sink, cache: None, progress })?;
+    sink.fill(&mut generated.contents);
+    Ok(generated)
+}
+
 /// Composes every permutation asked for and compiles none: how many texts there are, and which
 /// axes each entry point sees.
 ///

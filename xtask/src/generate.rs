@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::generate::{Generated, Progress, Request, generate};
+use lamplight::generate::{Generated, Progress, Request, in_memory};
 use lamplight::source::SourceSet;
 use lamplight::{bundle, project};
 
@@ -42,7 +42,7 @@ fn library(sources: &mut SourceSet) -> Result<Generated, Diagnostics> {
     let folder = root().join("shaderlib");
     let manifest = project::read_manifest(&folder.join(project::MANIFEST), sources)?;
     let packages = project::packages(&folder, sources)?;
-    generate(sources, &packages, &manifest, &Request::default(), &show)
+    in_memory(sources, &packages, &manifest, &Request::default(), &show)
 }
 
 fn show(progress: Progress) {

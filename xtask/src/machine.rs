@@ -18,6 +18,8 @@ const NEEDS: &[Need] = &[
     Need { package: "libegl1", what: "EGL", found: || library("libEGL.so.1") },
     Need { package: "libgles2", what: "the GL ES loader", found: || library("libGLESv2.so.2") },
     Need { package: "libgl1-mesa-dri", what: "the software GL driver (llvmpipe)", found: || installed("libgl1-mesa-dri") },
+    Need { package: "chromium", what: "SwiftShader", found: || Path::new("/usr/lib/chromium/vk_swiftshader_icd.json").exists() },
+    Need { package: "nodejs", what: "node, for the typed keys", found: || program("node") },
     Need { package: "spirv-tools", what: "spirv-val", found: || program("spirv-val") },
     Need { package: "glslang-tools", what: "glslangValidator", found: || program("glslangValidator") },
 ];

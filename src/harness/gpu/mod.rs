@@ -2,7 +2,6 @@
 
 mod direct;
 mod emitted;
-pub mod draw;
 mod fixtures;
 mod open;
 mod pipeline;
