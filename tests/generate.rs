@@ -208,7 +208,6 @@ fn unreached() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
     package.write("shade.wesl", &SHADE.replace("return 1.0", "return 2.0"))?;
-    package.write("tint.wesl", &TINT.replace("fn red", "/* Of /* all */ colours. */ fn red // the first\n"))?;
     let second = package.generate(&[])?;
     equal((&second["up_to_date"], compiled(&second)), (&Value::Bool(false), 0))
 }

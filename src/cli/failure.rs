@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 
 use crate::diagnostic::render::{Form, render};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;
 
 /// Why a command did not succeed.
@@ -41,6 +41,12 @@ impl Failure {
     /// Says on standard error what went wrong; the exit code.
     pub fn report(self, form: DiagnosticForm) -> ExitCode {
         match self {
+            // A bundle that cannot be written is the machine's fault, not the author's.
+            Self::Input(sources, diagnostics) if diagnostics.iter().any(|error| error.code == codes::BUNDLE_FAILED) => {
+                warn(&sources, &diagnostics, form);
+                let _ = writeln!(io::stderr(), "error: cannot write the bundle");
+                ExitCode::from(4)
+            }
             Self::Input(sources, diagnostics) => {
                 warn(&sources, &diagnostics, form);
                 ExitCode::from(1)
