@@ -9,15 +9,11 @@ pub mod bundle;
 #[cfg(feature = "compile")]
 pub mod cache;
 #[cfg(feature = "compile")]
-pub mod catalogue;
-#[cfg(feature = "compile")]
 pub mod compose;
 #[cfg(feature = "compile")]
 pub mod diagnostic;
 #[cfg(feature = "compile")]
 pub mod emit;
-#[cfg(feature = "compile")]
-pub mod eval;
 #[cfg(feature = "compile")]
 pub mod generate;
 #[cfg(feature = "compile")]
@@ -42,6 +38,10 @@ pub mod store;
 #[cfg(feature = "compile")]
 pub mod validate;
 
+#[cfg(feature = "harness")]
+pub mod catalogue;
+#[cfg(feature = "harness")]
+pub mod eval;
 #[cfg(feature = "harness")]
 pub mod harness;
 #[cfg(feature = "harness")]
