@@ -5,6 +5,8 @@
 //! cargo run --example load_bundle -- shaders.lamplight
 //! ```
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 use std::sync::mpsc;
 

@@ -91,8 +91,8 @@ fn alike(commands: &[&[&str]], out: &str) -> Result<(), Failed> {
 }
 
 fn same(first: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>) -> Result<(), String> {
-    let names = first.keys().chain(other.keys());
-    names.filter(|name| first.get(*name) != other.get(*name)).next().map_or(Ok(()), |name| Err(name.clone()))
+    let mut names = first.keys().chain(other.keys());
+    names.find(|name| first.get(*name) != other.get(*name)).map_or(Ok(()), |name| Err(name.clone()))
 }
 
 /// The files, made in an order that differs from run to run.

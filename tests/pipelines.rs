@@ -22,6 +22,9 @@ const EVERYTHING: &str = "LAMPLIGHT_EVERY_PIPELINE";
 
 const BACKENDS: [(&str, wgpu::Backends); 2] = [("vulkan", wgpu::Backends::VULKAN), ("gl", wgpu::Backends::GL)];
 
+/// What is wrong with a reflection, whose, and how.
+type Change<'a> = (&'static str, &'a Pair, &'a dyn Fn(&mut Reflection));
+
 pub fn trials() -> Vec<Trial> {
     vec![
         Trial::test("pipelines::from_the_reflection_alone", pipelines),
@@ -58,7 +61,7 @@ fn wrong_reflections() -> Result<(), Failed> {
     let is_depth = |binding: &Binding| binding.ty.starts_with("texture_depth");
     let mut shadowed = find(&|pair| pair.fragment.as_ref().is_some_and(|found| found.reflection.bindings.iter().any(is_depth)))?;
     let lit = find(&|pair| pair.title.starts_with("forward"))?;
-    let changes: [(&str, &Pair, &dyn Fn(&mut Reflection)); 5] = [
+    let changes: [Change<'_>; 5] = [
         ("a binding is missing", &lit, &|reflection| reflection.bindings.truncate(1)),
         ("a buffer is too small", &lit, &|reflection| {
             reflection.bindings.iter_mut().for_each(|binding| binding.size = binding.size.map(|size| size - 16))

@@ -10,12 +10,13 @@ use libtest_mimic::{Failed, Trial};
 use tempfile::TempDir;
 
 type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
 
 const LAMPLIGHT: &str = env!("CARGO_BIN_EXE_lamplight");
 const KILLS: u32 = 50;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 6] = [
+    let cases: [Case; 6] = [
         ("killed_at_any_point", killed),
         ("two_runs_at_once", at_once),
         ("no_place_to_write", no_place),

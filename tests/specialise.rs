@@ -12,6 +12,7 @@ use libtest_mimic::{Failed, Trial};
 use pollster::block_on;
 
 type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
 
 const MANIFEST: &str = r#"
 [program.spec]
@@ -35,7 +36,7 @@ fn weight(i: i32) -> f32 {
 }";
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 6] = [
+    let cases: [Case; 6] = [
         ("values_arrive", values),
         ("one_shader_for_all_values", shared),
         ("spirv", spirv),

@@ -1,6 +1,7 @@
 //! One bundle of several, and one permutation into a bundle.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::Path;
 
 use super::directory::DirectoryWriter;
@@ -45,8 +46,8 @@ fn copy(bundle: &Bundle, writer: &DirectoryWriter) -> Result<Contents, Error> {
         for (language, entry) in program.entries() {
             let mut keys = BTreeMap::new();
             for (key, number) in program.entry(language, entry)?.numbered()? {
-                if !digests.contains_key(&number) {
-                    digests.insert(number, writer.add(&bundle.unit(number)?)?.unit);
+                if let Entry::Vacant(digest) = digests.entry(number) {
+                    digest.insert(writer.add(&bundle.unit(number)?)?.unit);
                 }
                 keys.extend(digests.get(&number).map(|unit| (key, *unit)));
             }

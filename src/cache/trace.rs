@@ -180,7 +180,7 @@ fn output(out: &Path) -> Option<String> {
         return Some(hex(&short(&blake3::hash(&std::fs::read(out).ok()?))));
     }
     let manifest = blake3::hash(&std::fs::read(out.join("manifest.json")).ok()?);
-    let names = std::fs::read_dir(out.join("blobs")).ok()?.map(|entry| Some(entry.ok()?.file_name().into_string().ok()?));
+    let names = std::fs::read_dir(out.join("blobs")).ok()?.map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names = names.collect::<Option<Vec<_>>>()?;
     names.sort_unstable();
     Some(format!("{} {}", hex(&short(&manifest)), listed(&names)))

@@ -158,7 +158,7 @@ impl Imports {
         let free = |name: &str, imports: &Self| !imports.locals.contains(name) && !hidden.iter().any(|other| other == name);
         match random.below(5) {
             0 => inline,
-            1 if free(path.last().unwrap(), self) && path.len() > 1 && !path.last().is_some_and(|last| last == "super") => {
+            1 if free(path.last().unwrap(), self) && path.len() > 1 && path.last().is_none_or(|last| last != "super") => {
                 // The module by name, the item by a path from it.
                 let last = path.last().unwrap().clone();
                 self.locals.insert(last.clone());
@@ -178,7 +178,7 @@ impl Imports {
     fn named(&mut self, item: &Item, path: Vec<String>, local: String) -> String {
         self.locals.insert(local.clone());
         let renamed = if local == item.name { local.clone() } else { format!("{} as {local}", item.name) };
-        let guard = item.guard.clone().filter(|_| item.id % 2 == 0);
+        let guard = item.guard.clone().filter(|_| item.id.is_multiple_of(2));
         match guard {
             Some(guard) => self.plain.push(format!("@if({guard}) import {}::{renamed};\n", path.join("::"))),
             None => self.statements.push((path, renamed)),

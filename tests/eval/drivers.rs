@@ -73,7 +73,8 @@ fn sweep((expression, _, low, high): &One, executor: &str, session: &mut dyn Ses
         let wanted = machine.call(f, &[Bounded::from_f64(f64::from(*x))]).map_err(|error| fail(error.message))?[0];
         let off = (f64::from(f32::from_bits(word)) - wanted.value()).abs();
         let doubtful = !machine.findings().is_empty();
-        if !(off <= wanted.error() + waived) && !wanted.value().is_nan() && !doubtful {
+        let is_off = off.is_nan() || off > wanted.error() + waived;
+        if is_off && !wanted.value().is_nan() && !doubtful {
             return Err(fail(format!(
                 "at {x} (0x{:08x}) {executor} gives {}, wanted {} within {:e}, off by {off:e}",
                 x.to_bits(),

@@ -221,8 +221,10 @@ fn fixture_names(node: &Node) -> Result<Vec<(String, String)>, Diagnostic> {
     table.entries()?.iter().map(|(parameter, name)| Ok((parameter.name.clone(), name.text()?.to_owned()))).collect()
 }
 
-/// Names of oracles in a case file.
-const ORACLES: &[(&str, fn() -> Oracle)] = &[("reference", || Oracle::Reference), ("eval", || Oracle::Eval), ("none", || Oracle::None)];
+/// An oracle in a case file that takes no more than its name.
+type NamedOracle = (&'static str, fn() -> Oracle);
+
+const ORACLES: &[NamedOracle] = &[("reference", || Oracle::Reference), ("eval", || Oracle::Eval), ("none", || Oracle::None)];
 
 fn oracle(node: &Node) -> Result<Oracle, Diagnostic> {
     if let Some(formula) = node.get("formula") {

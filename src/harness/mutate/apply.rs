@@ -8,9 +8,10 @@ use super::site::{Edit, Site, same};
 pub fn apply(function: &mut Function, site: &Site, inner: impl Fn(Handle<Expression>) -> Option<TypeInner>) -> bool {
     match &site.edit {
         Edit::Expression { at, with, .. } => replace(function, *at, with.clone()),
-        Edit::Negated { statement, .. } => change(&mut function.body, *statement, &mut |found| match found {
-            Statement::If { accept, reject, .. } => std::mem::swap(accept, reject),
-            _ => {}
+        Edit::Negated { statement, .. } => change(&mut function.body, *statement, &mut |found| {
+            if let Statement::If { accept, reject, .. } = found {
+                std::mem::swap(accept, reject);
+            }
         }),
         Edit::NoExit { statement, .. } => change(&mut function.body, *statement, &mut |found| {
             if let Statement::If { reject, .. } = found {

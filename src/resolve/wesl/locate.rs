@@ -18,7 +18,7 @@ struct Absolute {
 /// How many meanings one path may have under different conditions.
 const MEANINGS: usize = 64;
 
-/// Failures of a graph for which names of modules are suggested.
+/// Failures of a graph for which names are suggested.
 const SUGGESTED: usize = 100;
 
 impl Loader<'_> {
@@ -58,6 +58,14 @@ impl Loader<'_> {
 
     fn through_imports(&self, node: u32, path: &Path, imports: &[usize], visiting: &mut Vec<usize>) -> Result<Vec<Absolute>, Diagnostic> {
         let module = &self.nodes[node as usize].module;
+        let many = || {
+            let message = format!("a path with more than {MEANINGS} meanings");
+            Diagnostic::error(codes::CYCLIC_IMPORT, message).at(module.span(path.range.clone()), "here")
+        };
+        // Each import has a meaning or an error, and none is followed in vain.
+        if imports.len() > MEANINGS {
+            return Err(many());
+        }
         let mut found = Vec::new();
         for index in imports {
             let import = &module.imports[*index];
@@ -72,8 +80,7 @@ impl Loader<'_> {
             }
             visiting.pop();
             if found.len() > MEANINGS {
-                let message = format!("a path with more than {MEANINGS} meanings");
-                return Err(Diagnostic::error(codes::CYCLIC_IMPORT, message).at(module.span(path.range.clone()), "here"));
+                return Err(many());
             }
         }
         Ok(found)
@@ -167,7 +174,8 @@ impl Loader<'_> {
         let error = Diagnostic::error(codes::MISSING_ITEM, format!("`{}` has no item `{text}`", here.label)).at(span, "not found");
         let imports = here.module.imports.iter().any(|import| import.alias == name);
         let error = if imports { error.note("it imports that name, but imports are not passed on") } else { error };
-        error.suggest(text, here.module.items.iter().map(|item| self.names.text(item.name)))
+        let suggested = if self.failures.len() < SUGGESTED { here.module.items.len() } else { 0 };
+        error.suggest(text, here.module.items.iter().take(suggested).map(|item| self.names.text(item.name)))
     }
 
     fn missing_module(&mut self, package: usize, path: &[Name], span: Span) -> Diagnostic {
