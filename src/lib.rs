@@ -14,6 +14,8 @@ pub mod compose;
 pub mod diagnostic;
 #[cfg(feature = "compile")]
 pub mod emit;
+#[cfg(feature = "eval")]
+pub mod eval;
 #[cfg(feature = "compile")]
 pub mod generate;
 #[cfg(feature = "compile")]
@@ -40,8 +42,6 @@ pub mod validate;
 
 #[cfg(feature = "harness")]
 pub mod catalogue;
-#[cfg(feature = "harness")]
-pub mod eval;
 #[cfg(feature = "harness")]
 pub mod harness;
 #[cfg(feature = "harness")]

@@ -30,7 +30,6 @@ pub use code::Compare;
 pub use error::{Error, Finding, Kind as FindingKind};
 pub use layout::{Kind, MAX_SLOTS};
 pub use machine::{LOOP_LIMIT, Machine};
-pub use number::{Bounded, Number};
-pub(crate) use number::{half_from, half_to};
+pub use number::{Bounded, Number, half_from, half_to};
 pub use program::{Branch, Function, FunctionId, Point, Program};
 pub use resources::{Address, Filter, Level, Resources, Sampler, Shape, Texture};
