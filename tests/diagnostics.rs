@@ -99,12 +99,20 @@ fn limits() -> Result<(), Failed> {
     let modules = (0..5).map(|i| write(&format!("m{i}.wesl"), format!("const a = /*{}*/ 1;\n", "x".repeat(4_000_000))));
     modules.collect::<Result<(), _>>()?;
     write("output.wesl", (0..5).map(|i| format!("const a{i} = package::m{i}::a;\n")).collect())?;
+    write(
+        "functions.wesl",
+        (0..4100).map(|i| format!("fn f{i}() {{ f{}(); }}\n", i + 1)).collect::<String>() + "fn f4100() {}\n@fragment fn m() { f0(); }",
+    )?;
     write("entry.wesl", "@fragment fn f() {}\n".to_owned())?;
     for (line, code) in [("large.wesl", "file-too-large"), ("many.wesl", "not-shown"), ("output.wesl", "output-too-large")] {
         let told = told(folder.path(), &format!("compose {line} --feature a,b --diagnostics short"))?;
         if !told.contains(&format!("error[{code}]")) || !told.ends_with("=> 1\n\n") {
             return Err(format!("{code}: {told}").into());
         }
+    }
+    let told = told(folder.path(), "compile functions.wesl --target wgsl -o out --diagnostics short")?;
+    if told.lines().nth(1) != Some("functions.wesl:4097:12: error[limit-exceeded]: more than 4096 functions and structures") {
+        return Err(format!("functions: {told}").into());
     }
     too_many_files()?;
     unknown_entry_point()
@@ -236,7 +244,11 @@ fn hostile() -> Vec<(&'static str, &'static str, String)> {
         ("supers", "x.wesl", format!("import {}b; fn f() {{ b(); }}", "super::".repeat(50_000))),
         ("errors", "x.wesl", "fn f( { }\n".repeat(20_000)),
         ("unknown flags", "x.wesl", numbered(20_000, &|i| format!("@if(x{i}) fn f{i}() {{}}\n"))),
-        ("calls", "x.wesl", numbered(5_000, &|i| format!("fn f{i}() {{ f{}(); }}\n", i + 1)) + "fn f5000() {}\n@fragment fn m() { f0(); }"),
+        (
+            "calls",
+            "x.wesl",
+            numbered(20_000, &|i| format!("fn f{i}() {{ f{}(); }}\n", i + 1)) + "fn f20000() {}\n@fragment fn m() { f0(); }",
+        ),
         ("constants", "x.wesl", numbered(20_000, &|i| format!("const c{i} = c{};\n", (i + 1) % 20_000))),
         ("zeros", "x.wesl", "\0".repeat(100_000)),
         ("glsl includes itself", "x.frag.glsl", "#include \"x.frag.glsl\"\n".repeat(1000)),

@@ -181,7 +181,7 @@ pub fn wrap(name: &str, text: String, language: Language, stage: Option<Stage>) 
     let id = sources.add(name, text.as_str());
     let mut map = SourceMap::default();
     map.push(Segment { start: 0, span: Some(Span::new(id, 0..text.len())), verbatim: true });
-    (sources, Composed { language, stage, text, map, reads: Vec::new(), warnings: Vec::new() })
+    (sources, Composed { language, stage, text, map, reads: Vec::new(), warnings: Vec::new(), decisions: Vec::new() })
 }
 
 fn snapshot(path: &Path, text: String) {

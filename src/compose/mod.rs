@@ -9,6 +9,7 @@ pub use source_map::{Segment, SourceMap};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Setting, Settings};
 use crate::resolve::Graph;
+use crate::source::Span;
 
 /// The two source languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -67,6 +68,19 @@ pub struct Composed {
     pub reads: Vec<(String, Setting)>,
     /// Lints.
     pub warnings: Vec<Diagnostic>,
+    /// GLSL: the conditions that asked for a setting, in the order of reading. WESL's are
+    /// evaluated on their own.
+    pub decisions: Vec<Decision>,
+}
+
+/// A condition of an `#if` or `#elif`, and how it came out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Decision {
+    /// The directive's line.
+    pub span: Span,
+    pub holds: bool,
+    /// `#elif`: an earlier branch was not taken.
+    pub later: bool,
 }
 
 /// Composes a graph's root for the settings. Pure: same input, same bytes.

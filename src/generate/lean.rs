@@ -13,7 +13,7 @@ pub fn lean(composed: &Composed) -> Composed {
         // In GLSL a backslash continues a line comment, and directives end with their line.
         Language::Glsl => composed.text.clone(),
     };
-    Composed { text, map: SourceMap::default(), reads: Vec::new(), warnings: Vec::new(), ..*composed }
+    Composed { text, map: SourceMap::default(), reads: Vec::new(), warnings: Vec::new(), decisions: Vec::new(), ..*composed }
 }
 
 /// WGSL has no strings: `//` and `/*` always begin a comment, and block comments nest.

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use super::entry::Entry;
 use super::weave::Woven;
-use crate::compose::wesl::lint::Outcomes;
+use crate::compose::Decision;
+use crate::compose::wesl::lint::{self, Outcomes};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::axis::Mode;
 use crate::permute::{Assignment, Program};
@@ -53,15 +54,28 @@ impl Lints {
         for span in outcomes.places() {
             *self.conditions.entry(place(sources, span)).or_default() += 1;
         }
-        for warning in outcomes.warnings() {
-            let Some(label) = warning.labels.first() else { continue };
+        outcomes.warnings().for_each(|warning| self.constant(sources, warning));
+    }
+
+    /// Looks at what the compositions of a program asked for, and what the answers decided.
+    pub fn see_woven(&mut self, sources: &SourceSet, program: &Program, entries: &[Entry], woven: &[Woven]) {
+        for (entry, woven) in entries.iter().zip(woven) {
+            for span in woven.decided.places() {
+                *self.conditions.entry(place(sources, span)).or_default() += 1;
+            }
+            entry.graph.own(woven.decided.warnings()).into_iter().for_each(|warning| self.constant(sources, warning));
+        }
+        self.see_reads(program, woven);
+    }
+
+    fn constant(&mut self, sources: &SourceSet, warning: Diagnostic) {
+        if let Some(label) = warning.labels.first() {
             let key = (place(sources, label.span), warning.message.clone());
             self.constant.entry(key).or_insert((0, warning)).0 += 1;
         }
     }
 
-    /// Looks at what the compositions of a program asked for.
-    pub fn see_reads(&mut self, program: &Program, woven: &[Woven]) {
+    fn see_reads(&mut self, program: &Program, woven: &[Woven]) {
         let asked = |name: &String| woven.iter().any(|woven| woven.reads.contains(name));
         let unread = program.space.axes().iter().filter(|axis| axis.mode != Mode::Dynamic && !asked(&axis.name));
         self.found.extend(unread.map(|axis| {
@@ -76,6 +90,41 @@ impl Lints {
         let everywhere = constant.into_iter().filter(|((place, _), (count, _))| conditions.get(place) == Some(count));
         found.extend(everywhere.map(|(_, (_, warning))| warning));
         found
+    }
+}
+
+/// How the conditions of one entry point's GLSL came out, over all its compositions.
+#[derive(Debug, Default)]
+pub struct Decided {
+    outcomes: BTreeMap<Span, Ways>,
+}
+
+#[derive(Debug, Default)]
+struct Ways {
+    held: bool,
+    failed: bool,
+    /// The last branch of a chain may cover all that is left: it only has to hold once.
+    later: bool,
+}
+
+impl Decided {
+    /// Looks at one composition.
+    pub fn see(&mut self, decisions: &[Decision]) {
+        for decision in decisions {
+            let ways = self.outcomes.entry(decision.span).or_default();
+            ways.held |= decision.holds;
+            ways.failed |= !decision.holds;
+            ways.later |= decision.later;
+        }
+    }
+
+    fn places(&self) -> impl Iterator<Item = Span> {
+        self.outcomes.keys().copied()
+    }
+
+    fn warnings(&self) -> Diagnostics {
+        let constant = self.outcomes.iter().filter(|(_, ways)| !(ways.held && (ways.failed || ways.later)));
+        constant.map(|(span, ways)| lint::constant(*span, ways.held)).collect()
     }
 }
 

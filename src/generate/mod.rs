@@ -110,7 +110,7 @@ pub fn generate(
         // One permutation says nothing about the others, and a part of them not enough.
         if request.only.is_none() && request.shard.is_none() {
             lints.see(sources, program, &entries, points);
-            lints.see_reads(program, &woven);
+            lints.see_woven(sources, program, &entries, &woven);
         }
         outputs.add(&targets, &woven);
         generated.summary.programs.push(summary::program(&program.name, points.len(), &woven));

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::compile::Compiled;
 use super::entry::Entry;
 use super::lean::lean;
+use super::lint::Decided;
 use super::{Progress, REPORTED};
 use crate::bundle::{Digest, Hash};
 use crate::compose::{self, Composed};
@@ -29,6 +30,8 @@ pub struct Woven {
     pub reads: BTreeSet<String>,
     /// How often anything was composed.
     pub compositions: usize,
+    /// How the conditions of GLSL came out.
+    pub decided: Decided,
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -127,6 +130,7 @@ impl<'a> Loom<'a> {
             text_of: Vec::new(),
             reads: BTreeSet::new(),
             compositions: 0,
+            decided: Decided::default(),
             warnings: Vec::new(),
         };
         Self { entry, woven, tree: ReadTree::default(), texts: BTreeMap::new() }
@@ -154,6 +158,7 @@ impl<'a> Loom<'a> {
             Found::Text { text, hash } => (text, hash),
         };
         self.woven.compositions += 1;
+        self.woven.decided.see(&text.composed.decisions);
         for (name, _) in &text.composed.reads {
             if !self.woven.reads.contains(name) {
                 self.woven.reads.insert(name.clone());

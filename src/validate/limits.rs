@@ -2,7 +2,8 @@
 //!
 //! naga's parsers and validator recurse over the syntax tree, and an exhausted stack cannot be
 //! caught. What is bounded here is an upper estimate of that tree's depth: the operators that
-//! may nest in one statement, brackets within brackets, and the length as a whole.
+//! may nest in one statement, brackets within brackets, and the length as a whole. The functions
+//! are counted too: naga's time grows with their square.
 
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, codes};
@@ -16,11 +17,14 @@ pub struct Limits {
     pub nesting: usize,
     /// Operators of one expression, or branches of one chain of `else if`.
     pub operators: usize,
+    /// Functions and structures of the text.
+    pub bodies: usize,
 }
 
 /// The limits [`super::validate`] uses. Naga's stack overflowed at some 20,000 operators of a
-/// thread of 2 MiB; the whole shader library stays below 40 in one expression.
-pub const LIMITS: Limits = Limits { bytes: 4 << 20, nesting: 256, operators: 4096 };
+/// thread of 2 MiB; the whole shader library stays below 40 in one expression. It takes a quarter of a second over
+/// 5,000 functions that call each other, and a minute over 40,000.
+pub const LIMITS: Limits = Limits { bytes: 4 << 20, nesting: 256, operators: 4096, bodies: 4096 };
 
 /// Refuses a text that might exhaust naga's stack.
 pub fn check(composed: &Composed) -> Result<(), Diagnostic> {
@@ -66,15 +70,20 @@ struct Scan<'a> {
     open: usize,
     /// A `}` was just read: unless `else` follows, the statement is over.
     after_block: bool,
+    /// Braces opened at the level of the file.
+    bodies: usize,
 }
 
 fn scan(bytes: &[u8]) -> Option<Excess> {
-    let mut scan = Scan { bytes, at: 0, levels: vec![Level::default()], open: 0, after_block: false };
+    let mut scan = Scan { bytes, at: 0, levels: vec![Level::default()], open: 0, after_block: false, bodies: 0 };
     while scan.at < bytes.len() {
         let offset = scan.at;
         scan.step();
         if scan.levels.len() > LIMITS.nesting {
             return Some(Excess { offset, what: "brackets within each other", limit: LIMITS.nesting });
+        }
+        if scan.bodies > LIMITS.bodies {
+            return Some(Excess { offset, what: "functions and structures", limit: LIMITS.bodies });
         }
         if scan.open > LIMITS.operators {
             return Some(Excess { offset, what: "operators in one expression", limit: LIMITS.operators });
@@ -95,7 +104,10 @@ impl Scan<'_> {
             _ => self.end_block(),
         }
         match byte {
-            b'(' | b'[' | b'{' => self.levels.push(Level::default()),
+            b'(' | b'[' | b'{' => {
+                self.bodies += usize::from(byte == b'{' && self.levels.len() == 1);
+                self.levels.push(Level::default());
+            }
             b')' | b']' => self.close(),
             b'}' => {
                 self.close();

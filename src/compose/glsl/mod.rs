@@ -32,8 +32,9 @@ pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<
     let kept = reach::reach(&preprocessed.tokens, &items, &preprocessed.spellings, &options.keep)?;
     let writer = write(graph, &preprocessed, &items, &kept, &options.keep);
     let (text, map) = (writer.text, writer.map);
+    let decisions = preprocessed.decisions.clone();
     let reads = reads(graph, preprocessed, &items, &kept)?;
-    Ok(Composed { language: Language::Glsl, stage: Some(stage), text, map, reads, warnings: Vec::new() })
+    Ok(Composed { language: Language::Glsl, stage: Some(stage), text, map, reads, warnings: Vec::new(), decisions })
 }
 
 /// File name endings.

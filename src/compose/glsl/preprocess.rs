@@ -7,6 +7,7 @@ use super::expand::{Expander, Fatal, Input, same_definition};
 use super::reads::Reads;
 use super::table::{Meaning, Spellings, Table};
 use super::token::Tok;
+use crate::compose::Decision;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::glsl::{Directive, Macro, Module, Part};
 use crate::permute::Settings;
@@ -23,6 +24,7 @@ pub struct Preprocessed<'g, 's> {
     pub header: Vec<Span>,
     pub reads: Reads<'s>,
     pub spellings: Spellings<'g>,
+    pub decisions: Vec<Decision>,
 }
 
 /// Preprocesses the root of a graph; all errors that were found, at least one, otherwise.
@@ -39,12 +41,13 @@ pub fn preprocess<'g, 's>(graph: &'g Graph, settings: &'s Settings) -> Result<Pr
         tokens: Vec::with_capacity(graph.modules.iter().map(|module| module.tokens.len()).sum::<usize>().min(LIMITS.tokens)),
         version: None,
         header: Vec::new(),
+        decisions: Vec::new(),
     };
     state.check_module(0);
     state.run();
-    let State { expander, tokens, version, header, .. } = state;
+    let State { expander, tokens, version, header, decisions, .. } = state;
     let Expander { errors, reads, table, .. } = expander;
-    if errors.is_empty() { Ok(Preprocessed { tokens, version, header, reads, spellings: table.spellings }) } else { Err(errors) }
+    if errors.is_empty() { Ok(Preprocessed { tokens, version, header, reads, spellings: table.spellings, decisions }) } else { Err(errors) }
 }
 
 /// Version and profile of the root file; 450 where it names none.
@@ -64,6 +67,7 @@ struct State<'g, 's> {
     tokens: Vec<Tok>,
     version: Option<Span>,
     header: Vec<Span>,
+    decisions: Vec<Decision>,
 }
 
 #[derive(Clone, Copy)]
@@ -162,9 +166,8 @@ impl<'g> State<'g, '_> {
     fn choose(&mut self, module: usize, mut index: usize) -> Result<(), Fatal> {
         while let Some(Part::Directive(directive, span)) = self.graph.modules[module].parts.get(index) {
             let (holds, next) = match directive {
-                Directive::If { condition, next } | Directive::Elif { condition, next, .. } => {
-                    (self.evaluate(module, condition.clone(), *span)?, *next)
-                }
+                Directive::If { condition, next } => (self.decide(module, condition.clone(), *span, false)?, *next),
+                Directive::Elif { condition, next, .. } => (self.decide(module, condition.clone(), *span, true)?, *next),
                 Directive::Ifdef { name: Ok(name), negated, next } => (Ok(self.expander.table.has(*name) != *negated), *next),
                 Directive::Ifdef { name: Err(error), next, .. } => (Err(vec![(**error).clone()]), *next),
                 _ => break,
@@ -181,6 +184,15 @@ impl<'g> State<'g, '_> {
         }
         self.jump(index + 1);
         Ok(())
+    }
+
+    fn decide(&mut self, module: usize, condition: Range<u32>, span: Span, later: bool) -> Result<Result<bool, Diagnostics>, Fatal> {
+        let before = self.expander.reads.count;
+        let outcome = self.evaluate(module, condition, span)?;
+        if let (Ok(holds), true) = (&outcome, self.expander.reads.count > before) {
+            self.decisions.push(Decision { span, holds: *holds, later });
+        }
+        Ok(outcome)
     }
 
     fn evaluate(&mut self, module: usize, condition: Range<u32>, span: Span) -> Result<Result<bool, Diagnostics>, Fatal> {

@@ -8,6 +8,8 @@ use crate::permute::{Setting, Settings};
 pub struct Reads<'s> {
     entries: Vec<Entry<'s>>,
     order: Vec<u16>,
+    /// How often any was read.
+    pub count: usize,
 }
 
 struct Entry<'s> {
@@ -29,7 +31,7 @@ impl<'s> Reads<'s> {
             symbol: Symbol(0),
             read: false,
         });
-        Self { entries: entries.collect(), order: Vec::new() }
+        Self { entries: entries.collect(), order: Vec::new(), count: 0 }
     }
 
     /// Defines the macro of every setting, and those of the values of enum axes.
@@ -54,6 +56,7 @@ impl<'s> Reads<'s> {
 
     /// The value of a setting, which counts as read; the declared name and value if it has none.
     pub fn read(&mut self, setting: u16) -> Result<i64, (&'s str, &'s Setting)> {
+        self.count += 1;
         let entry = &mut self.entries[usize::from(setting)];
         if !entry.read {
             entry.read = true;

@@ -63,12 +63,16 @@ impl<'g> Outcomes<'g> {
         self.open.iter().filter(|condition| condition.held || condition.failed).filter_map(|condition| {
             let module = &self.graph.nodes[condition.node as usize].module;
             let span = place(module, module.conditions[condition.id as usize].expression?)?;
-            let word = if condition.held { "true" } else { "false" };
-            let warning = Diagnostic::warning(codes::CONSTANT_CONDITION, format!("this condition is {word} in every permutation"));
-            let label = if condition.held { "decides nothing" } else { "what it guards is in no permutation" };
-            Some(warning.at(span, label))
+            Some(constant(span, condition.held))
         })
     }
+}
+
+/// The warning about a condition that has always come out one way.
+pub fn constant(span: Span, held: bool) -> Diagnostic {
+    let word = if held { "true" } else { "false" };
+    let warning = Diagnostic::warning(codes::CONSTANT_CONDITION, format!("this condition is {word} in every permutation"));
+    warning.at(span, if held { "decides nothing" } else { "what it guards is in no permutation" })
 }
 
 /// The last branch of a chain may cover all that is left: it only has to hold once.

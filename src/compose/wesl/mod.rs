@@ -30,7 +30,7 @@ pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<
     }
     let warnings = reached.nodes().flat_map(|node| graph.nodes[node as usize].lints.iter().cloned()).collect();
     let (text, map) = output;
-    Ok(Composed { language: Language::Wesl, stage: None, text, map, reads: evaluator.reads, warnings })
+    Ok(Composed { language: Language::Wesl, stage: None, text, map, reads: evaluator.reads, warnings, decisions: Vec::new() })
 }
 
 fn traced(graph: &Graph, errors: Diagnostics) -> Diagnostics {
