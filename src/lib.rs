@@ -46,6 +46,8 @@ pub mod catalogue;
 pub mod harness;
 #[cfg(feature = "harness")]
 pub mod report;
+#[cfg(feature = "harness")]
+pub mod scene;
 
 #[cfg(feature = "cli")]
 pub mod cli;

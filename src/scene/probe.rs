@@ -1,0 +1,142 @@
+//! Environments made ready for shading: spherical harmonics and filtered cube maps.
+
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Sky;
+use super::view::FACES;
+
+/// The nine real spherical harmonics of bands 0 to 2, in the library's order: L00, L1m1, L10, L11,
+/// L2m2, L2m1, L20, L21, L22.
+///
+/// Parameters: `n` unit direction.
+/// Source: Ramamoorthi, Hanrahan, "An Efficient Representation for Irradiance Environment Maps",
+/// 2001, equation 3, with the closed forms of its constants.
+pub fn sh9_basis(n: DVec3) -> [f64; 9] {
+    let constant = (1.0 / (4.0 * PI)).sqrt();
+    let (first, second) = ((3.0 / (4.0 * PI)).sqrt(), (15.0 / (4.0 * PI)).sqrt());
+    let (zonal, sectoral) = ((5.0 / (16.0 * PI)).sqrt(), (15.0 / (16.0 * PI)).sqrt());
+    [
+        constant,
+        first * n.y,
+        first * n.z,
+        first * n.x,
+        second * n.x * n.y,
+        second * n.y * n.z,
+        zonal * (3.0 * n.z * n.z - 1.0),
+        second * n.x * n.z,
+        sectoral * (n.x * n.x - n.y * n.y),
+    ]
+}
+
+/// The nine coefficients of an environment: the integral of its radiance times each harmonic.
+///
+/// Parameters: `samples` directions, their solid angles in steradians, and their radiance: those of
+/// an image ([`Equirect::samples`](super::Equirect::samples)) or of a sky ([`directions`]).
+/// Returns: linear RGB coefficients for `sh9_irradiance`.
+/// Source: as [`sh9_basis`], equation 2.
+pub fn sh9_project(samples: impl Iterator<Item = (DVec3, f64, DVec3)>) -> [DVec3; 9] {
+    let mut sums = [DVec3::ZERO; 9];
+    for (direction, solid_angle, radiance) in samples {
+        let basis = sh9_basis(direction);
+        sums.iter_mut().zip(basis).for_each(|(sum, harmonic)| *sum += radiance * (harmonic * solid_angle));
+    }
+    sums
+}
+
+/// The irradiance on a surface of normal `n`, from nine coefficients of the radiance.
+///
+/// Source: as [`sh9_basis`], equation 13: each band times pi, 2 pi / 3 and pi / 4.
+pub fn irradiance_sh9(n: DVec3, coefficients: &[DVec3; 9]) -> DVec3 {
+    let band = |index: usize| match index {
+        0 => PI,
+        1..=3 => TAU / 3.0,
+        _ => FRAC_PI_4,
+    };
+    let terms = coefficients.iter().zip(sh9_basis(n)).enumerate();
+    terms.map(|(index, (coefficient, harmonic))| *coefficient * (harmonic * band(index))).sum()
+}
+
+/// Directions over the whole sphere with their solid angles: exact for polynomials of a degree
+/// below twice `rows`.
+///
+/// Returns: `2 * rows * rows` of them; the solid angles add up to 4 pi.
+pub fn directions(rows: usize) -> Vec<(DVec3, f64)> {
+    let columns = 2 * rows;
+    let row = |(height, weight): (f64, f64)| {
+        let radius = (1.0 - height * height).sqrt();
+        (0..columns).map(move |column| {
+            let around = TAU * (column as f64 + 0.5) / columns as f64;
+            (DVec3::new(radius * around.cos(), height, radius * around.sin()), weight * TAU / columns as f64)
+        })
+    };
+    gauss_legendre(rows).into_iter().flat_map(row).collect()
+}
+
+/// Nodes in (-1, 1) and their weights, by Newton's method on Legendre's polynomial.
+fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
+    let node = |index: usize| {
+        let mut x = (PI * (index as f64 + 0.75) / (count as f64 + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..100 {
+            let (mut before, mut value) = (0.0, 1.0);
+            for degree in 1..=count {
+                let n = degree as f64;
+                (before, value) = (value, ((2.0 * n - 1.0) * x * value - (n - 1.0) * before) / n);
+            }
+            slope = count as f64 * (x * value - before) / (x * x - 1.0);
+            let step = value / slope;
+            x -= step;
+            if step.abs() < 1e-15 {
+                break;
+            }
+        }
+        (x, 2.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..count).map(node).collect()
+}
+
+/// Six square images in the order of [`FACES`], rows from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubeMap {
+    /// Texels along an edge.
+    pub size: usize,
+    /// Linear RGB, face by face, row by row.
+    pub texels: Vec<DVec3>,
+}
+
+impl CubeMap {
+    /// The direction through the middle of a texel, as every graphics API reads cube maps.
+    pub fn direction(size: usize, face: usize, column: usize, row: usize) -> DVec3 {
+        let (forward, up) = FACES[face.min(5)];
+        let place = |index: usize| 2.0 * (index as f64 + 0.5) / size as f64 - 1.0;
+        // Left-handed: seen from inside, columns run to the other side of `forward x up`.
+        (forward + up.cross(forward) * place(column) - up * place(row)).normalize()
+    }
+}
+
+/// An environment filtered for a Phong lobe around each direction, as a cube map.
+///
+/// Parameters: `exponent` of the cosine: 1 is the diffuse map, 50 and above are shiny; `size` texels
+/// along an edge; `rows` of the quadrature ([`directions`]), which must grow with the exponent.
+/// Returns: the mean radiance, weighted by `max(cos, 0)^exponent`: a constant sky stays as it is, and
+/// the diffuse map times pi is the irradiance.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, "Image-Based Lighting".
+pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> CubeMap {
+    let seen: Vec<(DVec3, f64, DVec3)> =
+        directions(rows).into_iter().map(|(direction, weight)| (direction, weight, sky(direction))).collect();
+    let texel = |index: usize| {
+        let (face, row, column) = (index / (size * size), index / size % size, index % size);
+        let n = CubeMap::direction(size, face, column, row);
+        let (mut sum, mut all) = (DVec3::ZERO, 0.0);
+        for (direction, solid_angle, radiance) in &seen {
+            let weight = n.dot(*direction).max(0.0).powf(exponent) * solid_angle;
+            sum += *radiance * weight;
+            all += weight;
+        }
+        sum / all
+    };
+    CubeMap { size, texels: (0..6 * size * size).into_par_iter().map(texel).collect() }
+}

@@ -1,0 +1,67 @@
+//! Environments: images around a point, and skies given by a formula.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use glam::DVec3;
+
+/// Radiance by direction, linear RGB. The direction is of unit length, world space.
+pub type Sky<'a> = dyn Fn(DVec3) -> DVec3 + Sync + 'a;
+
+/// A light probe as an equirectangular image: rows from +y down to -y, columns once around from
+/// -x over -z, +x and +z, so that -z is in the middle of the left half.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equirect {
+    width: usize,
+    height: usize,
+    /// Linear RGB radiance, row by row.
+    pixels: Vec<DVec3>,
+}
+
+impl Equirect {
+    /// An image from its pixels; `None` where they are not `width * height`, or none.
+    pub fn new(width: usize, height: usize, pixels: Vec<DVec3>) -> Option<Self> {
+        (width > 0 && pixels.len() == width * height && height > 0).then_some(Self { width, height, pixels })
+    }
+
+    /// An image of a sky, sampled in the middle of each pixel.
+    pub fn of(sky: &Sky<'_>, width: usize, height: usize) -> Option<Self> {
+        let blank = Self { width, height, pixels: Vec::new() };
+        let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        Self::new(width, height, pixels.map(|(column, row)| sky(blank.direction(column, row))).collect())
+    }
+
+    /// The direction through the middle of a pixel.
+    pub fn direction(&self, column: usize, row: usize) -> DVec3 {
+        let around = TAU * (column as f64 + 0.5) / self.width as f64;
+        let down = PI * (row as f64 + 0.5) / self.height as f64;
+        DVec3::new(-around.cos() * down.sin(), down.cos(), -around.sin() * down.sin())
+    }
+
+    /// The solid angle of a pixel of that row, steradians; all pixels together have 4 pi.
+    pub fn solid_angle(&self, row: usize) -> f64 {
+        let edge = |row: usize| (PI * row as f64 / self.height as f64).cos();
+        TAU / self.width as f64 * (edge(row) - edge(row + 1))
+    }
+
+    /// Every pixel: the direction through it, its solid angle, and its radiance.
+    pub fn samples(&self) -> impl Iterator<Item = (DVec3, f64, DVec3)> {
+        self.pixels.iter().enumerate().map(|(index, radiance)| {
+            let (column, row) = (index % self.width, index / self.width);
+            (self.direction(column, row), self.solid_angle(row), *radiance)
+        })
+    }
+
+    /// The radiance from a direction: linear between pixels, around the seam, and up to the poles.
+    pub fn radiance(&self, direction: DVec3) -> DVec3 {
+        let d = direction.normalize_or_zero();
+        let around = (-d.z).atan2(-d.x).rem_euclid(TAU) / TAU * self.width as f64 - 0.5;
+        let down = (FRAC_PI_2 - d.y.clamp(-1.0, 1.0).asin()) / PI * self.height as f64 - 0.5;
+        let (left, top) = (around.floor(), down.floor());
+        let row = |row: f64| {
+            let row = row.clamp(0.0, self.height as f64 - 1.0) as usize;
+            let pixel = |column: f64| self.pixels[row * self.width + column.rem_euclid(self.width as f64) as usize];
+            pixel(left).lerp(pixel(left + 1.0), around - left)
+        };
+        row(top).lerp(row(top + 1.0), down - top)
+    }
+}
