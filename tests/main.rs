@@ -24,6 +24,7 @@ mod programs;
 mod regressions;
 mod robust;
 mod scale;
+mod scene;
 mod shaderlib;
 mod shadow;
 mod snapshot;
@@ -54,6 +55,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     regressions::trials,
     robust::trials,
     scale::trials,
+    scene::trials,
     shaderlib::trials,
     shadow::trials,
     specialise::trials,
