@@ -48,6 +48,11 @@ impl Interpreter {
         Ok(Self { function: FunctionId::from(kernel.function), program, slots, resources: resources(kernel) })
     }
 
+    /// The lowered module.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
     /// Memory to call it with; the calls of one thread.
     pub fn calls<N: Number>(&self) -> Result<Calls<'_, N>, Diagnostic> {
         let mut machine = Machine::new(&self.program).map_err(failed)?;

@@ -75,11 +75,14 @@ fn reached(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
     let mut reached = BTreeMap::new();
     for case in &suite.cases {
         let Ok(interpreter) = Interpreter::new(case.job.kernel()) else { continue };
+        let program = interpreter.program();
+        let name = |point: &Point| program.signature(point.function).map_or("", |function| function.name.as_str());
+        if program.points().iter().all(|point| reached.contains_key(&key(name(point), point))) {
+            continue;
+        }
         let mut count = |machine: &Machine<'_, f32>| {
-            let program = machine.program();
             for (point, hits) in program.points().iter().zip(machine.hits()).filter(|(_, hits)| **hits > 0) {
-                let name = program.signature(point.function).map_or("", |function| function.name.as_str());
-                *reached.entry(key(name, point)).or_insert(0) += hits;
+                *reached.entry(key(name(point), point)).or_insert(0) += hits;
             }
         };
         // A case that does not run reaches nothing, and says so when it is checked.
