@@ -18,10 +18,12 @@ mod generate;
 mod harness;
 mod keys;
 mod library;
+mod mutate;
 mod permute;
 mod pipelines;
 mod programs;
 mod regressions;
+mod report;
 mod robust;
 mod scale;
 mod scene;
@@ -49,10 +51,12 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     harness::trials,
     keys::trials,
     library::trials,
+    mutate::trials,
     permute::trials,
     pipelines::trials,
     programs::trials,
     regressions::trials,
+    report::trials,
     robust::trials,
     scale::trials,
     scene::trials,

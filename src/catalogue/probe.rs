@@ -95,6 +95,24 @@ pub fn glsl(probes: &[Probe]) -> String {
     text
 }
 
+/// Numeric cases of the module: every coefficient as published.
+pub fn cases(probes: &[Probe]) -> String {
+    let mut text = CASES.to_owned();
+    for probe in probes {
+        let all: Vec<String> = probe.coefficients.iter().map(numbers).collect();
+        let _ = write!(text, "\n[[case]]\nfunction = \"probe_{}\"\n", probe.name);
+        let _ = write!(text, "tolerance = {{ ulp = 0.5 }}\nrows = [{{ expect = [\n    {},\n] }}]\n", all.join(",\n    "));
+    }
+    text
+}
+
+/// First lines of the cases.
+const CASES: &str = "\
+# The published digits, as f32 holds them.
+#
+# Made from `data/sh9_probes.toml` by `cargo xtask docs`: edit that file, not this one.
+";
+
 fn doc(probe: &Probe) -> String {
     format!(
         "/// {}\n///\n/// Parameters: none.\n/// Returns: nine linear RGB coefficients of the radiance, ordered {}.\n/// Source: {}.\n\

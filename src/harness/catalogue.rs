@@ -24,14 +24,15 @@ pub fn pages() -> Result<Files, (SourceSet, Diagnostics)> {
     made.map_err(|problems| (sources.into_inner().unwrap_or_default(), problems))
 }
 
-/// Modules of the library that are made from its data, by path below the library.
+/// Modules of the library, and their cases, that are made from its data, by path below the library.
 pub fn modules() -> Result<Files, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let probes = match probe::library(&mut sources) {
         Ok(probes) => probes,
         Err(problems) => return Err((sources, problems)),
     };
-    Ok(BTreeMap::from([("ambient/probes.wesl".to_owned(), probe::wesl(&probes)), ("ambient/probes.glsl".to_owned(), probe::glsl(&probes))]))
+    let made = [("wesl", probe::wesl(&probes)), ("glsl", probe::glsl(&probes)), ("toml", probe::cases(&probes))];
+    Ok(made.into_iter().map(|(extension, text)| (format!("ambient/probes.{extension}"), text)).collect())
 }
 
 fn contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Diagnostics> {

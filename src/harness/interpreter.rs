@@ -4,8 +4,8 @@ use super::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use super::kernel::{Kernel, ParameterKind};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::eval::{self, FunctionId, Machine, Number, Program, Resources};
-use naga::ScalarKind;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Module, ScalarKind};
 
 /// A kernel's module, lowered.
 pub struct Interpreter {
@@ -36,11 +36,21 @@ pub struct Calls<'p, N> {
 impl Interpreter {
     /// Validates and lowers the kernel's module.
     pub fn new(kernel: &Kernel) -> Result<Self, Diagnostic> {
-        let validated = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&kernel.module);
+        Self::of(kernel, &kernel.module)
+    }
+
+    /// As [`Self::new`], with another module that has the kernel's function at the same handle.
+    pub fn of(kernel: &Kernel, module: &Module) -> Result<Self, Diagnostic> {
+        let validated = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module);
         let info = validated.map_err(|error| Diagnostic::error(codes::EXECUTOR_FAILED, format!("the kernel is not valid: {error}")))?;
-        let program = Program::new(&kernel.module, &info).map_err(failed)?;
+        let program = Program::new(module, &info).map_err(failed)?;
         let slots = slots(kernel, &program)?;
         Ok(Self { function: FunctionId::from(kernel.function), program, slots, resources: resources(kernel) })
+    }
+
+    /// The lowered module.
+    pub fn program(&self) -> &Program {
+        &self.program
     }
 
     /// Memory to call it with; the calls of one thread.
@@ -100,27 +110,6 @@ fn slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagnostic> {
         }
     }
     Ok(slots)
-}
-
-/// The word of each parameter that is bound, in the order of parameters.
-pub fn handles(kernel: &Kernel, program: &Program) -> Result<Vec<u32>, Diagnostic> {
-    let unbound = |binding| Diagnostic::error(codes::EVAL_UNBOUND, format!("the kernel has no binding {binding}"));
-    kernel.resources().map(|resource| program.handle(0, resource.binding).ok_or_else(|| unbound(resource.binding))).collect()
-}
-
-/// One invocation's words with the handles between them, as the function declares them.
-pub fn flatten(kernel: &Kernel, handles: &[u32], words: &[u32], arguments: &mut Vec<u32>) {
-    arguments.clear();
-    let mut handles = handles.iter();
-    for parameter in &kernel.parameters {
-        match &parameter.kind {
-            ParameterKind::Words { offset, shape } => {
-                let first = *offset as usize;
-                arguments.extend_from_slice(&words[first..first + shape.words() as usize]);
-            }
-            ParameterKind::Resource(_) => arguments.extend(handles.next()),
-        }
-    }
 }
 
 /// The fixtures of a kernel at their bindings.

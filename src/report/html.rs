@@ -209,6 +209,17 @@ fn proved(proof: &Proof) -> String {
             )
         }
     };
+    match proof.value {
+        None => {}
+        Some(value) if value.off == 0 => {
+            text += &format!("In f64 the code is within {} of what is allowed, on {} inputs. ", short(value.share), value.rows)
+        }
+        Some(value) => {
+            let (off, rows, share) = (value.off, value.rows, short(value.share));
+            text +=
+                &format!("<b class=\"bad\">In f64 the code is off on {off} of {rows} inputs, by up to {share} of what is allowed.</b> ");
+        }
+    }
     match &proof.parity {
         None => {}
         Some(Err(error)) => text += &format!("The languages could not be compared in f64: {}.", escaped(error)),

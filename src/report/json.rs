@@ -86,5 +86,14 @@ fn proof(proof: &Proof) -> Value {
         Ok(parity) => json!({ "rows": parity.rows, "apart": parity.apart, "worst_relative": parity.worst }),
         Err(error) => json!({ "error": error }),
     });
-    json!({ "module": proof.module, "function": proof.function, "case": proof.case, "spec": spec, "parity": parity })
+    let value = proof.value.map(|value| json!({ "rows": value.rows, "off": value.off, "worst_share": value.share }));
+    json!({
+        "module": proof.module,
+        "function": proof.function,
+        "case": proof.case,
+        "passed": proof.passed(),
+        "spec": spec,
+        "value": value,
+        "parity": parity,
+    })
 }

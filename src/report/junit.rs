@@ -1,37 +1,62 @@
-//! `junit.xml`: one test suite a module, one test case for each case, language and executor.
+//! `junit.xml`: one test suite a module, one test case for each case, language and executor, and
+//! one for what is proven of a case without an executor.
 
 use std::fmt::Write as _;
 
 use super::escaped;
-use crate::harness::check::{Outcome, Report, failures_of, language};
+use crate::harness::check::{Report, failures_of, language};
+
+/// A test case: the module it belongs to, its name, and how it failed.
+struct Test<'a> {
+    module: &'a str,
+    name: String,
+    failure: Option<String>,
+}
 
 /// The report as JUnit understands it.
 pub fn text(report: &Report) -> String {
-    let mut modules: Vec<&str> = report.outcomes.iter().map(|outcome| outcome.module.as_str()).collect();
+    let tests = tests(report);
+    let mut modules: Vec<&str> = tests.iter().map(|test| test.module).collect();
+    modules.sort_unstable();
     modules.dedup();
-    let failed = report.outcomes.iter().filter(|outcome| !outcome.passed()).count();
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let _ = writeln!(text, "<testsuites name=\"lamplight\" tests=\"{}\" failures=\"{failed}\">", report.outcomes.len());
+    let _ = writeln!(text, "<testsuites name=\"lamplight\" tests=\"{}\" failures=\"{}\">", tests.len(), failed(&tests));
     for module in modules {
-        suite(&mut text, module, report);
+        let own: Vec<&Test<'_>> = tests.iter().filter(|test| test.module == module).collect();
+        suite(&mut text, module, &own);
     }
     text + "</testsuites>\n"
 }
 
-fn suite(text: &mut String, module: &str, report: &Report) {
-    let outcomes: Vec<&Outcome> = report.outcomes.iter().filter(|outcome| outcome.module == module).collect();
-    let failed = outcomes.iter().filter(|outcome| !outcome.passed()).count();
-    let _ = writeln!(text, "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{failed}\">", escaped(module), outcomes.len());
-    for outcome in outcomes {
-        let name = format!("{} case {} {} {}", outcome.function, outcome.case + 1, language(outcome.language), outcome.executor);
-        let _ = write!(text, "    <testcase classname=\"{}\" name=\"{}\"", escaped(module), escaped(&name));
-        if outcome.passed() {
+fn tests(report: &Report) -> Vec<Test<'_>> {
+    let outcomes = report.outcomes.iter().map(|outcome| Test {
+        module: &outcome.module,
+        name: format!("{} case {} {} {}", outcome.function, outcome.case + 1, language(outcome.language), outcome.executor),
+        failure: (!outcome.passed()).then(|| failures_of(std::slice::from_ref(outcome), &[])),
+    });
+    let proofs = report.proofs.iter().map(|proof| Test {
+        module: &proof.module,
+        name: format!("{} case {} in f64", proof.function, proof.case + 1),
+        failure: (!proof.passed()).then(|| failures_of(&[], std::slice::from_ref(proof))),
+    });
+    outcomes.chain(proofs).collect()
+}
+
+fn failed<'a>(tests: impl IntoIterator<Item = &'a Test<'a>>) -> usize {
+    tests.into_iter().filter(|test| test.failure.is_some()).count()
+}
+
+fn suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
+    let failures = failed(tests.iter().copied());
+    let _ = writeln!(text, "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{failures}\">", escaped(module), tests.len());
+    for test in tests {
+        let _ = write!(text, "    <testcase classname=\"{}\" name=\"{}\"", escaped(module), escaped(&test.name));
+        let Some(details) = &test.failure else {
             text.push_str("/>\n");
             continue;
-        }
-        let details = failures_of(std::slice::from_ref(outcome), &[]);
+        };
         let first = details.lines().next().unwrap_or_default();
-        let _ = writeln!(text, ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>", escaped(first), escaped(&details));
+        let _ = writeln!(text, ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>", escaped(first), escaped(details));
     }
     text.push_str("  </testsuite>\n");
 }

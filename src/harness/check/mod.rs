@@ -9,7 +9,7 @@ mod shrink;
 
 pub use judge::{LawVerdict, Verdict, Worst};
 pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
-pub use proof::{Parity, Proof, Spec};
+pub use proof::{Parity, Proof, Spec, Value};
 pub use report::{failures, failures_of, language, short, stricter, table};
 
 use std::sync::Arc;

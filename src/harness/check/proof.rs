@@ -3,15 +3,20 @@
 
 use rayon::prelude::*;
 
-use super::job::{self, Job, Target};
+use super::job::{self, Job, Judge, Target};
 use super::judge;
 use crate::diagnostic::Diagnostic;
+use crate::harness::cases::Oracle;
 use crate::harness::interpreter::Interpreter;
 use crate::harness::tolerance;
 use naga::ScalarKind;
 
 /// Largest relative difference of the two languages in f64.
 const PARITY: f64 = 1e-12;
+/// Most of what a case allows that the code as written may be off in f64: the rest is for rounding.
+/// A table's digits are rounded themselves.
+const VALUE: f64 = 0.5;
+const VALUE_OF_TABLE: f64 = 1.0;
 /// What rounding in f64 may add of what it may add in f32, with a few bits to spare.
 const F64_SHARE: f64 = 1.0 / (1u64 << 26) as f64;
 
@@ -24,6 +29,8 @@ pub struct Proof {
     pub case: usize,
     /// What WGSL allows, against what the case allows; or why it cannot be told.
     pub spec: Result<Spec, String>,
+    /// The code in f64 against the oracle, where that is not the code itself.
+    pub value: Option<Value>,
     /// WESL against GLSL in f64, where there are both.
     pub parity: Option<Result<Parity, String>>,
 }
@@ -41,6 +48,18 @@ pub struct Spec {
     pub bound_ulps: f64,
 }
 
+/// How far the code as written is from the oracle, before any rounding of f32.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Value {
+    /// Rows compared: those on which no comparison is in doubt.
+    pub rows: usize,
+    /// Rows that are off by more than rounding leaves of what the case allows.
+    pub off: usize,
+    /// Largest distance over what the case allows, and the row it is in.
+    pub share: f64,
+    pub row: usize,
+}
+
 /// How far the two languages are apart.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Parity {
@@ -54,9 +73,19 @@ pub struct Parity {
 }
 
 impl Proof {
-    /// Whether the languages agree.
+    /// Whether the languages agree, and the code with the oracle.
     pub fn passed(&self) -> bool {
+        self.agree() && self.value.is_none_or(|value| value.off == 0)
+    }
+
+    /// Whether the languages agree.
+    pub fn agree(&self) -> bool {
         self.parity.as_ref().is_none_or(|parity| parity.as_ref().is_ok_and(|parity| parity.apart == 0))
+    }
+
+    /// Path of the function.
+    pub fn path(&self) -> String {
+        format!("{}::{}", self.module, self.function)
     }
 }
 
@@ -80,12 +109,13 @@ fn one(job: &Job<'_>) -> Proof {
         }),
         _ => None,
     };
+    let value = bounded.first().and_then(|first| first.as_ref().ok()).and_then(|first| value(job, first));
     let spec = match bounded.into_iter().next() {
         Some(Ok(first)) => Ok(spec(job, &first, &kinds)),
         Some(Err(error)) => Err(error),
         None => Err("no language was chosen".to_owned()),
     };
-    Proof { module: job.module.clone(), function: job.case.function.clone(), case: job.index, spec, parity }
+    Proof { module: job.module.clone(), function: job.case.function.clone(), case: job.index, spec, value, parity }
 }
 
 fn spec(job: &Job<'_>, bounds: &[Target], kinds: &[ScalarKind]) -> Spec {
@@ -113,6 +143,41 @@ fn spec(job: &Job<'_>, bounds: &[Target], kinds: &[ScalarKind]) -> Spec {
         spec.stricter += usize::from(stricter);
     }
     spec
+}
+
+fn value(job: &Job<'_>, found: &[Target]) -> Option<Value> {
+    if matches!(job.oracle, Judge::Eval(_)) || job.expected.is_empty() {
+        return None;
+    }
+    let limit = if matches!(job.case.oracle, Oracle::Table(_)) { VALUE_OF_TABLE } else { VALUE };
+    let mut value = Value::default();
+    for (row, (found, target)) in found.iter().zip(&job.expected).enumerate() {
+        let inputs = job.rows.row(row);
+        if found.doubtful || judge::is_indeterminate(target) || judge::is_ambiguous(job, inputs) {
+            continue;
+        }
+        value.rows += 1;
+        let share = share(job, inputs, found, target);
+        value.off += usize::from(share > limit);
+        if share > value.share {
+            value = Value { share, row, ..value };
+        }
+    }
+    Some(value)
+}
+
+/// Distance over what the case allows, of the component where that is largest, in the alternative
+/// that fits best.
+fn share(job: &Job<'_>, inputs: &[f64], found: &Target, target: &Target) -> f64 {
+    let values = tolerance::values(&job.terms, inputs);
+    let of = |expected: &Vec<f64>| {
+        let component = |(word, (found, expected)): (usize, (&f64, &f64))| {
+            let off = (found - expected).abs();
+            if off == 0.0 { 0.0 } else { off / tolerance::allowed(&job.terms, &values, word, *expected) }
+        };
+        found.expected.value.iter().zip(expected).enumerate().map(component).fold(0.0, f64::max)
+    };
+    std::iter::once(&target.expected.value).chain(&target.expected.alternatives).map(of).fold(f64::INFINITY, f64::min)
 }
 
 fn apart(first: &[Target], second: &[Target], kinds: &[ScalarKind]) -> Parity {

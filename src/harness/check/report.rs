@@ -78,8 +78,21 @@ pub fn stricter(report: &Report) -> String {
     report.proofs.iter().filter_map(line).collect()
 }
 
-fn unequal(proof: &Proof) -> String {
-    let place = format!("{}::{} (case {})", proof.module, proof.function, proof.case + 1);
+/// What does not hold of a proof, a line each.
+fn disproved(proof: &Proof) -> String {
+    let place = format!("{} (case {})", proof.path(), proof.case + 1);
+    let mut text = if proof.agree() { String::new() } else { unequal(proof, &place) };
+    if let Some(value) = proof.value.filter(|value| value.off > 0) {
+        let (off, rows, share) = (value.off, value.rows, short(value.share));
+        text += &format!(
+            "{place}: the code in f64, without any rounding, is off on {off} of {rows} inputs, by up to {share} of what is allowed (row {})\n",
+            value.row
+        );
+    }
+    text
+}
+
+fn unequal(proof: &Proof, place: &str) -> String {
     match &proof.parity {
         Some(Err(error)) => format!("{place}: the languages could not be compared in f64: {error}\n"),
         Some(Ok(parity)) => {
@@ -100,7 +113,7 @@ pub fn failures(report: &Report) -> String {
 
 /// What failed of these.
 pub fn failures_of(outcomes: &[Outcome], proofs: &[Proof]) -> String {
-    let mut text: String = proofs.iter().filter(|proof| !proof.passed()).map(unequal).collect();
+    let mut text: String = proofs.iter().filter(|proof| !proof.passed()).map(disproved).collect();
     for outcome in outcomes.iter().filter(|outcome| !outcome.passed()) {
         let place = format!(
             "{}::{} ({}, {} on {})",

@@ -115,11 +115,12 @@ fn describe(job: &Job<'_>, words: &[u32], target: &Target, found: &[u32]) -> Str
     let kinds = job.kernel().result_kinds();
     let mut text = String::new();
     let mut at = 0;
-    let mut paste = Vec::new();
+    let (mut paste, mut bits) = (Vec::new(), Vec::new());
     for (name, shape) in job.kernel().words() {
         let range = at..at + shape.words() as usize;
         at = range.end;
         text += &format!("  {name} = {}\n", values(&words[range.clone()], &job.rows.kinds[range.clone()]));
+        bits.push(format!("{name} = {}", hex(&words[range.clone()])));
         paste.push(format!("{name} = {}", list(&row[range])));
     }
     text += &format!("  found {}\n", values(found, &kinds));
@@ -128,11 +129,11 @@ fn describe(job: &Job<'_>, words: &[u32], target: &Target, found: &[u32]) -> Str
     let allowed = worst.map_or(0.0, |worst| worst.allowed);
     text += &format!("  allowed {allowed:e}\n\n");
     paste.push(format!("expect = {}", list(&target.expected.value)));
-    text + &pasted(job, &paste.join(", "), allowed)
+    text + &pasted(job, &paste.join(", "), &bits.join(", "), allowed)
 }
 
 /// A case with the one row, with the fixtures that it names.
-fn pasted(job: &Job<'_>, row: &str, allowed: f64) -> String {
+fn pasted(job: &Job<'_>, row: &str, bits: &str, allowed: f64) -> String {
     let mut text = format!("[[case]]\nfunction = {:?}\n", job.case.function);
     if allowed > 0.0 {
         text += &format!("tolerance = {{ abs = {allowed:e} }}\n");
@@ -141,6 +142,9 @@ fn pasted(job: &Job<'_>, row: &str, allowed: f64) -> String {
         let names: Vec<String> = job.case.fixture_names.iter().map(|(parameter, name)| format!("{parameter} = {name:?}")).collect();
         text += &format!("fixtures = {{ {} }}\n", names.join(", "));
     }
+    if !bits.is_empty() {
+        text += &format!("# {bits}\n");
+    }
     text + &format!("rows = [{{ {row} }}]\n")
 }
 
@@ -148,6 +152,11 @@ fn pasted(job: &Job<'_>, row: &str, allowed: f64) -> String {
 fn list(numbers: &[f64]) -> String {
     let one = |number: &f64| if number.is_nan() { "nan".to_owned() } else { format!("{number:?}") };
     format!("[{}]", numbers.iter().map(one).collect::<Vec<_>>().join(", "))
+}
+
+fn hex(words: &[u32]) -> String {
+    let words: Vec<String> = words.iter().map(|word| format!("0x{word:08x}")).collect();
+    if let [word] = &words[..] { word.clone() } else { format!("[{}]", words.join(", ")) }
 }
 
 fn values(words: &[u32], kinds: &[ScalarKind]) -> String {

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use naga::{Expression, Function, Handle, Module};
+use naga::{Expression, Function, Handle, Module, ScalarKind};
 use rayon::prelude::*;
 
 use super::apply::apply;
@@ -12,14 +12,15 @@ use super::site::Site;
 use super::words::author;
 use crate::compose::{Language, SourceMap};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::eval::{Error, FunctionId, Machine, Program};
+use crate::eval::Machine;
 use crate::harness::cases::{File, Rows};
 use crate::harness::check::Options;
-use crate::harness::check::job::{self, Job, Target};
+use crate::harness::check::job::{self, Job, Judge, Target};
 use crate::harness::check::judge;
-use crate::harness::interpreter::{flatten, handles, resources};
+use crate::harness::interpreter::{Calls, Interpreter, value, word_of};
 use crate::harness::kernel::Kernel;
 use crate::harness::library::Library;
+use crate::harness::tolerance;
 use crate::source::SourceSet;
 
 /// Loop trips of one call: many times what any case needs, few enough for a mutant without end.
@@ -27,6 +28,11 @@ const TRIPS: u64 = 20_000;
 
 /// Rows run before the first look at them; each later batch is four times as large.
 const FIRST_BATCH: usize = 48;
+
+/// What a value in f64 may be off beside [`Expected`]'s own digits: a share of the value, and a
+/// share of what the case allows f32, since f64 rounds by 2^-29 of it.
+const RELATIVE: f64 = 1e-9;
+const OF_STATED: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// A library module.
 pub struct Suite<'f> {
@@ -50,7 +56,16 @@ pub struct Subject {
 pub struct Ready<'f> {
     pub job: Job<'f>,
     order: Vec<usize>,
-    batches: Vec<(Rows, Vec<Target>)>,
+    batches: Vec<Batch>,
+}
+
+/// Rows with what they should give.
+struct Batch {
+    rows: Rows,
+    expected: Vec<Target>,
+    /// How far each word may be from it in f64: twice as far as the code as written is, which is
+    /// what its constants lose as f32; infinite where the oracle is the code, or has no opinion.
+    slack: Vec<f64>,
 }
 
 /// A module's path, and its cases if it has any.
@@ -85,7 +100,8 @@ fn suite<'f>(library: &Library, sources: &Mutex<SourceSet>, module: &str, file: 
         Some(file) => job::prepare(module, file, &[Language::Wesl], &|_, _, _| Ok(parsed.clone()), &Options::default())?,
         None => Vec::new(),
     };
-    Ok(Suite { module: module.to_owned(), map: composed.map, whole, info, subjects, cases: jobs.into_iter().map(ready).collect() })
+    let cases = jobs.into_par_iter().map(ready).collect::<Result<_, _>>()?;
+    Ok(Suite { module: module.to_owned(), map: composed.map, whole, info, subjects, cases })
 }
 
 fn internal(name: &str) -> Diagnostic {
@@ -108,17 +124,51 @@ fn is_file(path: &str, file: &str) -> bool {
     path == file || path.strip_suffix(file).is_some_and(|rest| rest.ends_with('/'))
 }
 
-fn ready(job: Job<'_>) -> Ready<'_> {
+fn ready(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
     let order = order(&job.rows);
+    let interpreter = Interpreter::new(job.kernel()).map_err(|error| vec![error])?;
+    let mut calls = interpreter.calls::<f64>().map_err(|error| vec![error])?;
     let mut batches = Vec::new();
     let (mut from, mut size) = (0, FIRST_BATCH);
     while from < order.len() && !job.expected.is_empty() {
         let chosen = &order[from..order.len().min(from + size)];
         let words = chosen.iter().flat_map(|row| job.rows.row_words(*row)).copied().collect();
-        batches.push((job.rows.with_words(words), chosen.iter().map(|row| job.expected[*row].clone()).collect()));
+        let (rows, expected) = (job.rows.with_words(words), chosen.iter().map(|row| job.expected[*row].clone()).collect::<Vec<_>>());
+        let slack = slack(&job, &rows, &expected, &mut calls).map_err(|error| vec![error])?;
+        batches.push(Batch { rows, expected, slack });
         (from, size) = (from + size, size * 4);
     }
-    Ready { order, batches, job }
+    drop(calls);
+    Ok(Ready { order, batches, job })
+}
+
+fn slack(job: &Job<'_>, rows: &Rows, expected: &[Target], calls: &mut Calls<'_, f64>) -> Result<Vec<f64>, Diagnostic> {
+    let kinds = job.kernel().result_kinds();
+    let mut slack = Vec::new();
+    for (index, target) in expected.iter().enumerate() {
+        let found = exact(calls, rows.row_words(index), &kinds)?;
+        let values = tolerance::values(&job.terms, rows.row(index));
+        let is_known = !matches!(job.oracle, Judge::Eval(_)) && !judge::is_indeterminate(target);
+        slack.extend((0..kinds.len()).map(|word| {
+            let value = target.expected.value[word];
+            let stated = tolerance::allowed(&job.terms, &values, word, value);
+            let off = nearest(target, &found, word);
+            let own = 2.0 * off + RELATIVE * value.abs() + OF_STATED * stated;
+            if is_known && off <= stated { own } else { f64::INFINITY }
+        }));
+    }
+    Ok(slack)
+}
+
+/// One row's result in f64.
+fn exact(calls: &mut Calls<'_, f64>, row: &[u32], kinds: &[ScalarKind]) -> Result<Vec<f64>, Diagnostic> {
+    Ok(calls.call(row)?.iter().zip(kinds).map(|(slot, kind)| value(*slot, *kind)).collect())
+}
+
+/// Distance of a word from what is right of it.
+fn nearest(target: &Target, found: &[f64], word: usize) -> f64 {
+    let all = std::iter::once(&target.expected.value).chain(&target.expected.alternatives);
+    all.map(|value| if found[word] == value[word] { 0.0 } else { (found[word] - value[word]).abs() }).fold(f64::INFINITY, f64::min)
 }
 
 /// Rows at the ends of their columns and of simple values take turns with rows from all over.
@@ -175,9 +225,8 @@ impl Suite<'_> {
             let function = find(&module, &subject.name)?;
             apply(module.functions.get_mut(function), site, ty).then_some(())?;
         }
-        let info = info(&module)?;
-        let program = Program::new(&module, &info).ok()?;
-        Some(if case.notices(kernel, &program).unwrap_or(true) { Fate::Killed } else { Fate::Survived })
+        let interpreter = Interpreter::of(kernel, &module).ok()?;
+        Some(if case.notices(&interpreter).unwrap_or(true) { Fate::Killed } else { Fate::Survived })
     }
 }
 
@@ -186,13 +235,36 @@ fn find(module: &Module, name: &str) -> Option<Handle<Function>> {
 }
 
 impl Ready<'_> {
-    /// Whether a row is off, a law broken, or too much left open.
-    fn notices(&self, kernel: &Kernel, program: &Program) -> Result<bool, Error> {
-        let mut runner = Runner::new(kernel, program)?;
-        let words = kernel.result_words() as usize;
+    /// Whether a value is off, a law broken, or too much left open.
+    fn notices(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
+        Ok(self.is_off(interpreter)? || self.fails(interpreter)?)
+    }
+
+    /// Whether a value in f64 is off: the code as written, compared to nearly all its digits.
+    fn is_off(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
+        let kinds = self.job.kernel().result_kinds();
+        let mut calls = interpreter.calls::<f64>()?;
+        calls.machine.loop_limit = TRIPS;
+        for batch in &self.batches {
+            for (index, target) in batch.expected.iter().enumerate() {
+                let found = exact(&mut calls, batch.rows.row_words(index), &kinds)?;
+                let slack = &batch.slack[index * kinds.len()..];
+                // What is no number is not near.
+                if (0..kinds.len()).any(|word| slack[word].is_finite() && !(nearest(target, &found, word) <= slack[word])) {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether a row in f32 or a law fails, as `lamplight check` judges them.
+    fn fails(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
+        let mut runner = Runner::new(self.job.kernel(), interpreter)?;
+        let words = self.job.kernel().result_words() as usize;
         let mut results = vec![0; words * self.job.rows.len()];
         let mut order = self.order.iter();
-        for (rows, expected) in &self.batches {
+        for Batch { rows, expected, .. } in &self.batches {
             let found = runner.run(&rows.words)?;
             if !judge::judge(&self.job, rows, expected, &found).failing.is_empty() {
                 return Ok(true);
@@ -215,36 +287,35 @@ impl Ready<'_> {
     }
 
     /// Runs every row of the case, for what the machine records meanwhile.
-    pub fn record<'p>(&self, program: &'p Program) -> Result<Machine<'p, f32>, Error> {
-        let mut runner = Runner::new(self.job.kernel(), program)?;
+    pub fn record(&self, interpreter: &Interpreter, seen: &mut dyn FnMut(&Machine<'_, f32>)) -> Result<(), Diagnostic> {
+        let mut runner = Runner::new(self.job.kernel(), interpreter)?;
         runner.run(&self.job.rows.words)?;
-        Ok(runner.machine)
+        seen(&runner.calls.machine);
+        Ok(())
     }
 }
 
-/// Runs rows of a kernel.
-struct Runner<'a, 'p> {
-    kernel: &'a Kernel,
-    machine: Machine<'p, f32>,
-    function: FunctionId,
-    handles: Vec<u32>,
+/// Runs rows of a kernel in f32.
+struct Runner<'p> {
+    calls: Calls<'p, f32>,
+    kinds: Vec<ScalarKind>,
+    stride: usize,
 }
 
-impl<'a, 'p> Runner<'a, 'p> {
-    fn new(kernel: &'a Kernel, program: &'p Program) -> Result<Self, Error> {
-        let mut machine = Machine::<f32>::new(program)?;
-        machine.bind(resources(kernel))?;
-        machine.loop_limit = TRIPS;
-        Ok(Self { kernel, machine, function: FunctionId::from(kernel.function), handles: handles(kernel, program).unwrap_or_default() })
+impl<'p> Runner<'p> {
+    fn new(kernel: &Kernel, interpreter: &'p Interpreter) -> Result<Self, Diagnostic> {
+        let mut calls = interpreter.calls::<f32>()?;
+        calls.machine.loop_limit = TRIPS;
+        Ok(Self { calls, kinds: kernel.result_kinds(), stride: kernel.input_words() as usize })
     }
 
-    fn run(&mut self, inputs: &[u32]) -> Result<Vec<u32>, Error> {
-        let stride = self.kernel.input_words() as usize;
-        let (mut results, mut arguments, mut result) = (Vec::new(), Vec::new(), Vec::new());
-        for row in inputs.chunks(stride.max(1)) {
-            flatten(self.kernel, &self.handles, row, &mut arguments);
-            self.machine.call_words(self.function, &arguments, &mut result)?;
-            results.extend_from_slice(&result);
+    /// A function without parameters has one row.
+    fn run(&mut self, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        let mut results = Vec::new();
+        let count = inputs.len().checked_div(self.stride).unwrap_or(1);
+        for row in 0..count {
+            let found = self.calls.call(&inputs[row * self.stride..(row + 1) * self.stride])?;
+            results.extend(found.iter().zip(&self.kinds).map(|(slot, kind)| word_of(*slot, *kind)));
         }
         Ok(results)
     }

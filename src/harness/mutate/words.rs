@@ -57,7 +57,18 @@ impl Text<'_> {
             Expression::FunctionArgument(index) => {
                 self.function.arguments.get(index as usize).and_then(|argument| argument.name.clone()).unwrap_or_default()
             }
+            // naga gives the reading of a variable no place.
+            Expression::Load { pointer } => {
+                self.variable(pointer).unwrap_or_else(|| self.excerpt(self.function.expressions.get_span(handle)))
+            }
             _ => self.excerpt(self.function.expressions.get_span(handle)),
+        }
+    }
+
+    fn variable(&self, pointer: Handle<Expression>) -> Option<String> {
+        match self.function.expressions[pointer] {
+            Expression::LocalVariable(variable) => self.function.local_variables[variable].name.clone(),
+            _ => None,
         }
     }
 

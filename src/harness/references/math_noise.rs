@@ -1,8 +1,9 @@
 //! Sources: Jimenez, 2014 (interleaved gradient noise); Jarzynski and Olano, "Hash Functions for
-//! GPU Rendering", 2020 (one step of PCG); Vogel, 1979 (the golden angle).
+//! GPU Rendering", 2020 (one step of PCG); OpenGL: Build High Performance Graphics, recipe 6 (the
+//! sine); Vogel, 1979 (the golden angle).
 
 use super::{Arguments, Entry, Expected};
-use glam::DVec2;
+use glam::{DVec2, DVec4};
 use std::f64::consts::{PI, TAU};
 
 pub const REFERENCES: Entry = Entry {
@@ -12,6 +13,7 @@ pub const REFERENCES: Entry = Entry {
         ("hash_pcg", |a| f64::from(hash(a.f64() as u32)).into()),
         ("pixel_seed", |a| f64::from(pixel_seed(a.vec2())).into()),
         ("unit_float", |a| unit(a.f64() as u32).into()),
+        ("random_hpg", |a| random_hpg(a.vec4()).into()),
         ("vogel_disk", |a| vogel_disk(a.f64(), a.f64(), a.f64()).into()),
     ],
 };
@@ -41,6 +43,13 @@ pub fn pixel_seed(pixel: DVec2) -> u32 {
 /// The upper 24 bits as a fraction.
 pub fn unit(bits: u32) -> f64 {
     f64::from(bits >> 8) / f64::from(1 << 24)
+}
+
+/// fract(sin(dot(seed, (12.9898, 78.233, 45.164, 94.673)))*43758.5453), with the constants as f32
+/// holds them: in the others' last digits lie whole turns.
+pub fn random_hpg(seed: DVec4) -> f64 {
+    let sine = seed.dot(DVec4::from_array([12.9898f32, 78.233, 45.164, 94.673].map(f64::from))).sin();
+    (sine * f64::from(43758.547f32)).rem_euclid(1.0)
 }
 
 /// Radius sqrt((i + 1/2)/count), angle i times pi*(3 - sqrt 5), plus phi.

@@ -3,11 +3,11 @@
 //! Castaño, 2013 (the 1-2-1 and 1-3-4-3-1 bells); Vogel, 1979 (the disk); Fernando, 2005 (blockers
 //! and penumbra); Gerasimov, GPU Gems, chapter 12 (the cube).
 
-use super::math_noise::{hash, pixel_seed, unit, vogel_disk};
+use super::math_noise::{hash, pixel_seed, random_hpg, unit, vogel_disk};
 use super::{Arguments, Entry, Expected};
 use crate::harness::fixture::{Sampler, Texture};
 use crate::harness::sampling;
-use glam::DVec2;
+use glam::{DVec2, DVec4};
 
 pub const REFERENCES: Entry = Entry {
     module: "shadow::compare",
@@ -21,6 +21,7 @@ pub const REFERENCES: Entry = Entry {
         ("castano_row", castano_row),
         ("pcf_castano_5", |a| averaged(a, |_, _| bell(&[1.0, 3.0, 4.0, 3.0, 1.0], 1.0))),
         ("pcf_random16", |a| averaged(a, random16)),
+        ("pcf_random16_hpg", random16_hpg),
         ("pcf_vogel", |a| averaged(a, |a, _| disk(a.f64(), a.f64(), a.f64()))),
         ("mean_blocker", mean_blocker),
         ("pcss", pcss),
@@ -89,6 +90,21 @@ fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
         2.0 * unit(state) - 1.0
     };
     (0..16).map(|_| (1.0, radius * DVec2::new(next(), next()))).collect()
+}
+
+/// Sixteen places to the right and below, up to a quarter of the map over `w`, by sines of the pixel.
+fn random16_hpg(a: &mut Arguments<'_>) -> Expected {
+    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    let (sc, least, pixel) = (a.vec4(), a.f64(), a.vec2());
+    let ndc = sc.truncate() / sc.w;
+    let uv = DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
+    let is_inside = sc.w > least.max(0.0) && ndc.x.abs() <= 1.0 && ndc.y.abs() <= 1.0 && (0.0..=1.0).contains(&ndc.z);
+    let place = |i: u32| {
+        let sines = [(pixel.x, pixel.y), (pixel.y, pixel.x)].map(|(x, y)| random_hpg(DVec4::new(x, y, x, f64::from(i))));
+        uv + 0.25 * DVec2::from_array(sines) / sc.w
+    };
+    let mean = || (0..16).map(|i| compare(map, sampler, place(i), ndc.z)).sum::<f64>() / 16.0;
+    if is_inside { mean().into() } else { 1.0.into() }
 }
 
 /// `count` places of the disk, at least one.

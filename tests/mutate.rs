@@ -1,0 +1,134 @@
+//! How much the numeric cases notice: mutants of a few modules, the list of equivalent ones, and
+//! the statements and branches that the cases reach.
+
+use std::sync::{Arc, Mutex};
+
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::harness::library::Library;
+use lamplight::harness::mutate::{self, Fate, Report};
+use lamplight::source::{Memory, SourceSet};
+use libtest_mimic::{Failed, Trial};
+use toml::Table;
+
+type Outcome = Result<(), Failed>;
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [(&str, fn() -> Outcome); 6] = [
+        ("library_kills", library_kills),
+        ("list_is_sound", list_is_sound),
+        ("hidden_by_tolerance", hidden_by_tolerance),
+        ("survivors_are_told", survivors_are_told),
+        ("stale_entries_are_told", stale_entries_are_told),
+        ("every_block_is_reached", every_block_is_reached),
+    ];
+    cases.into_iter().map(|(name, case)| Trial::test(format!("mutate::{name}"), case)).collect()
+}
+
+fn mutants(library: &Library, modules: &[&str]) -> Result<Report, Failed> {
+    let sources = Mutex::new(SourceSet::default());
+    let modules: Vec<String> = modules.iter().map(|module| (*module).to_owned()).collect();
+    let report = mutate::mutate(library, &sources, &modules);
+    report.map_err(|errors| render(&sources.into_inner().unwrap(), &errors, Form::Short).into())
+}
+
+/// Modules that take a moment; all of them are `cargo xtask mutate`.
+const QUICK: &[&str] = &["lighting::spot", "lighting::material", "math::safe", "shadow::bias", "surface::view"];
+
+fn library_kills() -> Outcome {
+    let report = mutants(&Library::embedded(), QUICK)?;
+    let (killed, all) = report.killed();
+    // One of `is_nan_bits` alone lives: no input is a number that is none.
+    let through: Vec<_> = report.outcomes.iter().filter(|outcome| matches!(outcome.fate, Fate::Survived | Fate::Unreached)).collect();
+    let expected = |function: &str| function == "math::safe::is_nan_bits";
+    if all < 150 || all - killed > 1 || !through.iter().all(|outcome| expected(&outcome.function)) {
+        return Err(format!("{}{}", report.survivors(), report.summary()).into());
+    }
+    assert_eq!(report.summary(), format!("killed {killed} of {all} mutants"));
+    Ok(())
+}
+
+/// Every entry names a function and a line that are there and a reason, and each only once; those
+/// of a quick module are mutants that do survive.
+fn list_is_sound() -> Outcome {
+    let library = Library::embedded();
+    let list: Table = toml::from_str(&library.text("survivors.toml").ok_or("no `survivors.toml`")?)?;
+    let entries = list["equivalent"].as_array().ok_or("no entries")?;
+    let mut seen = Vec::new();
+    for entry in entries {
+        let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
+        let function = text("function");
+        let (module, name) = function.rsplit_once("::").ok_or("no path")?;
+        let source = library.text(&format!("{}.wesl", module.replace("::", "/"))).ok_or_else(|| format!("no module `{module}`"))?;
+        let body = source.split_once(&format!("\nfn {name}(")).ok_or_else(|| format!("no function `{function}`"))?.1;
+        let body = body.split("\n}").next().unwrap_or_default();
+        let has_line = body.lines().any(|line| line.trim() == text("line"));
+        if !has_line || text("reason").len() < 20 || text("mutation").is_empty() {
+            return Err(format!("this entry is not sound: {entry}").into());
+        }
+        let key = (function.clone(), text("line"), text("mutation"));
+        if seen.contains(&key) {
+            return Err(format!("this entry is there twice: {entry}").into());
+        }
+        seen.push(key);
+    }
+    let listed = seen.iter().filter(|(function, _, _)| function.starts_with("shadow::bias::")).count();
+    let report = mutants(&library, &["shadow::bias"])?;
+    let found = report.outcomes.iter().filter(|outcome| matches!(outcome.fate, Fate::Equivalent(_))).count();
+    if listed > 0 && found == listed { Ok(()) } else { Err(format!("{found} of {listed} entries are mutants that survive").into()) }
+}
+
+fn package(files: &[(&str, &str)]) -> Library {
+    let files = files.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())).collect();
+    Library::new("mine", Arc::new(Memory(files)), Vec::new())
+}
+
+const HALF: &str = "fn half(x: f32) -> f32 {\n    return x * 0.5;\n}\n";
+
+/// A constant that is 1 % off is noticed in f64 however much f32 is allowed.
+fn hidden_by_tolerance() -> Outcome {
+    let cases =
+        "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
+    let report = mutants(&package(&[("mine.wesl", HALF), ("mine.toml", cases)]), &["mine"])?;
+    if report.summary() == "killed 2 of 2 mutants" { Ok(()) } else { Err(format!("{}{}", report.survivors(), report.summary()).into()) }
+}
+
+/// The code is no oracle of itself, and what no case runs is said to be so.
+fn survivors_are_told() -> Outcome {
+    let module = format!("{HALF}fn other(x: f32) -> f32 {{\n    return 1.0 - x;\n}}\n");
+    let cases =
+        "[[case]]\nfunction = \"half\"\noracle = \"eval\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
+    let report = mutants(&package(&[("mine.wesl", &module), ("mine.toml", cases)]), &["mine"])?;
+    let text = report.survivors();
+    for expected in [
+        "mine.wesl:2: mine::half: `0.505` instead of `0.5`\n",
+        "mine.wesl:5: mine::other: operator `+` in `1.0 - x` (no case runs this function)\n",
+    ] {
+        if !text.contains(expected) {
+            return Err(format!("{expected} is missing in\n{text}").into());
+        }
+    }
+    if report.passed() { Err("a report of survivors passes".into()) } else { Ok(()) }
+}
+
+fn stale_entries_are_told() -> Outcome {
+    let cases = "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ninputs = { x = 3 }\n";
+    let entry = "[[equivalent]]\nfunction = \"mine::half\"\nline = \"return x * 0.5;\"\nmutation = \"`0.505` instead of `0.5`\"\nreason = \"none\"\n";
+    let files = [("mine.wesl", HALF), ("mine.toml", cases), ("survivors.toml", entry)];
+    let report = mutants(&package(&files), &["mine"])?;
+    assert_eq!(report.stale, ["mine::half: `0.505` instead of `0.5` (in `return x * 0.5;`)"]);
+    let without = entry.replace("reason", "because");
+    let files = [("mine.wesl", HALF), ("mine.toml", cases), ("survivors.toml", &without)];
+    let error = mutants(&package(&files), &["mine"]).err().ok_or("an entry without a reason is taken")?;
+    let message = error.message().unwrap_or_default().to_owned();
+    if message.contains("`reason`") { Ok(()) } else { Err(message.into()) }
+}
+
+/// Every statement and every branch of the library is reached by some case.
+fn every_block_is_reached() -> Outcome {
+    let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
+    let found = mutate::coverage(&library, &sources, &library.modules());
+    let found = found.map_err(|errors| render(&sources.into_inner().unwrap(), &errors, Form::Short))?;
+    let missed: String = found.iter().filter(|module| !module.uncovered.is_empty()).map(ToString::to_string).collect();
+    let blocks: usize = found.iter().map(|module| module.blocks).sum();
+    if missed.is_empty() && blocks > 250 { Ok(()) } else { Err(format!("of {blocks} blocks no case reaches\n{missed}").into()) }
+}

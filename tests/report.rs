@@ -1,0 +1,173 @@
+//! `lamplight check --report` on a user's own module, with no Rust written: a page, JSON and JUnit,
+//! and a failure as a case to paste that fails alike.
+
+use std::fs;
+use std::process::{Command, Output};
+
+use libtest_mimic::{Failed, Trial};
+use serde_json::Value;
+use tempfile::TempDir;
+
+type Outcome = Result<(), Failed>;
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [(&str, fn() -> Outcome); 4] = [
+        ("forms_list_the_failure", forms_list_the_failure),
+        ("pasted_case_fails_alike", pasted_case_fails_alike),
+        ("off_before_rounding", off_before_rounding),
+        ("passing_report", passing_report),
+    ];
+    cases.into_iter().map(|(name, case)| Trial::test(format!("report::{name}"), case)).collect()
+}
+
+/// A fade that forgets its lower bound, and a threshold that is right.
+const MODULE: &str = "\
+fn fade(d: f32, reach: f32) -> f32 {
+    return min(1.0 - d / reach, 1.0);
+}
+
+fn threshold(x: f32) -> f32 {
+    return select(0.0, 1.0, x > 0.5);
+}
+";
+
+const CASES: &str = "\
+[[case]]
+function = \"fade\"
+formula = \"clamp(1 - d/reach, 0, 1)\"
+tolerance = { abs = 1e-6 }
+laws = [{ falling = \"d\" }]
+
+[case.inputs]
+d = { random = [0, 7.3], count = 300 }
+reach = [1.7, 3.1]
+
+[[case]]
+function = \"threshold\"
+rows = [{ x = 0.25, expect = 0 }, { x = 0.75, expect = 1 }]
+laws = [{ range = [0, 1] }]
+";
+
+struct Checked {
+    folder: TempDir,
+    output: Output,
+}
+
+impl Checked {
+    fn new(module: &str, cases: &str) -> Result<Self, Failed> {
+        let folder = TempDir::new()?;
+        fs::write(folder.path().join("fades & more.wesl"), module)?;
+        fs::write(folder.path().join("fades & more.toml"), cases)?;
+        let output = Command::new(env!("CARGO_BIN_EXE_lamplight")).args(["check", ".", "--report", "out"]).current_dir(&folder).output()?;
+        Ok(Self { folder, output })
+    }
+
+    fn read(&self, form: &str) -> Result<String, Failed> {
+        Ok(fs::read_to_string(self.folder.path().join("out").join(form))?)
+    }
+
+    fn errors(&self) -> String {
+        String::from_utf8_lossy(&self.output.stderr).into_owned()
+    }
+
+    fn exits(&self, code: i32) -> Outcome {
+        if self.output.status.code() == Some(code) { Ok(()) } else { Err(format!("{}: {}", self.output.status, self.errors()).into()) }
+    }
+}
+
+fn forms_list_the_failure() -> Outcome {
+    let checked = Checked::new(MODULE, CASES)?;
+    checked.exits(3)?;
+    json_lists(&checked.read("report.json")?)?;
+    let xml = checked.read("junit.xml")?;
+    well_formed(&xml, &[])?;
+    // The run in f32, and the code in f64.
+    contains(&xml, &["<testsuites name=\"lamplight\" tests=\"4\" failures=\"2\">", "classname=\"fades &amp; more\"", "<failure message="])?;
+    let page = checked.read("index.html")?;
+    well_formed(page.strip_prefix("<!doctype html>").ok_or("no document type")?, &["meta"])?;
+    contains(&page, &["<section id=\"fades &amp; more::fade\">", "not all hold", "function = &quot;fade&quot;", "<svg", "worst inputs"])
+}
+
+fn json_lists(text: &str) -> Outcome {
+    let report: Value = serde_json::from_str(text)?;
+    let outcomes = report["outcomes"].as_array().ok_or("no outcomes")?;
+    let of = |function: &str| outcomes.iter().find(|outcome| outcome["function"] == function).ok_or_else(|| format!("no `{function}`"));
+    let (fade, threshold) = (of("fade")?, of("threshold")?);
+    assert_eq!((&report["passed"], &fade["passed"], &threshold["passed"]), (&Value::Bool(false), &Value::Bool(false), &Value::Bool(true)));
+    let verdict = &fade["verdict"];
+    assert_eq!(verdict["inputs"], 600);
+    let (failing, smallest) = (verdict["failing"].as_u64().unwrap_or(0), verdict["smallest"].as_str().unwrap_or_default());
+    if failing < 100 || !smallest.contains("[[case]]") || verdict["worst_inputs"].as_array().is_none_or(Vec::is_empty) {
+        return Err(format!("{verdict:#}").into());
+    }
+    Ok(())
+}
+
+/// The case that is printed fails with the same values, in a file of its own.
+fn pasted_case_fails_alike() -> Outcome {
+    let checked = Checked::new(MODULE, CASES)?;
+    let errors = checked.errors();
+    let start = errors.find("[[case]]").ok_or_else(|| format!("nothing to paste in\n{errors}"))?;
+    let pasted = errors[start..].split("\n\n").next().unwrap_or_default();
+    contains(pasted, &["function = \"fade\"", "# d = 0x", "expect = [0.0]"])?;
+    let found = |text: &str| text.lines().find(|line| line.trim().starts_with("found ")).map(str::to_owned);
+    let again = Checked::new(MODULE, pasted)?;
+    again.exits(3)?;
+    if found(&again.errors()) == found(&errors) { Ok(()) } else { Err(format!("{errors}\nagain:\n{}", again.errors()).into()) }
+}
+
+/// What the tolerance of f32 hides is found in f64.
+fn off_before_rounding() -> Outcome {
+    let cases = "[[case]]\nfunction = \"threshold\"\nformula = \"select(0, 0.75, x > 0.5)\"\ntolerance = { abs = 0.3 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
+    let checked = Checked::new(MODULE, cases)?;
+    checked.exits(3)?;
+    contains(&checked.errors(), &["threshold (case 1): the code in f64, without any rounding, is off on 4 of 9 inputs"])
+}
+
+fn passing_report() -> Outcome {
+    let start = CASES.rfind("[[case]]").ok_or("no case")?;
+    let checked = Checked::new(MODULE, &CASES[start..])?;
+    checked.exits(0)?;
+    let report: Value = serde_json::from_str(&checked.read("report.json")?)?;
+    assert_eq!(report["passed"], true);
+    contains(&checked.read("junit.xml")?, &["failures=\"0\">"])?;
+    contains(&checked.read("index.html")?, &["all hold"])
+}
+
+fn contains(text: &str, expected: &[&str]) -> Outcome {
+    match expected.iter().find(|expected| !text.contains(**expected)) {
+        None => Ok(()),
+        Some(missing) => Err(format!("`{missing}` is missing in\n{text}").into()),
+    }
+}
+
+/// Whether tags are closed in order, attributes quoted, and no letter stands bare that has a meaning.
+fn well_formed(text: &str, void: &[&str]) -> Outcome {
+    let mut open: Vec<&str> = Vec::new();
+    let mut parts = text.split('<');
+    bare(parts.next().unwrap_or_default())?;
+    for part in parts {
+        let (tag, after) = part.split_once('>').ok_or_else(|| format!("`<{part}` is not closed"))?;
+        if open.last() != Some(&"style") {
+            bare(after)?;
+        }
+        let name = tag.trim_start_matches('/').split([' ', '\n', '/']).next().unwrap_or_default();
+        if tag.starts_with('/') {
+            let expected = open.pop();
+            if expected != Some(name) {
+                return Err(format!("`</{name}>` closes {expected:?}").into());
+            }
+        } else if tag.matches('"').count() % 2 != 0 {
+            return Err(format!("`<{tag}>` has an open quote").into());
+        } else if !tag.starts_with('?') && !tag.ends_with('/') && !void.contains(&name) {
+            open.push(name);
+        }
+    }
+    if open.is_empty() { Ok(()) } else { Err(format!("{open:?} stay open").into()) }
+}
+
+fn bare(text: &str) -> Outcome {
+    let entities = ["amp;", "lt;", "gt;", "quot;"];
+    let wrong = text.split('&').skip(1).find(|rest| !entities.iter().any(|entity| rest.starts_with(entity)));
+    wrong.map_or(Ok(()), |rest| Err(format!("a bare `&` before `{}`", rest.chars().take(20).collect::<String>()).into()))
+}
