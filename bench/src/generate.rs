@@ -55,6 +55,8 @@ pub fn run() -> Outcome {
     packed(&manifest)?;
     crate::load::run()?;
     tools(program, &points)?;
+    // What the two took of the machine, which others may have used too.
+    println!("by processor time: {:.1}x plain naga loop", theirs.processors.as_secs_f64() / ours.processors.as_secs_f64());
     let rate = points.len() as f64 / ours.wall.as_secs_f64();
     println!("gen: {rate:.0} permutations/s, {:.1}x plain naga loop", theirs.wall.as_secs_f64() / ours.wall.as_secs_f64());
     Ok(())
