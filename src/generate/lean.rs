@@ -10,8 +10,9 @@ use crate::compose::{Composed, Language, SourceMap};
 pub fn lean(composed: &Composed) -> Composed {
     let text = match composed.language {
         Language::Wesl => wgsl(&composed.text),
-        // A backslash continues a line, comments too, and a line may be asked for its number.
-        Language::Glsl if composed.text.contains('\\') || composed.text.contains("__LINE__") => composed.text.clone(),
+        // A backslash continues a line, comments too; a line may end with a carriage return alone,
+        // and be asked for its number.
+        Language::Glsl if composed.text.contains(['\\', '\r']) || composed.text.contains("__LINE__") => composed.text.clone(),
         Language::Glsl => glsl(&composed.text),
     };
     Composed { text, map: SourceMap::default(), reads: Vec::new(), warnings: Vec::new(), ..*composed }
@@ -32,10 +33,20 @@ fn wgsl(text: &str) -> String {
         lean.push_str(token);
         let gap = gap(after);
         rest = &after[gap..];
-        let Some(next) = rest.chars().next() else { return lean };
-        if gap > 0 && lean.chars().next_back().is_some_and(|last| !stands_alone(last) && !stands_alone(next)) {
-            lean.push(' ');
+        if rest.is_empty() {
+            return lean;
         }
+        if gap > 0 {
+            part(&mut lean, rest);
+        }
+    }
+}
+
+/// Writes a blank where what comes next could become one token with what is there.
+fn part(lean: &mut String, next: &str) {
+    let alone = |found: Option<char>| found.is_none_or(stands_alone);
+    if !alone(lean.chars().next_back()) && !alone(next.chars().next()) {
+        lean.push(' ');
     }
 }
 
@@ -59,7 +70,7 @@ fn gap(text: &str) -> usize {
 
 /// Whether nothing next to the character can become one token with it.
 fn stands_alone(found: char) -> bool {
-    matches!(found, '(' | ')' | '[' | ']' | '{' | '}' | ',' | ';')
+    matches!(found, '\n' | '(' | ')' | '[' | ']' | '{' | '}' | ',' | ';')
 }
 
 /// Bytes of the comment that the text begins with.
@@ -107,8 +118,21 @@ fn glsl(text: &str) -> String {
         rest = &comment[length.max(1)..];
     }
     plain.push_str(rest);
-    let lines = plain.lines().map(|line| line.split_ascii_whitespace().collect::<Vec<_>>().join(" "));
-    lines.filter(|line| !line.is_empty()).flat_map(|line| [line, "\n".to_owned()]).collect()
+    let mut lean = String::with_capacity(plain.len());
+    for line in plain.lines().filter(|line| !line.trim_ascii().is_empty()) {
+        let is_directive = line.trim_ascii().starts_with('#');
+        for word in line.split_ascii_whitespace() {
+            // A macro with parameters is another than one whose text is in brackets.
+            if is_directive && !lean.ends_with('\n') && !lean.is_empty() {
+                lean.push(' ')
+            } else {
+                part(&mut lean, word)
+            }
+            lean.push_str(word);
+        }
+        lean.push('\n');
+    }
+    lean
 }
 
 #[cfg(test)]
@@ -141,6 +165,7 @@ mod tests {
         for (text, expected) in [
             ("#version 450\n\n  int a; // b\n", "#version 450\nint a;\n"),
             ("a /* b\n c */ d / e", "a d / e\n"),
+            ("  #define A (b)\n void  main( /* c */ ) { }", "#define A (b)\nvoid main(){}\n"),
             ("a /* /* */ b", "a b\n"),
             ("/", "/\n"),
             ("a /* open", "a\n"),
