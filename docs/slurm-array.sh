@@ -17,13 +17,14 @@ manifest=$1
 out=$2
 shards=$out.shards
 
-if [ -z "${SLURM_ARRAY_TASK_ID:-}" ]; then
+# Said by an argument: a job inherits the variables of the one that submits it.
+if [ "${3:-}" = merge ]; then
     exec lamplight merge "$out" "$shards"/* --manifest "$manifest"
 fi
 
 # The first task also submits the merge, which starts once every shard is there.
 if [ "$SLURM_ARRAY_TASK_ID" = "$SLURM_ARRAY_TASK_MIN" ] && [ "$SLURM_ARRAY_TASK_COUNT" -gt 1 ]; then
-    sbatch --dependency="afterok:$SLURM_ARRAY_JOB_ID" --job-name=lamplight-merge "$0" "$manifest" "$out"
+    sbatch --dependency="afterok:$SLURM_ARRAY_JOB_ID" --job-name=lamplight-merge "$0" "$manifest" "$out" merge
 fi
 
 export RAYON_NUM_THREADS=${SLURM_CPUS_PER_TASK:-1}

@@ -15,7 +15,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 14] = [
+    let cases: [Case; 15] = [
         ("a_second_run_does_nothing", nothing_to_do),
         ("an_edit_compiles_what_it_reaches", edits),
         ("what_is_not_reached_is_not_compiled", unreached),
@@ -25,6 +25,7 @@ pub fn trials() -> Vec<Trial> {
         ("mistakes_come_from_the_cache_in_their_new_place", mistakes),
         ("check_compares", check),
         ("shards_merge_to_the_whole", shards),
+        ("shards_run_under_gnu_parallel", parallel),
         ("missing_and_foreign_shards_are_noticed", wrong_shards),
         ("a_key_and_a_target_can_be_chosen", choices),
         ("watch_follows_edits", watch),
@@ -207,9 +208,16 @@ fn edits() -> Outcome {
 fn unreached() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
+    let before = package.files("bundle")?;
     package.write("shade.wesl", &SHADE.replace("return 1.0", "return 2.0"))?;
     let second = package.generate(&[])?;
-    equal((&second["up_to_date"], compiled(&second)), (&Value::Bool(false), 0))
+    equal((&second["up_to_date"], compiled(&second)), (&Value::Bool(false), 0))?;
+    // Comments and layout of what is reached.
+    package.write("tint.wesl", &TINT.replace("fn red", "/* Of /* all */ colours. */ fn red // the first\n"))?;
+    package.write("small.vert.glsl", &VERTEX.replace("void main() {", "// Where it is.\nvoid main( /* nothing */ ) {\n\n"))?;
+    let third = package.generate(&[])?;
+    equal((&third["up_to_date"], compiled(&third)), (&Value::Bool(false), 0))?;
+    equal(package.files("bundle")?, before)
 }
 
 fn caching() -> Outcome {
@@ -298,6 +306,23 @@ fn shards() -> Outcome {
         equal(package.files("merged")?, package.files("whole")?)?;
     }
     Ok(())
+}
+
+/// The command of `docs/many-machines.md`.
+fn parallel() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&["-o", "whole"])?;
+    let run = |line: &str| -> Outcome {
+        let mut command = Command::new("sh");
+        command.args(["-c", line]).current_dir(package.path()).env("LAMPLIGHT", env!("CARGO_BIN_EXE_lamplight"));
+        let output = command.env("HOME", package.path()).output()?;
+        ensure(output.status.success(), format!("`{line}`: {}", String::from_utf8_lossy(&output.stderr)))
+    };
+    let found = run("parallel --version | grep -q GNU");
+    found.map_err(|_| "GNU parallel is not installed: `apt-get install parallel`, as `cargo xtask test` does")?;
+    run("parallel --will-cite --jobs 2 --halt now,fail=1 $LAMPLIGHT gen --no-cache --shard {}/4 --out shards/{} ::: $(seq 4)")?;
+    run("$LAMPLIGHT merge merged shards/* --manifest lamplight.toml")?;
+    equal(package.files("merged")?, package.files("whole")?)
 }
 
 fn wrong_shards() -> Outcome {

@@ -36,12 +36,13 @@ fn weight(i: i32) -> f32 {
 }";
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 6] = [
+    let cases: [Case; 7] = [
         ("values_arrive", values),
         ("one_shader_for_all_values", shared),
         ("spirv", spirv),
         ("glsl", glsl),
         ("texts", texts),
+        ("static_in_glsl_sources", static_in_glsl),
         ("usage_lists_narrow_a_manifest", usage),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("specialise::{name}"), case)).collect()
@@ -265,6 +266,25 @@ fn texts() -> Outcome {
         crate::snapshot::check("specialise", target.name(), &text)?;
     }
     Ok(())
+}
+
+/// A text in GLSL is composed for each value, and `variants` says so.
+fn static_in_glsl() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let manifest = MANIFEST.replace("wesl = \"spec.wesl\"", "glsl = { fragment = \"spec.frag.glsl\" }\ntargets = [\"glsl450\"]");
+    std::fs::write(folder.path().join("lamplight.toml"), manifest)?;
+    let text = "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(float(TAPS)); }\n";
+    std::fs::write(folder.path().join("spec.frag.glsl"), text)?;
+    let bundle = bundle_of(folder.path())?;
+    let shader = bundle.program("spec")?.shader("fragment")?;
+    for (key, value) in [("default", "9"), ("taps=16", "16")] {
+        let found = shader.get(key, Target::GLSL450)?;
+        let text = String::from_utf8(found.bytes)?;
+        check(found.constants.is_empty() && found.native.choices.is_empty() && text.contains(value), &text)?;
+    }
+    let manifest = folder.path().join("lamplight.toml").to_string_lossy().into_owned();
+    let said = run(env!("CARGO_BIN_EXE_lamplight"), &["variants", "--manifest", &manifest])?;
+    check(said.contains("static in GLSL, which is composed for each value: negative, taps"), &said)
 }
 
 /// Exactly what was asked for is generated; keys that are none any more are told.

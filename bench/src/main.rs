@@ -4,16 +4,26 @@
 
 mod compose;
 mod corpus;
+#[cfg(feature = "eval")]
 mod eval;
 mod generate;
 mod library;
+mod load;
+mod scale;
 
 use std::error::Error;
 use std::process::ExitCode;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[("compose", compose::run), ("eval", eval::run), ("gen", generate::run)];
+const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[
+    ("compose", compose::run),
+    #[cfg(feature = "eval")]
+    ("eval", eval::run),
+    ("gen", generate::run),
+    ("load", load::run),
+    ("scale", scale::run),
+];
 
 fn main() -> ExitCode {
     let asked = std::env::args().nth(1).unwrap_or_default();

@@ -45,6 +45,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let Ready { project, composed, context } = arguments.input.compose(form)?;
     let files = validate(&composed).and_then(|validated| {
         warn(&project.sources, &context.own(validate::lint(&composed, &validated)), form);
+        emit::check(&composed, &validated)?;
         files(&validated, &arguments)
     });
     let files = files.map_err(|diagnostics| Failure::Input(project.sources, context.explain(diagnostics)))?;

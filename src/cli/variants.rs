@@ -9,6 +9,7 @@ use super::failure::{DiagnosticForm, Failure, warn};
 use super::progress::Bar;
 use crate::diagnostic::{Diagnostics, nearest};
 use crate::generate::{self, Discard, Request, Tools};
+use crate::permute::axis::Mode;
 use crate::permute::report::{Report, StageCount, report};
 use crate::permute::{Manifest, Program};
 use crate::project;
@@ -45,6 +46,10 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     }
     let reports = manifest.programs.iter().map(|program| {
         let mut report = report(&program.name, &program.space);
+        if program.glsl.is_some() {
+            let spec = program.space.axes().iter().filter(|axis| axis.mode == Mode::Spec);
+            report.static_in_glsl = spec.map(|axis| axis.name.clone()).collect();
+        }
         if arguments.compose || arguments.compile {
             let bar = Bar::new();
             let composed = compose(&arguments, &mut sources, &packages, &manifest, program, &mut report, &bar);

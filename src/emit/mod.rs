@@ -18,6 +18,7 @@ mod specialise;
 
 pub use isolate::{fingerprint, isolate};
 pub use reflect::reflect;
+pub use specialise::check;
 
 use naga::ShaderStage;
 
@@ -70,11 +71,11 @@ pub struct Emitted {
 }
 
 /// Writes one entry point for one target. Overrides stay open: [`Native::choices`] says how each
-/// is chosen; where one depends on another, all become their defaults, except in WGSL.
+/// is chosen.
 ///
 /// # Errors
 /// `emit-failed` with the writer's words; `naga-internal` where it panicked;
-/// `unknown-entry-point`.
+/// `unknown-entry-point`; `dependent-override`, for whose place see [`check`].
 pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
     let index = find(validated, entry)?;
     let Some(writer) = targets::find(target) else {
@@ -88,6 +89,7 @@ pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitte
 fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted, Diagnostic> {
     let failed = |reason: String| Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target));
     let point = &validated.module.entry_points[index];
+    specialise::refuse(&validated.module)?;
     if writer.target == Target::WGSL || validated.module.overrides.is_empty() {
         let source = Source { module: &validated.module, info: &validated.info, stage: point.stage, entry: &point.name, index };
         return (writer.write)(&source).map_err(failed);

@@ -176,14 +176,11 @@ fn override_of(module: &Module, constant: &naga::Override) -> Override {
 }
 
 fn literal(module: &Module, expression: Handle<Expression>) -> Option<String> {
-    match module.global_expressions[expression] {
-        Expression::Literal(literal) => Some(match literal {
-            naga::Literal::F32(value) => format!("{value:?}"),
-            naga::Literal::U32(value) => value.to_string(),
-            naga::Literal::I32(value) => value.to_string(),
-            naga::Literal::Bool(value) => value.to_string(),
-            _ => return None,
-        }),
-        _ => None,
-    }
+    Some(match super::specialise::literal(module, expression)? {
+        naga::Literal::F32(value) => format!("{value:?}"),
+        naga::Literal::U32(value) => value.to_string(),
+        naga::Literal::I32(value) => value.to_string(),
+        naga::Literal::Bool(value) => value.to_string(),
+        _ => return None,
+    })
 }

@@ -54,6 +54,7 @@ fn compile(text: &Text, entry: &str, targets: &[Target]) -> Result<Made, Diagnos
     let whole = || validate(&text.composed);
     // The lean text is quick to read; the whole one knows where its mistakes are.
     let validated = validate(&text.lean).or_else(|_| whole())?;
+    emit::check(&text.lean, &validated).or_else(|_| emit::check(&text.composed, &whole()?))?;
     let unit = unit(&validated, entry, targets).map_err(|error| vec![error])?;
     let is_fine = validate::lint(&text.lean, &validated).is_empty();
     let warnings = if is_fine { Vec::new() } else { validate::lint(&text.composed, &whole()?) };

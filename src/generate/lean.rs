@@ -1,43 +1,83 @@
-//! A text without its comments: the same program in a third of the bytes.
+//! A text without its comments and its layout: the same program in a third of the bytes.
 //!
-//! To naga comments are blank, so that what it makes of a lean text differs in its spans only,
-//! and nothing that is written has spans. Two texts that differ in comments alone are compiled
-//! once, and an edited comment compiles nothing.
+//! To naga comments and blanks are the same, so that what it makes of a lean text differs in its
+//! spans only, and nothing that is written has spans. Texts that differ in comments or in layout
+//! alone are compiled once, and an edited comment compiles nothing.
 
 use crate::compose::{Composed, Language, SourceMap};
 
 /// The text to compile. It leads nowhere: for errors, validate the whole text.
 pub fn lean(composed: &Composed) -> Composed {
     let text = match composed.language {
-        Language::Wesl => without_comments(&composed.text),
-        // In GLSL a backslash continues a line comment, and directives end with their line.
-        Language::Glsl => composed.text.clone(),
+        Language::Wesl => wgsl(&composed.text),
+        // A backslash continues a line, comments too; a line may end with a carriage return alone,
+        // and be asked for its number.
+        Language::Glsl if composed.text.contains(['\\', '\r']) || composed.text.contains("__LINE__") => composed.text.clone(),
+        Language::Glsl => glsl(&composed.text),
     };
     Composed { text, map: SourceMap::default(), reads: Vec::new(), warnings: Vec::new(), decisions: Vec::new(), ..*composed }
 }
 
+/// What WGSL calls blank: line breaks and the marks of direction among it.
+const BLANKS: [char; 11] = [' ', '\t', '\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{200e}', '\u{200f}', '\u{2028}', '\u{2029}'];
+
+/// Each of WGSL's line breaks ends a line comment.
+const BREAKS: [char; 7] = ['\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{2028}', '\u{2029}'];
+
 /// WGSL has no strings: `//` and `/*` always begin a comment, and block comments nest.
-fn without_comments(text: &str) -> String {
+fn wgsl(text: &str) -> String {
     let mut lean = String::with_capacity(text.len());
     let mut rest = text;
-    while let Some(start) = rest.find('/') {
-        let (before, comment) = rest.split_at(start);
-        let length = length(comment);
-        // A comment separates what stands on its sides, so a blank takes its place.
-        lean.push_str(if length.is_some() { before.trim_end_matches(' ') } else { before });
-        lean.push(if length.is_some() { ' ' } else { '/' });
-        rest = &comment[length.unwrap_or(1)..];
+    loop {
+        let (token, after) = rest.split_at(token(rest));
+        lean.push_str(token);
+        let gap = gap(after);
+        rest = &after[gap..];
+        if rest.is_empty() {
+            return lean;
+        }
+        if gap > 0 {
+            part(&mut lean, rest);
+        }
     }
-    lean.push_str(rest);
-    lean
+}
+
+/// Writes a blank where what comes next could become one token with what is there.
+fn part(lean: &mut String, next: &str) {
+    let alone = |found: Option<char>| found.is_none_or(stands_alone);
+    if !alone(lean.chars().next_back()) && !alone(next.chars().next()) {
+        lean.push(' ');
+    }
+}
+
+/// Bytes before the first blank or comment.
+fn token(text: &str) -> usize {
+    let ends = |(at, found): &(usize, char)| BLANKS.contains(found) || *found == '/' && comment(&text[*at..]).is_some();
+    text.char_indices().find(ends).map_or(text.len(), |(at, _)| at)
+}
+
+/// Bytes of the blanks and comments that the text begins with.
+fn gap(text: &str) -> usize {
+    let mut rest = text;
+    loop {
+        rest = rest.trim_start_matches(BLANKS);
+        match comment(rest) {
+            Some(length) => rest = &rest[length..],
+            None => return text.len() - rest.len(),
+        }
+    }
+}
+
+/// Whether nothing next to the character can become one token with it.
+fn stands_alone(found: char) -> bool {
+    matches!(found, '\n' | '(' | ')' | '[' | ']' | '{' | '}' | ',' | ';')
 }
 
 /// Bytes of the comment that the text begins with.
-fn length(text: &str) -> Option<usize> {
-    match text.as_bytes().get(1)? {
-        // Each of WGSL's line breaks ends the comment.
-        b'/' => Some(text.find(['\n', '\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}']).unwrap_or(text.len())),
-        b'*' => Some(block(text)),
+fn comment(text: &str) -> Option<usize> {
+    match text.as_bytes() {
+        [b'/', b'/', ..] => Some(text.find(BREAKS).unwrap_or(text.len())),
+        [b'/', b'*', ..] => Some(block(text)),
         _ => None,
     }
 }
@@ -62,24 +102,75 @@ fn block(text: &str) -> usize {
     at
 }
 
+/// Directives end with their line, so lines stay; block comments do not nest.
+fn glsl(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find('/') {
+        let (before, comment) = rest.split_at(start);
+        plain.push_str(before);
+        let length = match comment.as_bytes() {
+            [_, b'/', ..] => comment.find(['\n', '\r']).unwrap_or(comment.len()),
+            [_, b'*', ..] => comment[2..].find("*/").map_or(comment.len(), |end| end + 4),
+            _ => 0,
+        };
+        plain.push(if length > 0 { ' ' } else { '/' });
+        rest = &comment[length.max(1)..];
+    }
+    plain.push_str(rest);
+    let mut lean = String::with_capacity(plain.len());
+    for line in plain.lines().filter(|line| !line.trim_ascii().is_empty()) {
+        let is_directive = line.trim_ascii().starts_with('#');
+        for word in line.split_ascii_whitespace() {
+            // A macro with parameters is another than one whose text is in brackets.
+            if is_directive && !lean.ends_with('\n') && !lean.is_empty() {
+                lean.push(' ')
+            } else {
+                part(&mut lean, word)
+            }
+            lean.push_str(word);
+        }
+        lean.push('\n');
+    }
+    lean
+}
+
 #[cfg(test)]
 mod tests {
-    use super::without_comments;
+    use super::{glsl, wgsl};
 
     #[test]
-    fn comments_go_and_nothing_else() {
+    fn comments_and_layout_go_and_nothing_else() {
         for (text, expected) in [
             ("a / b;", "a / b;"),
-            ("a // b\nc", "a \nc"),
-            ("a /* b /* c */ d */ e", "a  e"),
+            ("a // b\nc", "a c"),
+            ("a /* b /* c */ d */ e", "a e"),
             ("a/**/b/*/ */c", "a b c"),
-            ("a//", "a "),
-            ("a /* open", "a "),
+            ("a//", "a"),
+            ("a /* open", "a"),
             ("a /", "a /"),
-            ("é // é\u{2028}b", "é \u{2028}b"),
-            ("a //* b\n*/c", "a \n*/c"),
+            ("é // é\u{2028}b", "é b"),
+            ("a //* b\n*/c", "a */c"),
+            ("/* a */ fn red // b\n ( x : f32 ) { }", "fn red(x : f32){}"),
+            ("a - -b; c & &d", "a - -b;c & &d"),
+            ("a\u{a0} b", "a\u{a0} b"),
+            (" \n", ""),
         ] {
-            assert_eq!(without_comments(text), expected, "{text}");
+            assert_eq!(wgsl(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn glsl_keeps_its_lines() {
+        for (text, expected) in [
+            ("#version 450\n\n  int a; // b\n", "#version 450\nint a;\n"),
+            ("a /* b\n c */ d / e", "a d / e\n"),
+            ("  #define A (b)\n void  main( /* c */ ) { }", "#define A (b)\nvoid main(){}\n"),
+            ("a /* /* */ b", "a b\n"),
+            ("/", "/\n"),
+            ("a /* open", "a\n"),
+        ] {
+            assert_eq!(glsl(text), expected, "{text}");
         }
     }
 }

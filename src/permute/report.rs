@@ -28,6 +28,9 @@ pub struct Report {
     pub unique_outputs: Option<u64>,
     /// By name.
     pub axes: Vec<AxisCost>,
+    /// Spec axes of a program that has a GLSL source: GLSL is composed for each of their values.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub static_in_glsl: Vec<String>,
 }
 
 /// Distinct compositions of one stage or entry point.
@@ -72,6 +75,7 @@ pub fn report(program: &str, space: &Space) -> Report {
         unique_sources: None,
         unique_outputs: None,
         axes: axes.map(|(index, axis)| cost(axis, valid[index].len(), wanted, space.count_without(index).ok())).collect(),
+        static_in_glsl: Vec::new(),
     }
 }
 
@@ -113,7 +117,11 @@ impl fmt::Display for Report {
         writeln!(f)?;
         let heading = ["axis", "kind", "mode", "values", "without it", "costs"].map(str::to_owned).to_vec();
         let rows = std::iter::once(heading).chain(self.axes.iter().map(AxisCost::row)).collect();
-        table(f, &[Align::Left, Align::Left, Align::Left, Align::Right, Align::Right, Align::Right], rows)
+        table(f, &[Align::Left, Align::Left, Align::Left, Align::Right, Align::Right, Align::Right], rows)?;
+        match self.static_in_glsl.as_slice() {
+            [] => Ok(()),
+            names => writeln!(f, "  static in GLSL, which is composed for each value: {}", names.join(", ")),
+        }
     }
 }
 

@@ -4,5 +4,6 @@ use crate::{Outcome, test};
 
 /// Runs the benchmark of that name.
 pub fn run(arguments: &[String]) -> Outcome {
-    test::cargo(&["run", "--quiet", "--release", "--package", "lamplight-bench"], arguments)
+    let features: &[&str] = if arguments.iter().any(|name| name == "eval") { &["--features", "eval"] } else { &[] };
+    test::cargo(&[&["run", "--quiet", "--release", "--package", "lamplight-bench"], features].concat(), arguments)
 }

@@ -22,6 +22,8 @@ const NEEDS: &[Need] = &[
     Need { package: "nodejs", what: "node, for the typed keys", found: || program("node") },
     Need { package: "spirv-tools", what: "spirv-val", found: || program("spirv-val") },
     Need { package: "glslang-tools", what: "glslangValidator", found: || program("glslangValidator") },
+    Need { package: "parallel", what: "GNU parallel, for shards", found: || program("parallel") },
+    Need { package: "redis-server", what: "redis-server, for shared caches", found: || program("redis-server") },
 ];
 
 /// Installs what is missing where that is allowed; says exactly what to install where it is not.

@@ -55,7 +55,7 @@ const COMMANDS: &[Command] = &[
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
     ("validate", "run the external validators over a bundle", validate::run),
     ("docs", "write the catalogue and the modules made from data (--check: only compare)", docs::run),
-    ("bench", "compare with peers: compose, or eval", bench::run),
+    ("bench", "measure, beside peers where there are any: compose, eval, gen, load or scale", bench::run),
     ("fuzz", "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...", fuzz::run),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];

@@ -6,9 +6,11 @@ use std::process::Command;
 /// Prepares the machine, then runs every test; arguments go to the test binary.
 pub fn run(arguments: &[String]) -> Outcome {
     machine::prepare()?;
-    cargo(&["test", "--package", "lamplight", "--lib"], &[])?;
-    cargo(&["test", "--package", "lamplight", "--doc"], &[])?;
-    cargo(&["test", "--package", "lamplight", "--test", "all"], arguments)
+    // With every feature: shared stores are tested against a server.
+    let test = |what: &[&str], rest| cargo(&[&["test", "--package", "lamplight", "--features", "store"], what].concat(), rest);
+    test(&["--lib"], &[])?;
+    test(&["--doc"], &[])?;
+    test(&["--test", "all"], arguments)
 }
 
 /// Runs cargo in the workspace; a failure is exit code 3.

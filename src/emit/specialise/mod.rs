@@ -10,11 +10,13 @@ mod text;
 
 use naga::back::wgsl::{WriterFlags, write_string};
 use naga::valid::{ValidationFlags, Validator};
-use naga::{Expression, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
+use naga::{Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
 
 use super::{Emitted, Entry, Source};
 use crate::bundle::{Choice, Target};
-use crate::validate::CAPABILITIES;
+use crate::compose::Composed;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::validate::{CAPABILITIES, Validated};
 
 /// One override.
 struct Open {
@@ -37,8 +39,57 @@ impl Open {
     }
 }
 
+/// Refuses overrides whose default is not a number, as of those that depend on others: no target
+/// but WGSL has a place for such a default, and naga's writer of WGSL none either.
+///
+/// # Errors
+/// `dependent-override` for each, in the author's place where `composed` knows it.
+pub fn check(composed: &Composed, validated: &Validated) -> Result<(), Diagnostics> {
+    let found = dependent(&validated.module).map(|(name, span)| {
+        let place = span.to_range().and_then(|range| composed.map.lookup(range));
+        let error = refusal(name);
+        place.into_iter().fold(error, |error, span| error.at(span, "its default is not a number"))
+    });
+    let found: Diagnostics = found.collect();
+    if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+/// Fails as [`check`] does, without places.
+pub fn refuse(module: &Module) -> Result<(), Diagnostic> {
+    dependent(module).next().map_or(Ok(()), |(name, _)| Err(refusal(name)))
+}
+
+fn refusal(name: &str) -> Diagnostic {
+    Diagnostic::error(codes::DEPENDENT_OVERRIDE, format!("the default of override `{name}` depends on another override"))
+        .note("help: compute it where it is used: `let x = ...;` in a function may use any override")
+}
+
+fn dependent(module: &Module) -> impl Iterator<Item = (&str, naga::Span)> {
+    let overrides = module.overrides.iter();
+    let computed = overrides.filter(|(_, found)| found.init.is_some_and(|init| literal(module, init).is_none()));
+    computed.map(|(handle, found)| (found.name.as_deref().unwrap_or("without a name"), module.overrides.get_span(handle)))
+}
+
+/// A number, itself or by the name of a constant.
+pub fn literal(module: &Module, expression: Handle<Expression>) -> Option<Literal> {
+    match module.global_expressions[expression] {
+        Expression::Literal(literal) => Some(literal),
+        // Constants come before those that use them.
+        Expression::Constant(constant) => literal_before(module, module.constants[constant].init, expression),
+        Expression::ZeroValue(ty) => match module.types[ty].inner {
+            TypeInner::Scalar(scalar) => Literal::zero(scalar),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn literal_before(module: &Module, expression: Handle<Expression>, user: Handle<Expression>) -> Option<Literal> {
+    if expression < user { literal(module, expression) } else { None }
+}
+
 /// Writes an entry point with its overrides open; `None` where one of them is no plain scalar
-/// with a literal default, as those are that depend on others.
+/// with a default.
 pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, String>> {
     let opens = opens(source.module)?;
     Some(opened(source, &opens).and_then(|(module, info)| {
@@ -68,8 +119,7 @@ fn opens(module: &Module) -> Option<Vec<Open>> {
 fn open(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open> {
     let name = found.name.clone()?;
     let TypeInner::Scalar(Scalar { kind, width: 1 | 4 }) = module.types[found.ty].inner else { return None };
-    let Expression::Literal(literal) = module.global_expressions[found.init?] else { return None };
-    let (bits, text) = match literal {
+    let (bits, text) = match literal(module, found.init?)? {
         Literal::Bool(value) => (u32::from(value), value.to_string()),
         Literal::I32(value) => (value.cast_unsigned(), if value == i32::MIN { "(-2147483647 - 1)".to_owned() } else { value.to_string() }),
         Literal::U32(value) => (value, format!("{value}u")),
