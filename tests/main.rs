@@ -14,6 +14,7 @@ mod eval;
 mod examples;
 #[path = "../xtask/src/external.rs"]
 mod external;
+mod frames;
 mod generate;
 mod harness;
 mod keys;
@@ -44,6 +45,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     emit::trials,
     eval::trials,
     examples::trials,
+    frames::trials,
     generate::trials,
     harness::trials,
     keys::trials,

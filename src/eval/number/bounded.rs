@@ -61,20 +61,19 @@ impl Bounded {
     /// The error of a smooth function: the slope's share and the operation's own.
     fn smooth(op: Unary, x: Self, value: f64) -> f64 {
         let v = x.value;
-        let tangent = v.tan();
         let log_own = |value: f64| if (0.5..=2.0).contains(&v) { (-21f64).exp2() } else { 3.0 * ulp(value) };
         // No bound is given outside of [-pi, pi].
         let turn = if v.abs() <= std::f64::consts::PI * (1.0 + 1e-6) { (-11f64).exp2() } else { f64::INFINITY };
         let exp_relative = (4.0 + 2.0 * v.abs()) * f64::from(f32::EPSILON);
-        let root = (1.0 - v * v).max(0.0).sqrt();
+        let root = || (1.0 - v * v).max(0.0).sqrt();
         match op {
             Unary::Cos => times(v.sin(), x.error) + turn,
             Unary::Sin => times(v.cos(), x.error) + turn,
-            Unary::Tan => times(1.0 + tangent * tangent, x.error) + turn * (1.0 + tangent.abs()) / v.cos().abs() + 2.5 * ulp(value),
+            Unary::Tan => times(1.0 + value * value, x.error) + turn * (1.0 + value.abs()) / v.cos().abs() + 2.5 * ulp(value),
             Unary::Cosh => times(v.sinh(), x.error) + exp_relative * v.cosh() + 2.0 * ulp(value),
             Unary::Sinh => times(v.cosh(), x.error) + exp_relative * v.cosh() + 2.0 * ulp(value),
             Unary::Tanh => times(1.0 - value * value, x.error) + 2.0 * exp_relative + 4.0 * ulp(value),
-            Unary::Acos | Unary::Asin => times(1.0 / root, x.error).min(2.0 * x.error.sqrt()) + 6.81e-5 + 4096.0 * ulp(value),
+            Unary::Acos | Unary::Asin => times(1.0 / root(), x.error).min(2.0 * x.error.sqrt()) + 6.81e-5 + 4096.0 * ulp(value),
             Unary::Atan => times(1.0 / (1.0 + v * v), x.error) + 4096.0 * ulp(value),
             Unary::Asinh => times(1.0 / (v * v + 1.0).sqrt(), x.error) + (-20f64).exp2() + 4.0 * ulp(value),
             Unary::Acosh => {
@@ -132,6 +131,8 @@ impl Bounded {
 }
 
 impl Number for Bounded {
+    const BOUNDED: bool = true;
+
     fn from_word(word: u32) -> Self {
         Self::exact(f64::from_word(word))
     }
