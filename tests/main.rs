@@ -62,6 +62,8 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
 ];
 
 fn main() -> ExitCode {
+    // While there is one thread; where it is missing, the trials that need it say so.
+    lamplight::harness::executors::swiftshader::announce();
     let trials = KINDS.iter().flat_map(|kind| kind()).collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }
