@@ -85,12 +85,19 @@ impl Point {
 /// the seam of a cube.
 pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> [(f64, f64); 4] {
     let level = &footprint.texture.levels[footprint.level];
-    let taps = match footprint.filter {
-        Filter::Linear => linear(footprint, level),
-        Filter::Nearest => nearest(footprint, level, doubt),
+    let mut values = [0.0; 4];
+    let mut add = |tap: Tap| {
+        let Tap { weight, texel } = footprint.compared(tap, doubt);
+        (0..4).for_each(|i| values[i] += weight * texel[i]);
     };
-    let taps: Vec<Tap> = taps.into_iter().map(|tap| footprint.compared(tap, doubt)).collect();
-    let values = std::array::from_fn(|i| taps.iter().map(|tap| tap.weight * tap.texel[i]).sum::<f64>());
+    match footprint.filter {
+        Filter::Linear => linear(footprint, level, &mut add),
+        Filter::Nearest => {
+            let (texel, is_open) = nearest(footprint, level);
+            add(Tap { weight: 1.0, texel });
+            *doubt |= is_open;
+        }
+    }
     if !N::BOUNDED || footprint.filter == Filter::Nearest {
         return values.map(|value| (value, 0.0));
     }
@@ -115,15 +122,15 @@ fn spread<N: Number>(footprint: &Footprint<N>, level: &Level, reach: [f64; 3], d
     let side = |i: usize, reach: f64| if size[i] == 0.0 { 0 } else { (at[i] * size[i] - 0.5 + reach).floor() as i64 };
     let [first, last]: [[i64; 3]; 2] = [
         std::array::from_fn(|i| side(i, -reach[i].min(WIDEST))),
-        std::array::from_fn(|i| side(i, reach[i].min(WIDEST)) + i64::from(size[i] > 0.0)),
+        std::array::from_fn(|i| side(i, reach[i].min(WIDEST)).saturating_add(i64::from(size[i] > 0.0))),
     ];
     let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
     for z in first[2]..=last[2] {
         for (y, x) in (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| (y, x))) {
-            for tap in footprint.taps(level, [x, y, z], 1.0) {
+            footprint.taps(level, [x, y, z], 1.0, &mut |tap| {
                 let texel = footprint.compared(tap, doubt).texel;
                 (0..4).for_each(|i| (low[i], high[i]) = (low[i].min(texel[i]), high[i].max(texel[i])));
-            }
+            });
         }
     }
     std::array::from_fn(|i| high[i] - low[i])
@@ -152,37 +159,33 @@ fn base<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
     std::array::from_fn(|i| if size[i] == 0.0 { 0 } else { (footprint.point.at[i] * size[i] - 0.5).floor() as i64 })
 }
 
-fn linear<N>(footprint: &Footprint<N>, level: &Level) -> Vec<Tap> {
+fn linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(Tap)) {
     let (size, base) = (size(footprint, level), base(footprint, level));
     let share: [f64; 3] =
         std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 });
     let corners = (0..8usize).map(|corner| [corner & 1, corner >> 1 & 1, corner >> 2]);
-    let there = corners.filter(|corner| (0..3).all(|i| corner[i] == 0 || size[i] > 0.0));
-    there
-        .flat_map(|corner| {
-            let weight = (0..3).map(|i| if corner[i] == 1 { share[i] } else { 1.0 - share[i] }).product();
-            footprint.taps(level, std::array::from_fn(|i| base[i].saturating_add(corner[i] as i64)), weight)
-        })
-        .filter(|tap: &Tap| tap.weight != 0.0)
-        .collect()
+    for corner in corners.filter(|corner| (0..3).all(|i| corner[i] == 0 || size[i] > 0.0)) {
+        let weight: f64 = (0..3).map(|i| if corner[i] == 1 { share[i] } else { 1.0 - share[i] }).product();
+        if weight != 0.0 {
+            footprint.taps(level, std::array::from_fn(|i| base[i].saturating_add(corner[i] as i64)), weight, add);
+        }
+    }
 }
 
-/// The texel of the place; in doubt if the error reaches a texel that differs.
-fn nearest<N>(footprint: &Footprint<N>, level: &Level, doubt: &mut bool) -> Vec<Tap> {
+/// The texel of the place, and whether the error reaches one that differs.
+fn nearest<N: Number>(footprint: &Footprint<N>, level: &Level) -> ([f64; 4], bool) {
     let (size, point) = (size(footprint, level), &footprint.point);
     let at = |sides: [f64; 3]| {
         let coordinate = |i: usize| {
-            let (place, unit) = (point.at[i] * size[i], f64::from(f32::EPSILON));
-            (place + sides[i] * (point.error[i] * size[i] + if point.error[i] > 0.0 { place.abs() * unit } else { 0.0 })).floor() as i64
+            let place = point.at[i] * size[i];
+            (place + sides[i] * (point.error[i] * size[i] + place.abs() * f64::from(f32::EPSILON))).floor() as i64
         };
         footprint.texel(level, std::array::from_fn(coordinate))
     };
     let texel = at([0.0; 3]);
-    if point.error != [0.0; 3] {
-        let sides = (0..8).map(|corner| [corner & 1, corner & 2, corner & 4].map(|bit| if bit == 0 { -1.0 } else { 1.0 }));
-        *doubt |= sides.into_iter().any(|sides| at(sides) != texel);
-    }
-    vec![Tap { weight: 1.0, texel }]
+    let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+    let is_open = N::BOUNDED && point.error != [0.0; 3] && (0..8).any(|corner| at([corner & 1, corner & 2, corner & 4].map(side)) != texel);
+    (texel, is_open)
 }
 
 impl<N: Number> Footprint<'_, N> {
@@ -196,13 +199,14 @@ impl<N: Number> Footprint<'_, N> {
 impl<N> Footprint<'_, N> {
     /// The texel at column and row with its weight. Beyond the corner of a cube there is none: its
     /// weight goes to the three texels that meet there.
-    fn taps(&self, level: &Level, at: [i64; 3], weight: f64) -> Vec<Tap> {
+    fn taps(&self, level: &Level, at: [i64; 3], weight: f64, add: &mut impl FnMut(Tap)) {
         let inside = |i: usize| at[i].clamp(0, i64::from(level.width) - 1);
-        if self.point.shape != Shape::Cube || [0, 1].iter().any(|i| inside(*i) == at[*i]) {
-            return vec![Tap { weight, texel: self.texel(level, at) }];
+        if self.point.shape != Shape::Cube || inside(0) == at[0] || inside(1) == at[1] {
+            return add(Tap { weight, texel: self.texel(level, at) });
         }
-        let three = [[inside(0), inside(1), 0], [at[0], inside(1), 0], [inside(0), at[1], 0]];
-        three.map(|at| Tap { weight: weight / 3.0, texel: self.texel(level, at) }).into()
+        for at in [[inside(0), inside(1), 0], [at[0], inside(1), 0], [inside(0), at[1], 0]] {
+            add(Tap { weight: weight / 3.0, texel: self.texel(level, at) });
+        }
     }
 
     /// The texel at column and row (and slice), addressed as the sampler says.

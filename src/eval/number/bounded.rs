@@ -34,6 +34,17 @@ fn times(slope: f64, error: f64) -> f64 {
     if slope == 0.0 || error == 0.0 { 0.0 } else { (slope * error).abs() }
 }
 
+/// What `log(x + sqrt(x*x + c))` adds, which is how WGSL bounds asinh and acosh: where x is
+/// negative the sum cancels, and near an acosh of 0 the root does.
+fn log_of_sum(x: f64, c: f64, value: f64) -> f64 {
+    let square = (x * x + c).max(0.0);
+    let (root, off) = (square.sqrt(), ulp(x * x) + ulp(square));
+    let root_off = times(0.5 / root, off).min(off.sqrt()) + 4.5 * ulp(root);
+    let sum = x + root;
+    let log_own = if (0.5..=2.0).contains(&sum) { (-21f64).exp2() } else { 3.0 * ulp(value) };
+    (root_off + ulp(sum)) / sum + log_own
+}
+
 impl Bounded {
     /// Where f32 may overflow, or the value is not a number, anything is allowed.
     fn new(value: f64, error: f64) -> Self {
@@ -75,10 +86,8 @@ impl Bounded {
             Unary::Tanh => times(1.0 - value * value, x.error) + 2.0 * exp_relative + 4.0 * ulp(value),
             Unary::Acos | Unary::Asin => times(1.0 / root(), x.error).min(2.0 * x.error.sqrt()) + 6.81e-5 + 4096.0 * ulp(value),
             Unary::Atan => times(1.0 / (1.0 + v * v), x.error) + 4096.0 * ulp(value),
-            Unary::Asinh => times(1.0 / (v * v + 1.0).sqrt(), x.error) + (-20f64).exp2() + 4.0 * ulp(value),
-            Unary::Acosh => {
-                times(1.0 / (v * v - 1.0).max(0.0).sqrt(), x.error).min(2.0 * x.error.sqrt()) + (-20f64).exp2() + 4.0 * ulp(value)
-            }
+            Unary::Asinh => times(1.0 / (v * v + 1.0).sqrt(), x.error) + log_of_sum(v, 1.0, value),
+            Unary::Acosh => times(1.0 / (v * v - 1.0).max(0.0).sqrt(), x.error).min(2.0 * x.error.sqrt()) + log_of_sum(v, -1.0, value),
             Unary::Atanh => times(1.0 / (1.0 - v * v).max(0.0), x.error) + (-20f64).exp2() + 4.0 * ulp(value),
             Unary::Exp => times(value, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
             Unary::Exp2 => times(value * std::f64::consts::LN_2, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
