@@ -14,6 +14,7 @@ mod eval;
 mod examples;
 #[path = "../xtask/src/external.rs"]
 mod external;
+mod frames;
 mod generate;
 mod harness;
 mod keys;
@@ -47,6 +48,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     emit::trials,
     eval::trials,
     examples::trials,
+    frames::trials,
     generate::trials,
     harness::trials,
     keys::trials,
@@ -66,6 +68,8 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
 ];
 
 fn main() -> ExitCode {
+    // While there is one thread; where it is missing, the trials that need it say so.
+    lamplight::harness::executors::swiftshader::announce();
     let trials = KINDS.iter().flat_map(|kind| kind()).collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }

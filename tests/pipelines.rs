@@ -176,6 +176,8 @@ impl Device {
         let instance =
             wgpu::Instance::new(wgpu::InstanceDescriptor { backends: backend, ..wgpu::InstanceDescriptor::new_without_display_handle() });
         let mut adapters = block_on(instance.enumerate_adapters(backend));
+        // Other trials have told the loader of SwiftShader.
+        adapters.retain(|adapter| !adapter.get_info().name.contains("SwiftShader"));
         adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
         let adapter = adapters.into_iter().next().ok_or_else(|| format!("no adapter for {backend:?}: cargo xtask test installs one"))?;
         let descriptor = wgpu::DeviceDescriptor {

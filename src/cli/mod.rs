@@ -29,6 +29,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::harness::executors::swiftshader;
 use failure::Failure;
 
 /// Lighting and shadow functions in WGSL and GLSL: composed, compiled, bundled, proven.
@@ -65,6 +66,10 @@ enum Command {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
+    // While there is one thread.
+    if std::env::args_os().any(|argument| argument.to_string_lossy().contains(swiftshader::EXECUTOR.name)) {
+        swiftshader::announce();
+    }
     let cli = Cli::parse();
     match dispatch(cli.command, cli.diagnostics) {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,8 +5,8 @@
 //! [`cases`] reads what to try, [`library`] composes the modules, [`kernel`] wraps each function
 //! into a fragment shader, an executor of [`executors`] runs it, [`references`] says what should
 //! come out, [`tolerance`] how far off it may be, and [`check`] compares. [`expression`] runs one
-//! expression instead of cases, [`plots`] draws functions for the [`catalogue`], and [`mutate`]
-//! asks how much the cases notice.
+//! expression instead of cases, [`plots`] draws functions for the [`catalogue`], [`mutate`] asks
+//! how much the cases notice, and [`frame`] draws whole programs.
 
 pub mod cases;
 pub mod catalogue;
@@ -15,6 +15,7 @@ pub mod executors;
 pub mod expression;
 pub mod fixture;
 pub mod formula;
+pub mod frame;
 mod gpu;
 mod interpreter;
 pub mod kernel;

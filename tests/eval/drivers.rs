@@ -41,7 +41,7 @@ const MORE: &[One] = &[
 const WAIVERS: &[(&str, &str, f64)] = &[("asin(x)", "gl", 4e-4)];
 
 pub fn trials() -> Vec<Trial> {
-    let drivers = executors::ALL.iter().filter(|executor| ["vulkan", "gl"].contains(&executor.name));
+    let drivers = executors::ALL.iter().filter(|executor| ["vulkan", "gl", "swiftshader"].contains(&executor.name));
     drivers.map(|executor| Trial::test(format!("eval/drivers/{}", executor.name), move || run(executor))).collect()
 }
 

@@ -74,6 +74,9 @@ const CASES: &[Case] = &[
     ("side", false, false, &[0.1, 0.2, -0.3], &[5.0]),
     // Halfway between +x and +z: the mean of both faces.
     ("side", true, false, &[1.0, 0.0, 1.0], &[2.0]),
+    // At a corner three faces meet: their mean.
+    ("side", true, false, &[1.0, 1.0, 1.0], &[2.0]),
+    ("side", true, false, &[-1.0, -1.0, -1.0], &[3.0]),
     ("uniforms", false, false, &[], &[1.0, 7.0, 14.0, 28.0]),
     ("level", false, false, &[0.5, 0.5, 0.0], &[10.0]),
     ("level", false, false, &[0.5, 0.5, 1.0], &[20.0]),

@@ -4,7 +4,12 @@ use super::super::number::Number;
 use super::super::resources::{Address, Filter, Level, Sampler, Shape, Texture};
 
 /// Finest step of the fraction between two texels that hardware must have, as a share.
+///
+/// Eight bits, as Direct3D asks for and Mesa's drivers have; Vulkan alone would allow four.
 const SUBTEXEL: f64 = 1.0 / 256.0;
+/// Texels on each side that are looked at for the error of a filter: further off than that, the
+/// error is that of a whole footprint anyway.
+const WIDEST: f64 = 2.0;
 
 /// A place in a texture: coordinates in [0, 1] on a layer, and the bound of their errors.
 #[derive(Debug, Clone, Copy)]
@@ -72,21 +77,63 @@ impl Point {
 }
 
 /// The filtered value of each component, with its error.
+///
+/// A device may look up any place within the coordinate's error, and rounds the fractions between
+/// texels to [`SUBTEXEL`]. A linear filter is a surface whose slope along an axis is at most the
+/// difference of two texels, so the error is that reach times the spread of all texels within it:
+/// one more row or column than is filtered, where the place may cross the middle of a texel or
+/// the seam of a cube.
 pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> [(f64, f64); 4] {
     let level = &footprint.texture.levels[footprint.level];
-    let taps = match footprint.filter {
-        Filter::Linear => linear(footprint, level),
-        Filter::Nearest => nearest(footprint, level, doubt),
+    let mut values = [0.0; 4];
+    let mut add = |tap: Tap| {
+        let Tap { weight, texel } = footprint.compared(tap, doubt);
+        (0..4).for_each(|i| values[i] += weight * texel[i]);
     };
-    let taps: Vec<Tap> = taps.into_iter().map(|tap| footprint.compared(tap, doubt)).collect();
-    let size = size(footprint, level);
-    let slack: f64 = (0..3).filter(|axis| size[*axis] > 0.0).map(|axis| footprint.point.error[axis] * size[axis] + SUBTEXEL).sum();
+    match footprint.filter {
+        Filter::Linear => linear(footprint, level, &mut add),
+        Filter::Nearest => {
+            let (texel, is_open) = nearest(footprint, level);
+            add(Tap { weight: 1.0, texel });
+            *doubt |= is_open;
+        }
+    }
+    if !N::BOUNDED || footprint.filter == Filter::Nearest {
+        return values.map(|value| (value, 0.0));
+    }
+    let reach = reach(footprint, level);
+    let slack = reach.iter().sum::<f64>().min(1.0);
+    let spread = spread(footprint, level, reach, doubt);
     std::array::from_fn(|i| {
-        let value: f64 = taps.iter().map(|tap| tap.weight * tap.texel[i]).sum();
-        let (low, high) =
-            taps.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), tap| (low.min(tap.texel[i]), high.max(tap.texel[i])));
-        (value, if low == high { 0.0 } else { (high - low) * slack.min(1.0) + value.abs() * f64::from(f32::EPSILON) })
+        let error = if spread[i] == 0.0 { 0.0 } else { spread[i] * slack + values[i].abs() * f64::from(f32::EPSILON) };
+        (values[i], error)
     })
+}
+
+/// How far from the place a device may look along each axis, in texels.
+fn reach<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
+    let (size, point) = (size(footprint, level), &footprint.point);
+    std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { point.error[i] * size[i] + SUBTEXEL })
+}
+
+/// Largest difference of two texels within reach, for each component.
+fn spread<N: Number>(footprint: &Footprint<N>, level: &Level, reach: [f64; 3], doubt: &mut bool) -> [f64; 4] {
+    let (size, at) = (size(footprint, level), footprint.point.at);
+    let side = |i: usize, reach: f64| if size[i] == 0.0 { 0 } else { (at[i] * size[i] - 0.5 + reach).floor() as i64 };
+    let [first, last]: [[i64; 3]; 2] = [
+        std::array::from_fn(|i| side(i, -reach[i].min(WIDEST))),
+        std::array::from_fn(|i| side(i, reach[i].min(WIDEST)).saturating_add(i64::from(size[i] > 0.0))),
+    ];
+    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+    for z in first[2]..=last[2] {
+        for (y, x) in (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| (y, x))) {
+            footprint.taps(level, [x, y, z], 1.0, &mut |tap| {
+                let texel = footprint.compared(tap, doubt).texel;
+                (0..4).for_each(|i| (low[i], high[i]) = (low[i].min(texel[i]), high[i].max(texel[i])));
+            });
+        }
+    }
+    std::array::from_fn(|i| high[i] - low[i])
 }
 
 /// One component of the four texels around: (0, 1), (1, 1), (1, 0), (0, 0).
@@ -112,31 +159,33 @@ fn base<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
     std::array::from_fn(|i| if size[i] == 0.0 { 0 } else { (footprint.point.at[i] * size[i] - 0.5).floor() as i64 })
 }
 
-fn linear<N>(footprint: &Footprint<N>, level: &Level) -> Vec<Tap> {
+fn linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(Tap)) {
     let (size, base) = (size(footprint, level), base(footprint, level));
     let share: [f64; 3] =
         std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 });
     let corners = (0..8usize).map(|corner| [corner & 1, corner >> 1 & 1, corner >> 2]);
-    let there = corners.filter(|corner| (0..3).all(|i| corner[i] == 0 || size[i] > 0.0));
-    there
-        .map(|corner| {
-            let weight = (0..3).map(|i| if corner[i] == 1 { share[i] } else { 1.0 - share[i] }).product();
-            Tap { weight, texel: footprint.texel(level, std::array::from_fn(|i| base[i].saturating_add(corner[i] as i64))) }
-        })
-        .filter(|tap: &Tap| tap.weight != 0.0)
-        .collect()
+    for corner in corners.filter(|corner| (0..3).all(|i| corner[i] == 0 || size[i] > 0.0)) {
+        let weight: f64 = (0..3).map(|i| if corner[i] == 1 { share[i] } else { 1.0 - share[i] }).product();
+        if weight != 0.0 {
+            footprint.taps(level, std::array::from_fn(|i| base[i].saturating_add(corner[i] as i64)), weight, add);
+        }
+    }
 }
 
-/// The texel of the place; in doubt if the error reaches a texel that differs.
-fn nearest<N>(footprint: &Footprint<N>, level: &Level, doubt: &mut bool) -> Vec<Tap> {
-    let size = size(footprint, level);
-    let at = |side: f64| {
-        let coordinate = |i: usize| ((footprint.point.at[i] + side * footprint.point.error[i]) * size[i]).floor() as i64;
+/// The texel of the place, and whether the error reaches one that differs.
+fn nearest<N: Number>(footprint: &Footprint<N>, level: &Level) -> ([f64; 4], bool) {
+    let (size, point) = (size(footprint, level), &footprint.point);
+    let at = |sides: [f64; 3]| {
+        let coordinate = |i: usize| {
+            let place = point.at[i] * size[i];
+            (place + sides[i] * (point.error[i] * size[i] + place.abs() * f64::from(f32::EPSILON))).floor() as i64
+        };
         footprint.texel(level, std::array::from_fn(coordinate))
     };
-    let texel = at(0.0);
-    *doubt |= at(-1.0) != texel || at(1.0) != texel;
-    vec![Tap { weight: 1.0, texel }]
+    let texel = at([0.0; 3]);
+    let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+    let is_open = N::BOUNDED && point.error != [0.0; 3] && (0..8).any(|corner| at([corner & 1, corner & 2, corner & 4].map(side)) != texel);
+    (texel, is_open)
 }
 
 impl<N: Number> Footprint<'_, N> {
@@ -148,6 +197,18 @@ impl<N: Number> Footprint<'_, N> {
 }
 
 impl<N> Footprint<'_, N> {
+    /// The texel at column and row with its weight. Beyond the corner of a cube there is none: its
+    /// weight goes to the three texels that meet there.
+    fn taps(&self, level: &Level, at: [i64; 3], weight: f64, add: &mut impl FnMut(Tap)) {
+        let inside = |i: usize| at[i].clamp(0, i64::from(level.width) - 1);
+        if self.point.shape != Shape::Cube || inside(0) == at[0] || inside(1) == at[1] {
+            return add(Tap { weight, texel: self.texel(level, at) });
+        }
+        for at in [[inside(0), inside(1), 0], [at[0], inside(1), 0], [inside(0), at[1], 0]] {
+            add(Tap { weight: weight / 3.0, texel: self.texel(level, at) });
+        }
+    }
+
     /// The texel at column and row (and slice), addressed as the sampler says.
     fn texel(&self, level: &Level, at: [i64; 3]) -> [f64; 4] {
         let moved: [i64; 3] = std::array::from_fn(|i| at[i].saturating_add(self.shift[i]));

@@ -10,6 +10,9 @@ use super::quad::pair;
 use super::watch::Watch;
 use crate::diagnostic::codes;
 
+/// Finest step of the level of detail that devices agree on.
+const LEVEL_STEP: f64 = 1.0 / 64.0;
+
 /// Change of the coordinate to the neighbour in x and in y.
 type Gradient = [[f64; 3]; 2];
 
@@ -168,11 +171,18 @@ fn between_levels<N: Number>(
     let level = level.clamp(0.0, last);
     let mut at = |level: f64| combine(&Footprint { texture, sampler, level: level as usize, filter, point, shift, reference }, doubt);
     if sampler.mipmap == Filter::Nearest || level.fract() == 0.0 {
-        return at((level + 0.5).floor().min(last));
+        let chosen = (level + 0.5).floor().min(last);
+        let found = at(chosen);
+        // Where the level is as near to another, a device may take either.
+        let others = [level - LEVEL_STEP, level + LEVEL_STEP].map(|level| (level + 0.5).floor().clamp(0.0, last));
+        if N::BOUNDED && sampler.mipmap == Filter::Nearest && others.iter().any(|other| *other != chosen && at(*other) != found) {
+            *doubt = true;
+        }
+        return found;
     }
     let (fine, coarse, share) = (at(level.floor()), at(level.floor() + 1.0), level.fract());
     std::array::from_fn(|i| {
-        (fine[i].0 * (1.0 - share) + coarse[i].0 * share, fine[i].1.max(coarse[i].1) + (fine[i].0 - coarse[i].0).abs() * 2f64.powi(-6))
+        (fine[i].0 * (1.0 - share) + coarse[i].0 * share, fine[i].1.max(coarse[i].1) + (fine[i].0 - coarse[i].0).abs() * LEVEL_STEP)
     })
 }
 

@@ -34,6 +34,17 @@ fn times(slope: f64, error: f64) -> f64 {
     if slope == 0.0 || error == 0.0 { 0.0 } else { (slope * error).abs() }
 }
 
+/// What `log(x + sqrt(x*x + c))` adds, which is how WGSL bounds asinh and acosh: where x is
+/// negative the sum cancels, and near an acosh of 0 the root does.
+fn log_of_sum(x: f64, c: f64, value: f64) -> f64 {
+    let square = (x * x + c).max(0.0);
+    let (root, off) = (square.sqrt(), ulp(x * x) + ulp(square));
+    let root_off = times(0.5 / root, off).min(off.sqrt()) + 4.5 * ulp(root);
+    let sum = x + root;
+    let log_own = if (0.5..=2.0).contains(&sum) { (-21f64).exp2() } else { 3.0 * ulp(value) };
+    (root_off + ulp(sum)) / sum + log_own
+}
+
 impl Bounded {
     /// Where f32 may overflow, or the value is not a number, anything is allowed.
     fn new(value: f64, error: f64) -> Self {
@@ -61,25 +72,22 @@ impl Bounded {
     /// The error of a smooth function: the slope's share and the operation's own.
     fn smooth(op: Unary, x: Self, value: f64) -> f64 {
         let v = x.value;
-        let tangent = v.tan();
         let log_own = |value: f64| if (0.5..=2.0).contains(&v) { (-21f64).exp2() } else { 3.0 * ulp(value) };
         // No bound is given outside of [-pi, pi].
         let turn = if v.abs() <= std::f64::consts::PI * (1.0 + 1e-6) { (-11f64).exp2() } else { f64::INFINITY };
         let exp_relative = (4.0 + 2.0 * v.abs()) * f64::from(f32::EPSILON);
-        let root = (1.0 - v * v).max(0.0).sqrt();
+        let root = || (1.0 - v * v).max(0.0).sqrt();
         match op {
             Unary::Cos => times(v.sin(), x.error) + turn,
             Unary::Sin => times(v.cos(), x.error) + turn,
-            Unary::Tan => times(1.0 + tangent * tangent, x.error) + turn * (1.0 + tangent.abs()) / v.cos().abs() + 2.5 * ulp(value),
+            Unary::Tan => times(1.0 + value * value, x.error) + turn * (1.0 + value.abs()) / v.cos().abs() + 2.5 * ulp(value),
             Unary::Cosh => times(v.sinh(), x.error) + exp_relative * v.cosh() + 2.0 * ulp(value),
             Unary::Sinh => times(v.cosh(), x.error) + exp_relative * v.cosh() + 2.0 * ulp(value),
             Unary::Tanh => times(1.0 - value * value, x.error) + 2.0 * exp_relative + 4.0 * ulp(value),
-            Unary::Acos | Unary::Asin => times(1.0 / root, x.error).min(2.0 * x.error.sqrt()) + 6.81e-5 + 4096.0 * ulp(value),
+            Unary::Acos | Unary::Asin => times(1.0 / root(), x.error).min(2.0 * x.error.sqrt()) + 6.81e-5 + 4096.0 * ulp(value),
             Unary::Atan => times(1.0 / (1.0 + v * v), x.error) + 4096.0 * ulp(value),
-            Unary::Asinh => times(1.0 / (v * v + 1.0).sqrt(), x.error) + (-20f64).exp2() + 4.0 * ulp(value),
-            Unary::Acosh => {
-                times(1.0 / (v * v - 1.0).max(0.0).sqrt(), x.error).min(2.0 * x.error.sqrt()) + (-20f64).exp2() + 4.0 * ulp(value)
-            }
+            Unary::Asinh => times(1.0 / (v * v + 1.0).sqrt(), x.error) + log_of_sum(v, 1.0, value),
+            Unary::Acosh => times(1.0 / (v * v - 1.0).max(0.0).sqrt(), x.error).min(2.0 * x.error.sqrt()) + log_of_sum(v, -1.0, value),
             Unary::Atanh => times(1.0 / (1.0 - v * v).max(0.0), x.error) + (-20f64).exp2() + 4.0 * ulp(value),
             Unary::Exp => times(value, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
             Unary::Exp2 => times(value * std::f64::consts::LN_2, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
@@ -132,6 +140,8 @@ impl Bounded {
 }
 
 impl Number for Bounded {
+    const BOUNDED: bool = true;
+
     fn from_word(word: u32) -> Self {
         Self::exact(f64::from_word(word))
     }

@@ -15,6 +15,8 @@ use super::code::{Binary, Compare, Ternary, Unary};
 /// `doubt` is set where a discontinuous function meets arguments nearer to the jump than their
 /// errors, so that either side would be right.
 pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
+    /// Whether it carries errors.
+    const BOUNDED: bool;
     /// A slot holding a word. `from_word(0)` is the default.
     fn from_word(word: u32) -> Self;
     /// The word in the slot.

@@ -7,6 +7,8 @@ use crate::eval::code::{Binary, Compare, Ternary, Unary};
 macro_rules! native {
     ($float:ident, $from_word:expr, $to_word:expr) => {
         impl Number for $float {
+            const BOUNDED: bool = false;
+
             #[inline(always)]
             fn from_word(word: u32) -> Self {
                 $from_word(word)

@@ -1,6 +1,7 @@
 //! Runs kernels through wgpu, without a surface. What the GPU executors share.
 
 mod direct;
+pub mod draw;
 mod emitted;
 mod fixtures;
 mod open;

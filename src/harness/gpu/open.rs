@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
+use glow::HasContext as _;
+
 use super::{Gpu, lock};
 use crate::bundle::Target;
 
@@ -63,10 +65,24 @@ pub fn open(wanted: Wanted) -> Result<Gpu, String> {
     let descriptor = wgpu::DeviceDescriptor { required_features: features, required_limits: adapter.limits(), ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| error.to_string())?;
     let faults = watch(&device);
+    filter_seams(&device);
     let source = wgpu::ShaderSource::Wgsl(VERTEX.into());
     let vertex = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let adapter = describe(&adapter.get_info());
     Ok(Gpu { adapter, shaders: wanted.shaders, device, queue, faults, vertex, prepared: HashMap::new(), runs: 0 })
+}
+
+/// OpenGL filters across the edges of a cube's faces only where it is told to, as WebGPU means it;
+/// wgpu does not tell it.
+fn filter_seams(device: &wgpu::Device) {
+    // SAFETY: the device has just been made, and is not destroyed here.
+    let Some(device) = (unsafe { device.as_hal::<wgpu::hal::api::Gles>() }) else { return };
+    let context = device.context().lock();
+    // OpenGL ES 3 knows no other way.
+    if !context.version().is_embedded {
+        // SAFETY: the lock makes the context current.
+        unsafe { context.enable(glow::TEXTURE_CUBE_MAP_SEAMLESS) };
+    }
 }
 
 /// Collects what would otherwise be a panic.

@@ -1,0 +1,376 @@
+//! Whole programs: permutations of `forward` drawn on each driver, and every sampled fragment
+//! computed again by the evaluator from the very inputs the driver gave it.
+//!
+//! A fragment agrees where each component of its colour lies within the bound of value plus error.
+//! It is open where it does not, but a comparison on the way was too close to call, or where the
+//! specification gives no bound.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use lamplight::bundle::{Kind as BindingKind, Reflection};
+use lamplight::compose::{self, Language, Options};
+use lamplight::diagnostic::Diagnostics;
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::emit::reflect;
+use lamplight::eval::{self, Bounded, Function, Kind, Machine, Number, Program, Resources};
+use lamplight::harness::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use lamplight::harness::frame::{Attribute, BACKENDS, Drawing, Mesh, Renderer, Stage, pack, probe};
+use lamplight::harness::kernel::{SENTINEL, TARGET_WIDTH};
+use lamplight::harness::on_thread;
+use lamplight::permute::axis::ValueSet;
+use lamplight::permute::{Assignment, Settings, Space};
+use lamplight::project;
+use lamplight::resolve::{self, Packages};
+use lamplight::source::SourceSet;
+use lamplight::validate::{Validated, validate};
+use libtest_mimic::{Failed, Trial};
+
+/// Pixels from top to bottom.
+const HEIGHT: u32 = 64;
+/// One quad in so many is computed again.
+const STEP: usize = 29;
+/// Least fragments of a permutation.
+const LEAST: usize = 200;
+/// Largest share of open fragments of a permutation.
+const OPEN: f64 = 0.01;
+
+const LANGUAGES: [(&str, Language); 2] = [("wesl", Language::Wesl), ("glsl", Language::Glsl)];
+
+type Place = (u32, u32);
+
+pub fn trials() -> Vec<Trial> {
+    let pairs = LANGUAGES.iter().flat_map(|language| BACKENDS.iter().map(move |(backend, _)| (language, *backend)));
+    pairs
+        .map(|(language, backend)| Trial::test(format!("frames/forward/{}/{backend}", language.0), move || run(language, backend)))
+        .collect()
+}
+
+fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(), Failed> {
+    let outcome = on_thread(|| {
+        let renderer = Renderer::open(backend)?;
+        let sources = Sources::load(*language)?;
+        let points = covering(&sources.space);
+        let (mut total, mut failures) = (Tally::default(), Vec::new());
+        for point in &points {
+            match sources.scene(point).and_then(|scene| agrees(&renderer, &scene)) {
+                Ok(tally) => total.add(&tally),
+                Err(error) => failures.push(format!("[{}] {error}", sources.space.key(point))),
+            }
+        }
+        println!("{name} on {backend}: {} permutations, {total}", points.len());
+        if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
+    });
+    outcome.ok_or("panicked")?.map_err(Failed::from)
+}
+
+/// The default, then points until every value of every axis was in one.
+fn covering(space: &Space) -> Vec<Assignment> {
+    let mut missing = space.valid_values();
+    let mut points = Vec::new();
+    let mut next = Some(space.default_assignment());
+    while let Some(point) = next {
+        let seen = |axis: usize| ValueSet::single(point.ordinal(axis));
+        missing.iter_mut().enumerate().for_each(|(axis, values)| *values = values.without(seen(axis)));
+        points.push(point);
+        let pin = missing.iter().enumerate().find_map(|(axis, values)| Some((axis, values.iter().next()?)));
+        // Elsewhere a value that is missing too, or else each in turn.
+        let turn = points.len();
+        let choose = |axis: usize, allowed: ValueSet| {
+            let new = missing[axis].and(allowed).iter().next();
+            new.or_else(|| allowed.iter().nth(turn % allowed.len())).unwrap_or_default()
+        };
+        next = pin.and_then(|pin| space.pick_valid(&[pin], choose));
+    }
+    points
+}
+
+/// What became of the fragments.
+#[derive(Default)]
+struct Tally {
+    tried: usize,
+    open: usize,
+    /// Largest error over its bound.
+    share: f64,
+    detours: BTreeMap<&'static str, usize>,
+}
+
+impl Tally {
+    fn add(&mut self, other: &Self) {
+        self.tried += other.tried;
+        self.open += other.open;
+        self.share = self.share.max(other.share);
+        other.detours.iter().for_each(|(detour, count)| *self.detours.entry(detour).or_default() += count);
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} fragments, {} open, at most {:.0} % of the bound", self.tried, self.open, 100.0 * self.share)?;
+        self.detours.iter().try_for_each(|(detour, count)| write!(f, "; {count} times {detour}"))
+    }
+}
+
+/// The program's graphs.
+struct Sources {
+    texts: SourceSet,
+    space: Space,
+    graphs: Graphs,
+}
+
+enum Graphs {
+    Wesl(resolve::wesl::Graph),
+    /// Vertex and fragment stage.
+    Glsl([resolve::glsl::Graph; 2]),
+}
+
+/// A permutation with everything it is drawn with.
+struct Scene {
+    /// Vertex and fragment stage, with the names of their entry points.
+    stages: [(Arc<Validated>, &'static str); 2],
+    mesh: Mesh,
+    buffers: BTreeMap<Place, Vec<u8>>,
+    fixtures: BTreeMap<Place, Arc<Fixture>>,
+}
+
+impl Sources {
+    fn load(language: Language) -> Result<Self, String> {
+        let (mut texts, manifest) = project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+        let packages = project::library();
+        let space = manifest.programs.into_iter().find(|program| program.name == "forward").ok_or("no forward")?.space;
+        let graphs = match language {
+            Language::Wesl => resolve::wesl::load(&mut texts, &packages, "programs/forward.wesl").map(Graphs::Wesl),
+            Language::Glsl => stages(&mut texts, &packages).map(Graphs::Glsl),
+        };
+        match graphs {
+            Ok(graphs) => Ok(Self { texts, space, graphs }),
+            Err(problems) => Err(render(&texts, &problems, Form::Human)),
+        }
+    }
+
+    fn scene(&self, point: &Assignment) -> Result<Scene, String> {
+        let stages = self.stages(&self.space.settings(point)).map_err(|problems| render(&self.texts, &problems, Form::Human))?;
+        let reflected = |(validated, entry): &(Arc<Validated>, &str)| reflect(validated, entry).map_err(|problem| problem.message);
+        let (vertex, fragment) = (reflected(&stages[0])?, reflected(&stages[1])?);
+        let (mut buffers, mut fixtures) = (BTreeMap::new(), BTreeMap::new());
+        for binding in vertex.bindings.iter().chain(&fragment.bindings) {
+            let place = (binding.group, binding.binding);
+            match binding.kind {
+                BindingKind::Uniform => drop(buffers.insert(place, pack(binding, &number))),
+                _ => drop(fixtures.insert(place, Arc::new(fixture(binding.kind, &binding.name, &binding.ty)))),
+            }
+        }
+        Ok(Scene { mesh: mesh(&vertex), stages, buffers, fixtures })
+    }
+
+    fn stages(&self, settings: &Settings) -> Result<[(Arc<Validated>, &'static str); 2], Diagnostics> {
+        match &self.graphs {
+            Graphs::Wesl(graph) => {
+                let both = Arc::new(validate(&compose::wesl::compose(graph, settings, &Options::default())?)?);
+                Ok([(both.clone(), "vs_main"), (both, "fs_main")])
+            }
+            Graphs::Glsl([vertex, fragment]) => {
+                let stage = |graph| validate(&compose::glsl::compose(graph, settings, &Options::default())?).map(Arc::new);
+                Ok([(stage(vertex)?, "main"), (stage(fragment)?, "main")])
+            }
+        }
+    }
+}
+
+fn stages(texts: &mut SourceSet, packages: &Packages) -> Result<[resolve::glsl::Graph; 2], Diagnostics> {
+    let mut load = |path| resolve::glsl::load(texts, packages, path);
+    Ok([load("programs/forward.vert.glsl")?, load("programs/forward.frag.glsl")?])
+}
+
+/// A number for every uniform, sensible where it matters.
+fn number(path: &str) -> Vec<f64> {
+    let (_, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let index = path.split(['[', ']']).nth(1).and_then(|index| index.parse::<f64>().ok()).unwrap_or(0.0);
+    let vary = |low: f64, high: f64, count: usize| -> Vec<f64> {
+        let step = |i: usize| ((i as f64 + 1.0) * 0.618 + index * 0.271 + path.len() as f64 * 0.137).fract();
+        (0..count).map(|i| low + (high - low) * step(i)).collect()
+    };
+    match name {
+        "world_from_view" => vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0.2, 0.3, 3., 1.],
+        "clip_from_world" if path.starts_with("camera") => vec![0.9, 0., 0., 0., 0., 0.9, 0., 0., 0., 0., 0.2, 0.1, 0., 0., 0.5, 1.],
+        "clip_from_world" => vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.],
+        "world_from_object" => vec![1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.],
+        "normal_from_object" => vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.],
+        "count" => vec![3.0],
+        "kind" => vec![index + 1.0],
+        "light" => vec![0.0],
+        "range" | "far" => vec![12.0],
+        "near" => vec![0.1],
+        "position" => vec![0.7 - index, 0.5, 1.5 + 0.3 * index],
+        "axis" => [vec![-0.36, -0.48, -0.8], vec![0.0, -0.28, -0.96], vec![0.6, 0.0, -0.8]][index as usize % 3].clone(),
+        "exponent" => vec![4.0 + index],
+        "shininess" => vec![16.0],
+        "cutoff" => vec![0.5],
+        "inner" => vec![0.9],
+        "outer" => vec![0.45],
+        "attenuation" => vec![1.0, 0.1, 0.05],
+        "roughness" => vec![0.45],
+        "up" => vec![0.0, 1.0, 0.0],
+        "min_w" | "min_variance" | "texel" => vec![0.01],
+        "bias" => vec![0.003],
+        "start" => vec![1.0],
+        "end" => vec![6.0],
+        "exponents" => vec![5.0, 5.0],
+        "radius" => vec![2.0],
+        _ => vary(0.1, 0.9, 4),
+    }
+}
+
+/// A texture or sampler for a binding: smooth colours, depths with an edge.
+fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
+    let sampler = |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
+    match kind {
+        BindingKind::ComparisonSampler => sampler(true, Some(Compare::LessEqual)),
+        BindingKind::Sampler => sampler(name != "depth_sampler", None),
+        _ => {
+            let kind = match (ty.contains("depth"), ty.contains("cube")) {
+                (true, true) => TextureKind::DepthCube,
+                (true, false) => TextureKind::Depth2d,
+                (false, true) => TextureKind::ColorCube,
+                (false, false) => TextureKind::Color2d,
+            };
+            // The depth map once more, where it is read as colours.
+            let is_depth = kind.is_depth() || name == "shadow_depth";
+            let value = |index: usize| {
+                let (x, y) = ((index % 8) as f32, (index / 8 % 8) as f32);
+                if is_depth { if x < 4.0 { 0.25 } else { 0.875 } } else { (20.0 + 3.0 * x + 2.0 * y) / 64.0 }
+            };
+            let texels = 8 * 8 * kind.layers() as usize;
+            let channel = |index: usize| (0..kind.channels()).map(move |channel| value(index) + channel as f32 / 16.0);
+            Fixture::Texture(Texture { kind, width: 8, height: 8, texels: (0..texels).flat_map(channel).collect() })
+        }
+    }
+}
+
+/// A bumpy sheet in front of the viewer: 8 x 8 squares from -1 to 1.
+fn mesh(vertex: &Reflection) -> Mesh {
+    let mut attributes = Vec::new();
+    for input in &vertex.inputs {
+        let Some(location) = input.location else { continue };
+        let format = match input.ty.as_str() {
+            "u32" => wgpu::VertexFormat::Uint32,
+            ty if ty.starts_with("vec2") => wgpu::VertexFormat::Float32x2,
+            ty if ty.starts_with("vec3") => wgpu::VertexFormat::Float32x3,
+            _ => wgpu::VertexFormat::Float32x4,
+        };
+        attributes.push(Attribute { location, format });
+    }
+    let corner = |x: u32, y: u32| {
+        let (u, v) = (f64::from(x) / 8.0, f64::from(y) / 8.0);
+        let (px, py) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+        let bump = 0.3 * (3.0 * px).sin() * (2.0 * py).cos();
+        let attribute = |attribute: &Attribute| -> Vec<u32> {
+            let values = match attribute.location {
+                0 => vec![px, py, bump],
+                1 => vec![-0.9 * (3.0 * px).cos() * (2.0 * py).cos(), 0.6 * (3.0 * px).sin() * (2.0 * py).sin(), 1.0],
+                2 => vec![0.9, 0.5 + 0.4 * u, 0.9 - 0.4 * v, 1.0],
+                5 => vec![1.0, 0.0, 0.9 * (3.0 * px).cos(), 1.0],
+                6 => return vec![x % 3],
+                _ => vec![0.1 + 0.8 * u, 0.1 + 0.8 * v],
+            };
+            values.iter().map(|value| (*value as f32).to_bits()).collect()
+        };
+        attributes.iter().flat_map(attribute).collect::<Vec<u32>>()
+    };
+    let squares =
+        (0..64).flat_map(|square| [(0, 0), (1, 0), (0, 1), (0, 1), (1, 0), (1, 1)].map(|(x, y)| (square % 8 + x, square / 8 + y)));
+    let words = squares.flat_map(|(x, y)| corner(x, y)).collect();
+    Mesh { attributes, words }
+}
+
+fn agrees(renderer: &Renderer, scene: &Scene) -> Result<Tally, String> {
+    let [(vertex, vs), (fragment, fs)] = &scene.stages;
+    let watched = probe::watched(&fragment.module, fs).ok_or("no colour")?;
+    let drawing = Drawing {
+        vertex: Stage { module: &vertex.module, entry: vs },
+        fragment: Stage { module: &watched.module, entry: fs },
+        targets: watched.targets,
+        mesh: &scene.mesh,
+        buffers: &scene.buffers,
+        fixtures: &scene.fixtures,
+        height: HEIGHT,
+    };
+    let frame = renderer.draw(&drawing).map_err(|problem| problem.message)?;
+    let program = Program::new(&fragment.module, &fragment.info).map_err(|error| error.to_string())?;
+    let mut tally = Tally { detours: frame.detour.map(|detour| (detour, 1)).into_iter().collect(), ..Tally::default() };
+    recompute(&program, fs, scene, &frame.targets, &mut tally)?;
+    match tally {
+        Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
+        Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => Err(format!("{open} of {tried} fragments are open")),
+        tally => Ok(tally),
+    }
+}
+
+/// Computes the sampled fragments of a frame again.
+fn recompute(program: &Program, entry: &str, scene: &Scene, targets: &[Vec<u32>], tally: &mut Tally) -> Result<(), String> {
+    // GLSL has a plain function of that name too; entry points come after functions.
+    let (id, _) = program.functions().filter(|(_, function)| function.name == entry).last().ok_or("no entry point")?;
+    let signature = program.signature(id).ok_or("no entry point")?;
+    let mut machine = Machine::<Bounded>::new(program).map_err(|error| error.to_string())?;
+    machine.bind(resources(scene)).map_err(|error| error.to_string())?;
+    for quad in quads(&targets[0]) {
+        let arguments = quad.map(|pixel| slots(signature, targets, pixel));
+        machine.forget();
+        let wanted = machine.quad(id, [0, 1, 2, 3].map(|lane| arguments[lane].as_slice())).map_err(|error| error.to_string())?;
+        let doubt = !machine.findings().is_empty();
+        for (pixel, wanted) in quad.into_iter().zip(wanted) {
+            let found = four(&targets[0], pixel).map(|word| f64::from(f32::from_bits(word)));
+            let share = |(found, wanted): (f64, &Bounded)| {
+                if found == wanted.value() { 0.0 } else { (found - wanted.value()).abs() / wanted.error() }
+            };
+            let shares: Vec<f64> = found.into_iter().zip(&wanted).map(share).collect();
+            if shares.len() != 4 {
+                return Err(format!("{} numbers in place of a colour", shares.len()));
+            }
+            let far = shares.iter().position(|share| !(*share <= 1.0));
+            tally.tried += 1;
+            if wanted.iter().any(|value| !value.error().is_finite()) || far.is_some() && doubt {
+                tally.open += 1;
+            } else if let Some(i) = far {
+                let (x, y) = (pixel as u32 % TARGET_WIDTH, pixel as u32 / TARGET_WIDTH);
+                let (value, error) = (wanted[i].value(), wanted[i].error());
+                return Err(format!("pixel ({x}, {y}): found {}, wanted {value} within {error:e}", found[i]));
+            } else {
+                tally.share = shares.into_iter().fold(tally.share, f64::max);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whole quads all over the frame, in the order the evaluator takes them.
+fn quads(found: &[u32]) -> impl Iterator<Item = [usize; 4]> + '_ {
+    let quads = (0..HEIGHT / 2).flat_map(|y| (0..TARGET_WIDTH / 2).map(move |x| (2 * x, 2 * y))).step_by(STEP);
+    let pixels = quads.map(|(x, y)| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * TARGET_WIDTH + x + i) as usize));
+    pixels.filter(|quad| quad.iter().all(|pixel| four(found, *pixel) != [SENTINEL; 4]))
+}
+
+fn four(target: &[u32], pixel: usize) -> [u32; 4] {
+    std::array::from_fn(|word| target[4 * pixel + word])
+}
+
+/// What a fragment was given: behind the colour.
+fn slots(signature: &Function, targets: &[Vec<u32>], pixel: usize) -> Vec<Bounded> {
+    let words = targets[1..].iter().flat_map(|target| four(target, pixel));
+    let slot = |(kind, word): (&Kind, u32)| match kind {
+        Kind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
+        _ => Bounded::from_word(word),
+    };
+    signature.arguments.iter().zip(words).map(slot).collect()
+}
+
+fn resources(scene: &Scene) -> Resources {
+    let mut resources = Resources { buffers: scene.buffers.clone(), ..Resources::default() };
+    for (place, fixture) in &scene.fixtures {
+        match &**fixture {
+            Fixture::Texture(texture) => drop(resources.textures.insert(*place, eval::Texture::from(texture))),
+            Fixture::Sampler(sampler) => drop(resources.samplers.insert(*place, eval::Sampler::from(*sampler))),
+        }
+    }
+    resources
+}
