@@ -18,6 +18,7 @@ mod generate;
 mod harness;
 mod keys;
 mod library;
+mod packages;
 mod permute;
 mod pipelines;
 mod programs;
@@ -48,6 +49,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     harness::trials,
     keys::trials,
     library::trials,
+    packages::trials,
     permute::trials,
     pipelines::trials,
     programs::trials,

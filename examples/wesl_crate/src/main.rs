@@ -1,10 +1,11 @@
 //! Links a shader of one's own with the library by the `wesl` crate.
 //!
 //! ```text
-//! cargo run --manifest-path examples/wesl_crate/Cargo.toml
+//! cargo run -p lamplight-wesl-crate-example
 //! ```
 //!
-//! A published package is added with `Wesl::add_package` instead of the router.
+//! The library is read from its folder here. Its published form, the crate `lamplight_wgsl`, takes
+//! one line in place of the router: `compiler.add_package(&lamplight_wgsl::lamplight::PACKAGE)`.
 
 use std::error::Error;
 use std::path::Path;
