@@ -3,6 +3,9 @@
 #[path = "../examples/load_bundle.rs"]
 #[allow(dead_code)]
 mod load_bundle;
+#[path = "../examples/wesl_crate/main.rs"]
+#[allow(dead_code)]
+mod wesl_crate;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -58,7 +61,7 @@ fn plain_glsl_compiles() -> Result<(), Failed> {
 }
 
 fn wesl_crate_links() -> Result<(), Failed> {
-    let linked = cargo(&root(), &["run", "--quiet", "--frozen", "--package", "lamplight-wesl-crate-example"])?;
+    let linked = wesl_crate::link().map_err(|error| error.to_string())?;
     let module = naga::front::wgsl::parse_str(&linked).map_err(|error| error.emit_to_string(&linked))?;
     if module.entry_points.len() == 1 { Ok(()) } else { Err(format!("no entry point:\n{linked}").into()) }
 }

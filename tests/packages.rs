@@ -8,6 +8,7 @@ use std::process::Command;
 use lamplight::source::{Embedded, Files as _};
 use libtest_mimic::{Failed, Trial};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use wesl::{CodegenModule, CodegenPkg};
 
 use crate::examples::{cargo, run};
 use crate::shaderlib::{entry_wesl, modules};
@@ -36,62 +37,39 @@ fn export(form: &str, folder: &Path) -> Result<(), Failed> {
     run(Command::new(env!("CARGO_BIN_EXE_lamplight")).args(["export", "--form", form]).arg(folder)).map(drop)
 }
 
-const MANIFEST: &str = r#"[package]
-name = "consumer"
-version = "0.1.0"
-edition = "2024"
-
-[workspace]
-
-[dependencies]
-lamplight_wgsl = { path = "../lamplight_wgsl" }
-wesl = { version = "0.4.0", features = ["package"] }
-
-# As for the package's build script, so that the `wesl` crate is built once for both.
-[profile.dev]
-debug = false
-"#;
-
-/// Links every shader of the folder, and prints each after its name.
-const CONSUMER: &str = r#"fn main() {
-    let mut compiler = wesl::Wesl::new("shaders");
-    compiler.add_package(&lamplight_wgsl::lamplight::PACKAGE);
-    for name in std::env::args().skip(1) {
-        let linked = compiler.compile(&format!("package::{name}").parse().unwrap()).unwrap_or_else(|error| panic!("{name}: {error}"));
-        println!("// module {name}\n{linked}");
-    }
-}
-"#;
-
-/// The crate builds, and a crate that depends on it calls every function.
+/// Cargo takes the crate for publishing, and what its build script makes of the shaders links: a
+/// user's shader that calls every function of a module.
 fn cargo_package_composes() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     export("cargo", folder.path())?;
-    let names: Vec<String> = modules().iter().map(|module| module.replace('/', "_")).collect();
-    let shaders = modules().into_iter().zip(&names).map(|(module, name)| (format!("shaders/{name}.wesl"), entry_wesl(&module)));
-    let own = [
-        ("Cargo.toml", MANIFEST.to_owned()),
-        ("src/main.rs", CONSUMER.to_owned()),
-        // The versions that are there already.
-        ("Cargo.lock", std::fs::read_to_string(root().join("Cargo.lock"))?),
-    ];
-    let consumer = folder.path().join("consumer");
-    for (path, text) in own.into_iter().map(|(path, text)| (path.to_owned(), text)).chain(shaders) {
-        let path = consumer.join(path);
-        std::fs::create_dir_all(path.parent().unwrap_or(&consumer))?;
-        std::fs::write(path, text)?;
+    let package = folder.path().join("lamplight_wgsl");
+    // The versions that are there already.
+    std::fs::copy(root().join("Cargo.lock"), package.join("Cargo.lock"))?;
+    cargo(&package, &["package", "--quiet", "--offline", "--no-verify", "--allow-dirty"])?;
+
+    let scanned = wesl::PkgBuilder::new("lamplight").scan_toml(&package)?;
+    let built = scanned.validate().map_err(|error| error.to_string())?;
+    let constants: &CodegenPkg =
+        Box::leak(Box::new(CodegenPkg { crate_name: "lamplight_wgsl", root: constant(built.root), dependencies: &[] }));
+    let shaders = folder.path().join("shaders");
+    std::fs::create_dir_all(&shaders)?;
+    let mut compiler = wesl::Wesl::new(&shaders);
+    compiler.add_package(constants);
+    for module in modules() {
+        let name = module.replace('/', "_");
+        std::fs::write(shaders.join(format!("{name}.wesl")), entry_wesl(&module))?;
+        let path = format!("package::{name}").parse().map_err(|error| format!("{name}: {error}"))?;
+        let linked = compiler.compile(&path).map_err(|error| format!("{module}: {error}"))?.to_string();
+        let parsed = naga::front::wgsl::parse_str(&linked).map_err(|error| error.emit_to_string(&linked))?;
+        Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&parsed).map_err(|error| format!("{error:?}\n{linked}"))?;
     }
-    // Kept between runs: the `wesl` crate takes longer to build than the package.
-    let target = root().join("target/packages").to_string_lossy().into_owned();
-    let command = ["run", "--quiet", "--offline", "--target-dir", &target, "--"];
-    let arguments: Vec<&str> = command.into_iter().chain(names.iter().map(String::as_str)).collect();
-    let linked = cargo(&consumer, &arguments)?;
-    let linked: Vec<&str> = linked.split("// module ").skip(1).collect();
-    for text in &linked {
-        let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
-        Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).map_err(|error| format!("{error:?}\n{text}"))?;
-    }
-    if linked.len() == names.len() { Ok(()) } else { Err(format!("{} of {} modules", linked.len(), names.len()).into()) }
+    Ok(())
+}
+
+/// A module as the build script's constants have it.
+fn constant(module: wesl::Module) -> &'static CodegenModule {
+    let submodules: Vec<&CodegenModule> = module.submodules.into_iter().map(constant).collect();
+    Box::leak(Box::new(CodegenModule { name: module.name.leak(), source: module.source.leak(), submodules: submodules.leak() }))
 }
 
 /// The bundle has every module's text, as JSON and as what JavaScript makes of it.

@@ -150,7 +150,9 @@ fn faults(function: &Function) -> Vec<String> {
     let missing = DOC_PARTS.iter().filter(|name| part(name).is_none()).map(|name| format!("`{}` lacks `{name}`", function.name));
     let described = part(DOC_PARTS[0]).unwrap_or_default();
     let unknown = function.parameters.iter().filter(|name| !described.contains(&format!("`{name}`")));
-    missing.chain(unknown.map(|name| format!("`{}` does not describe `{name}`", function.name))).collect()
+    let summary = function.doc.first().filter(|line| line.ends_with('.') && !DOC_PARTS.iter().any(|part| line.starts_with(part)));
+    let unsaid = summary.is_none().then(|| format!("`{}` does not say in a sentence what it computes", function.name));
+    unsaid.into_iter().chain(missing).chain(unknown.map(|name| format!("`{}` does not describe `{name}`", function.name))).collect()
 }
 
 /// A function as its text has it.
