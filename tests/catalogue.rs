@@ -20,6 +20,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("catalogue::modules_are_up_to_date", modules_are_up_to_date),
         Trial::test("catalogue::same_bytes_twice", same_bytes_twice),
         Trial::test("catalogue::every_item_has_a_twin", every_item_has_a_twin),
+        Trial::test("catalogue::every_member_is_described", every_member_is_described),
         Trial::test("catalogue::every_plain_function_is_plotted", every_plain_function_is_plotted),
         Trial::test("catalogue::presets", presets_ship),
         Trial::test("catalogue::preset_mistakes", preset_mistakes_are_reported),
@@ -70,6 +71,17 @@ fn every_item_has_a_twin() -> Result<(), Failed> {
     let items = catalogue::library().into_iter().flat_map(|module| module.items);
     let alone: Vec<String> = items.filter(|item| item.glsl.is_none()).map(|item| item.path()).collect();
     if alone.is_empty() { Ok(()) } else { Err(format!("not in GLSL: {alone:?}").into()) }
+}
+
+/// Parameters of functions and fields of structs: what they are, beyond their names.
+fn every_member_is_described() -> Result<(), Failed> {
+    let items = catalogue::library().into_iter().flat_map(|module| module.items);
+    let silent = |item: &catalogue::Item| -> Vec<String> {
+        let members = item.members.iter().filter(|member| member.doc.is_empty());
+        members.map(|member| format!("{}: `{}`", item.path(), member.name)).collect()
+    };
+    let silent: Vec<String> = items.flat_map(|item| silent(&item)).collect();
+    if silent.is_empty() { Ok(()) } else { Err(format!("not described: {silent:?}").into()) }
 }
 
 /// A number from a number: nothing to choose, so nothing excuses the lack of a plot.

@@ -1,15 +1,17 @@
 //! The examples do what they say.
 
-#[path = "../examples/build_script/build.rs"]
-#[allow(dead_code)]
-mod build_script;
 #[path = "../examples/load_bundle.rs"]
 #[allow(dead_code)]
 mod load_bundle;
+#[path = "../examples/wesl_crate/main.rs"]
+#[allow(dead_code)]
+mod wesl_crate;
 
+use std::ffi::OsString;
+use std::path::Path;
 use std::process::Command;
 
-use lamplight::bundle::{self, Bundle, Target};
+use lamplight::bundle::{self, Target};
 use lamplight::generate::{Request, in_memory};
 use lamplight::permute::Quoted;
 use lamplight::project;
@@ -21,6 +23,7 @@ pub fn trials() -> Vec<Trial> {
     vec![
         Trial::test("examples::load_bundle", loads_a_bundle),
         Trial::test("examples::plain_glsl", plain_glsl_compiles),
+        Trial::test("examples::wesl_crate", wesl_crate_links),
         Trial::test("examples::build_script", build_script_compiles),
     ]
 }
@@ -54,23 +57,35 @@ fn plain_glsl_compiles() -> Result<(), Failed> {
     run(Command::new(env!("CARGO_BIN_EXE_lamplight")).arg("export").arg(folder.path()))?;
     let include = format!("-I{}", folder.path().display());
     let shader = root().join("examples/plain_glsl/spot.frag");
-    run(Command::new("glslangValidator").args(["-V", "-o", "/dev/null", &include]).arg(shader))
+    run(Command::new("glslangValidator").args(["-V", "-o", "/dev/null", &include]).arg(shader)).map(drop)
 }
 
-fn run(command: &mut Command) -> Result<(), Failed> {
-    let output = command.output()?;
-    let words = [output.stdout, output.stderr].concat();
-    if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&words).into_owned().into()) }
+fn wesl_crate_links() -> Result<(), Failed> {
+    let linked = wesl_crate::link().map_err(|error| error.to_string())?;
+    let module = naga::front::wgsl::parse_str(&linked).map_err(|error| error.emit_to_string(&linked))?;
+    if module.entry_points.len() == 1 { Ok(()) } else { Err(format!("no entry point:\n{linked}").into()) }
 }
 
+/// The build script compiles all permutations; the program finds each of them.
 fn build_script_compiles() -> Result<(), Failed> {
-    let folder = tempfile::tempdir()?;
-    let path = folder.path().join("shaders.lamplight");
-    build_script::compile(&root().join("examples/build_script/shaders"), &path).map_err(|error| error.to_string())?;
-    let bundle = Bundle::open(&path)?;
-    let lamp = bundle.program("lamp")?.shader("fs_main")?;
-    for key in ["default", "specular", "cone=exponent,specular"] {
-        lamp.get(key, Target::SPIRV)?;
+    let said = cargo(&root(), &["run", "--quiet", "--frozen", "--package", "lamplight-build-script-example"])?;
+    let keys: Vec<&str> = said.lines().filter_map(|line| Some(line.split_once(": ")?.0)).collect();
+    let expected = ["cone=exponent", "cone=exponent,specular", "default", "specular"];
+    if keys == expected { Ok(()) } else { Err(format!("{keys:?}, not {expected:?}").into()) }
+}
+
+/// Runs cargo, as a user of the examples does.
+pub fn cargo(folder: &Path, arguments: &[&str]) -> Result<String, Failed> {
+    let program = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
+    run(Command::new(program).current_dir(folder).args(arguments))
+}
+
+/// What a command wrote to its standard output, or all it wrote where it failed.
+pub fn run(command: &mut Command) -> Result<String, Failed> {
+    let output = command.output().map_err(|error| format!("{}: {error}", command.get_program().to_string_lossy()))?;
+    if output.status.success() {
+        return Ok(String::from_utf8(output.stdout)?);
     }
-    Ok(())
+    let words = [output.stdout, output.stderr].concat();
+    Err(String::from_utf8_lossy(&words).into_owned().into())
 }

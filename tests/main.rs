@@ -20,6 +20,7 @@ mod harness;
 mod keys;
 mod library;
 mod mutate;
+mod packages;
 mod permute;
 mod pipelines;
 mod programs;
@@ -54,6 +55,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     keys::trials,
     library::trials,
     mutate::trials,
+    packages::trials,
     permute::trials,
     pipelines::trials,
     programs::trials,

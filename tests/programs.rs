@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use lamplight::bundle::{Reflection, Target, Varying};
-use lamplight::compose::{self, Composed, Keep, Options};
+use lamplight::compose::{self, Composed, Keep, Language, Options};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::emit::{emit, isolate, reflect};
@@ -21,6 +21,9 @@ use rayon::prelude::*;
 
 /// Failures shown of one trial.
 const SHOWN: usize = 3;
+
+/// Files in one call of glslangValidator.
+const BATCH: usize = 64;
 
 /// Stages, the entry point of each in WESL, and glslang's name of it.
 const STAGES: [(&str, &str, &str); 2] = [("vertex", "vs_main", "vert"), ("fragment", "fs_main", "frag")];
@@ -38,7 +41,8 @@ pub fn trials() -> Vec<Trial> {
             let (name, shipped, covered) = (format!("programs::{}::{}", program.name, stage.0), program.clone(), program.clone());
             trials.push(Trial::test(format!("{name}::shipped"), move || every(&shipped, stage, &shipped.space.enumerate())));
             trials.push(Trial::test(format!("{name}::pairs"), move || every(&covered, stage, &cover::pairwise(&covered.space).points)));
-            let sampled = program.clone();
+            let (sampled, whole) = (program.clone(), program.clone());
+            trials.push(Trial::test(format!("{name}::glslang"), move || glslang_takes_sources(&whole, stage)));
             trials.push(Trial::test(format!("{name}::validators"), move || validators(&sampled, stage)));
         }
         trials.push(Trial::test(format!("programs::{}::distinct", program.name), move || distinct(&program)));
@@ -199,7 +203,38 @@ fn distinct(program: &Program) -> Result<(), Failed> {
     report(program, twins.map(|points| (points[0], format!("is the same as [{}]", program.space.key(points[1])))).collect())
 }
 
-/// Runs the outputs of the covering set through spirv-val and glslangValidator.
+/// glslangValidator compiles the GLSL of every permutation that ships, as composed, for Vulkan.
+fn glslang_takes_sources(program: &Program, stage: &(&'static str, &'static str, &'static str)) -> Result<(), Failed> {
+    let sources = Sources::new(program, stage)?;
+    let folder = tempfile::tempdir()?;
+    let [_, (_, compose)] = sources.languages();
+    let texts = texts(program, &sources.texts, &program.space.enumerate(), &*compose)?;
+    let mut files = Vec::new();
+    for (index, (composed, point)) in texts.composed.iter().enumerate() {
+        let path = folder.path().join(format!("{index}.{}", stage.2)).to_string_lossy().into_owned();
+        std::fs::write(&path, &composed.text)?;
+        files.push((path, point));
+    }
+    let refused = |batch: &[(String, &Assignment)]| -> Vec<(Assignment, String)> {
+        // Files of one call are linked with each other, which fails with status 3 where all compile.
+        let paths = batch.iter().map(|(path, _)| path);
+        let status = Command::new("glslangValidator").args(["--client", "vulkan100"]).args(paths).stdout(Stdio::null()).status();
+        if batch.len() > 1 && status.is_ok_and(|status| status.code() == Some(3)) {
+            return Vec::new();
+        }
+        let alone =
+            |(path, point): &(String, &Assignment)| Some(((*point).clone(), run("glslangValidator", &[VULKAN, &[path]].concat()).err()?));
+        batch.iter().filter_map(alone).collect()
+    };
+    let failures: Vec<_> = files.par_chunks(BATCH).flat_map_iter(refused).collect();
+    report(program, failures.iter().map(|(point, what)| (point, what.clone())).collect())
+}
+
+/// Options of glslangValidator for GLSL with Vulkan's semantics.
+const VULKAN: &[&str] = &["-V", "-o", "/dev/null"];
+
+/// Runs the outputs of the covering set through spirv-val and glslangValidator, and the GLSL that
+/// they were made from.
 fn validators(program: &Program, stage: &(&'static str, &'static str, &'static str)) -> Result<(), Failed> {
     let sources = Sources::new(program, stage)?;
     let folder = tempfile::tempdir()?;
@@ -227,7 +262,20 @@ fn accepted(composed: &Composed, entry: &str, extension: &str, prefix: &Path) ->
     for target in GLSL_TARGETS {
         run("glslangValidator", &["-S", extension, &write(target, extension)?])?;
     }
+    // What is written for ES 3.00 is for every later ES: one that only 3.00 takes would be a trap.
+    let es_300 = std::fs::read_to_string(write(Target::ESSL300, extension)?).map_err(|error| error.to_string())?;
+    let es_310 = es_300.replacen("#version 300 es", "#version 310 es", 1);
+    run("glslangValidator", &[&save(&es_310, prefix, "es310", extension)?])?;
+    if composed.language == Language::Glsl {
+        run("glslangValidator", &[VULKAN, &[&save(&composed.text, prefix, "source", extension)?]].concat())?;
+    }
     Ok(())
+}
+
+fn save(text: &str, prefix: &Path, name: &str, extension: &str) -> Result<String, String> {
+    let path = prefix.with_extension(format!("{name}.{extension}"));
+    std::fs::write(&path, text).map_err(|error| error.to_string())?;
+    Ok(path.to_string_lossy().into_owned())
 }
 
 fn run(tool: &str, arguments: &[&str]) -> Result<(), String> {

@@ -69,7 +69,8 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-fn modules() -> Vec<String> {
+/// Paths of the modules, without extension.
+pub fn modules() -> Vec<String> {
     stems("wesl")
 }
 
@@ -111,6 +112,8 @@ fn wesl_is_valid(module: &str) -> Result<(), Failed> {
     parse_wesl(module).map(|_| ())
 }
 
+/// As 450: naga's front end refuses every other version but 440 and 460. For those glslangValidator
+/// judges the modules, and what naga writes for those versions.
 fn glsl_is_valid(module: &str) -> Result<(), Failed> {
     parse_glsl(module).map(|_| ())
 }
@@ -147,7 +150,9 @@ fn faults(function: &Function) -> Vec<String> {
     let missing = DOC_PARTS.iter().filter(|name| part(name).is_none()).map(|name| format!("`{}` lacks `{name}`", function.name));
     let described = part(DOC_PARTS[0]).unwrap_or_default();
     let unknown = function.parameters.iter().filter(|name| !described.contains(&format!("`{name}`")));
-    missing.chain(unknown.map(|name| format!("`{}` does not describe `{name}`", function.name))).collect()
+    let summary = function.doc.first().filter(|line| line.ends_with('.') && !DOC_PARTS.iter().any(|part| line.starts_with(part)));
+    let unsaid = summary.is_none().then(|| format!("`{}` does not say in a sentence what it computes", function.name));
+    unsaid.into_iter().chain(missing).chain(unknown.map(|name| format!("`{}` does not describe `{name}`", function.name))).collect()
 }
 
 /// A function as its text has it.
@@ -238,10 +243,15 @@ fn written(sources: &SourceSet, composed: Result<Composed, Vec<Diagnostic>>) -> 
 
 /// The module, reached from an entry point that calls each of its functions.
 fn called_wesl(module: &str) -> Result<String, Failed> {
+    composed_wesl(entry_wesl(module))
+}
+
+/// An entry point that calls each function of a module by its path in the package `lamplight`.
+pub fn entry_wesl(module: &str) -> String {
     let path = format!("lamplight::{}", module.replace('/', "::"));
     let called = |f: Function| (format!("{path}::{}", f.name), f.types.iter().map(|ty| qualified(ty)).collect());
     let functions: Vec<_> = functions(&read(&format!("{module}.wesl"))).into_iter().map(called).collect();
-    composed_wesl(emits::entry(&functions))
+    emits::entry(&functions)
 }
 
 /// A structure's name with its module before it; any other type as it is.

@@ -1,4 +1,5 @@
-//! `wesl.toml`, as the community's specification "wesl.toml file format" has it.
+//! `wesl.toml`, as the community's specification "wesl.toml file format" has it: its keys stand in
+//! the table `package`; the tools that came before that read them at the top, so both are read.
 
 use std::path::{Path, PathBuf};
 
@@ -85,6 +86,9 @@ fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
     if package.and_then(|package| package.get("root")).is_some_and(|root| !root.is_str()) {
         return wrong("`package.root`", "a string", "root");
     }
+    if table.get("root").is_some_and(|root| !root.is_str()) {
+        return wrong("`root`", "a string", "root");
+    }
     let Some(dependencies) = table.get("dependencies") else { return Ok(()) };
     let Some(dependencies) = dependencies.as_table() else { return wrong("`dependencies`", "a table", "dependencies") };
     if dependencies.len() > DEPENDENCIES {
@@ -118,7 +122,8 @@ impl Files for Shown {
 }
 
 fn root_in(folder: &Path, table: &Table) -> PathBuf {
-    let declared = table.get("package").and_then(|package| package.get("root")).and_then(|root| root.as_str());
+    let packaged = table.get("package").and_then(|package| package.get("root"));
+    let declared = packaged.or_else(|| table.get("root")).and_then(|root| root.as_str());
     folder.join(declared.unwrap_or(DEFAULT_ROOT))
 }
 

@@ -1,10 +1,11 @@
 //! Links a shader of one's own with the library by the `wesl` crate.
 //!
 //! ```text
-//! cargo run --manifest-path examples/wesl_crate/Cargo.toml
+//! cargo run --example wesl_crate
 //! ```
 //!
-//! A published package is added with `Wesl::add_package` instead of the router.
+//! The library is read from its folder here. Its published form, the crate `lamplight_wgsl`, takes
+//! one line in place of the router: `compiler.add_package(&lamplight_wgsl::lamplight::PACKAGE)`.
 
 use std::error::Error;
 use std::path::Path;
@@ -22,8 +23,8 @@ pub fn link() -> Result<String, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = Router::new();
     let library = ModulePath::new(PathOrigin::Package("lamplight".into()), Vec::new());
-    files.mount_resolver(library, FileResolver::new(root.join("../../shaderlib")));
-    files.mount_fallback_resolver(FileResolver::new(root.join("shaders")));
+    files.mount_resolver(library, FileResolver::new(root.join("shaderlib")));
+    files.mount_fallback_resolver(FileResolver::new(root.join("examples/wesl_crate/shaders")));
     let compiler = Wesl::new(root).set_custom_resolver(files);
     let module = ModulePath::new(PathOrigin::Absolute, vec!["spot".into()]);
     Ok(compiler.compile(&module).map_err(|error| error.to_string())?.to_string())

@@ -1,0 +1,98 @@
+//! `lamplight export DIR`: the library for other tools, as files and as packages to publish.
+
+mod cargo;
+mod npm;
+
+use std::collections::BTreeMap;
+use std::io::{Write, stdout};
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::failure::Failure;
+use crate::output;
+use crate::project::LIBRARY;
+use crate::source::{Embedded, Files as _};
+
+/// Write the shader library for other tools.
+#[derive(Args)]
+pub struct Arguments {
+    /// The folder to write to. A compiler's include path is this one: `glslangValidator -IDIR`.
+    folder: PathBuf,
+    /// What to write: the library's files, or a package that is ready to publish.
+    #[arg(long, value_enum, default_value_t)]
+    form: Form,
+}
+
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum Form {
+    /// `DIR/lamplight`: WESL and GLSL, for compilers with an include path.
+    #[default]
+    Files,
+    /// `DIR/lamplight_wgsl`: a crate that carries the package `lamplight` for the `wesl` crate.
+    Cargo,
+    /// `DIR/lamplight`: an npm package that exports a `weslBundle`, with the GLSL beside it.
+    Npm,
+}
+
+/// Path below the package's folder and text.
+type Contents = BTreeMap<String, String>;
+
+const LICENSES: [(&str, &str); 2] =
+    [("LICENSE-MIT", include_str!("../../../LICENSE-MIT")), ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE"))];
+
+/// What search finds the packages by; the first three are the community's for shader packages.
+const KEYWORDS: [&str; 5] = ["WGSL", "WESL", "WebGPU", "lighting", "shadow"];
+
+const DESCRIPTION: &str = "Lighting and shadow functions for WGSL, tested function by function";
+
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    let (name, contents) = match arguments.form {
+        Form::Files => (LIBRARY, files()?),
+        Form::Cargo => (cargo::NAME, cargo::contents(modules()?)),
+        Form::Npm => (npm::NAME, npm::contents(modules()?, texts(&["glsl"])?)),
+    };
+    let folder = arguments.folder.join(name);
+    for (path, text) in &contents {
+        output::write(&folder.join(path), text.as_bytes())?;
+    }
+    Ok(writeln!(stdout(), "{}: {} files", folder.display(), contents.len())?)
+}
+
+fn files() -> Result<Contents, Failure> {
+    let mut contents = texts(&["wesl", "wgsl", "glsl"])?;
+    contents.extend(texts(&["toml"])?.into_iter().filter(|(path, _)| path == "wesl.toml"));
+    Ok(contents)
+}
+
+/// What others import. Programs are entry points, with conditions over axes of Lamplight's.
+fn modules() -> Result<Contents, Failure> {
+    Ok(texts(&["wesl", "wgsl"])?.into_iter().filter(|(path, _)| !path.starts_with("programs/")).collect())
+}
+
+fn texts(extensions: &[&str]) -> Result<Contents, Failure> {
+    let text = |path: String| match Embedded.read(&path) {
+        Ok(Some(text)) => Ok((path, text)),
+        _ => Err(Failure::environment(format!("the binary carries no `{path}`"))),
+    };
+    Embedded.list(extensions).into_iter().map(text).collect()
+}
+
+/// The files below a folder of the package.
+fn below(folder: &str, files: Contents) -> impl Iterator<Item = (String, String)> {
+    files.into_iter().map(move |(path, text)| (format!("{folder}/{path}"), text))
+}
+
+fn licenses() -> impl Iterator<Item = (String, String)> {
+    LICENSES.into_iter().map(|(path, text)| (path.to_owned(), text.to_owned()))
+}
+
+/// A package's `wesl.toml`: in a table as the specification has it, and at the top for tools that
+/// came before it.
+fn wesl_toml(manager: &str, root: &str) -> String {
+    let keys = format!("edition = \"{EDITION}\"\npackage-manager = \"{manager}\"\nroot = \"{root}\"\ninclude = [\"**/*.wesl\"]\n");
+    format!("{keys}\n[package]\nname = \"{LIBRARY}\"\n{keys}")
+}
+
+/// The edition of WESL the library is written in.
+const EDITION: &str = "2026_pre";

@@ -1,0 +1,93 @@
+//! An npm package with the library as a `weslBundle`, for wesl-js.
+
+use serde_json::{Value, json};
+
+use super::{Contents, DESCRIPTION, EDITION, KEYWORDS, below, licenses, wesl_toml};
+use crate::project::LIBRARY;
+
+/// The package's name. wesl-js finds a package by the first name of an import path, so it is that of the library.
+pub const NAME: &str = LIBRARY;
+
+pub fn contents(modules: Contents, glsl: Contents) -> Contents {
+    let own = [
+        ("package.json", pretty(&manifest())),
+        ("dist/weslBundle.js", bundle(&modules)),
+        ("dist/weslBundle.d.ts", TYPES.to_owned()),
+        ("README.md", README.to_owned()),
+        ("wesl.toml", wesl_toml("npm", "shaders")),
+    ];
+    let own = own.into_iter().map(|(path, text)| (path.to_owned(), text));
+    own.chain(licenses()).chain(below("shaders", modules)).chain(below("glsl/lamplight", glsl)).collect()
+}
+
+fn manifest() -> Value {
+    json!({
+        "name": NAME,
+        "version": env!("CARGO_PKG_VERSION"),
+        "description": DESCRIPTION,
+        "license": format!("({})", env!("CARGO_PKG_LICENSE")),
+        "repository": { "type": "git", "url": format!("git+{}.git", env!("CARGO_PKG_REPOSITORY")) },
+        "keywords": KEYWORDS,
+        "type": "module",
+        "sideEffects": false,
+        "files": ["dist", "shaders", "glsl", "wesl.toml", "LICENSE-MIT", "LICENSE-APACHE"],
+        "exports": {
+            ".": { "types": "./dist/weslBundle.d.ts", "import": "./dist/weslBundle.js" },
+            "./glsl/*": "./glsl/*",
+            "./package.json": "./package.json",
+        },
+    })
+}
+
+/// JSON is JavaScript: the module is one object, its texts as strings.
+fn bundle(modules: &Contents) -> String {
+    let bundle = json!({ "name": LIBRARY, "edition": EDITION, "modules": modules });
+    format!("export const weslBundle = {};\n\nexport default weslBundle;\n", pretty(&bundle).trim_end())
+}
+
+fn pretty(value: &Value) -> String {
+    format!("{value:#}\n")
+}
+
+const TYPES: &str = r#"export interface WeslBundle {
+  /** First name of import paths into the package. */
+  name: string;
+  /** Edition of WESL. */
+  edition: string;
+  /** Text of each module, by its path below the package's root. */
+  modules: Record<string, string>;
+  /** Packages that this one imports from. */
+  dependencies?: WeslBundle[];
+}
+
+export declare const weslBundle: WeslBundle;
+export default weslBundle;
+"#;
+
+const README: &str = r#"# lamplight
+
+The shader library of Lamplight for [wesl-js](https://www.npmjs.com/package/wesl): attenuation,
+spot cones, classic and microfacet highlights, ambient light, shadow filters, and what they need.
+
+```js
+import { link } from "wesl";
+import lamplight from "lamplight";
+
+const linked = await link({
+  weslSrc: { "main.wesl": source },
+  rootModuleName: "main",
+  libs: [lamplight],
+});
+```
+
+```wgsl
+import lamplight::brdf::specular::blinn_phong;
+```
+
+The same functions in GLSL are below `glsl/`; a compiler's include path is that folder:
+`#include "lamplight/brdf/specular.glsl"`.
+
+Each function says in its comment what it computes, the space, unit and range of its parameters,
+its source, what happens at its edges, and how large its error may be. Functions are pure: no
+bindings, no globals.
+"#;
