@@ -1,4 +1,5 @@
-//! `survivors.toml`: mutants that no input can tell from the original, each with a reason.
+//! `survivors.toml`: mutants that no input can tell from the original, and mutants that no case
+//! kills all the same, each with a reason. The first do not count, the second do.
 //!
 //! ```toml
 //! [[equivalent]]
@@ -7,6 +8,7 @@
 //! mutation = "`max` in `...`"               # as printed
 //! reason = "why the value is the same"
 //!
+//! [[survivor]]                              # the same keys: why no case tells it
 //! ```
 
 use std::fmt;
@@ -24,6 +26,9 @@ pub struct Listed {
     function: String,
     line: String,
     mutation: String,
+    pub reason: String,
+    /// Whether no input can tell it, so that it does not count.
+    pub equivalent: bool,
 }
 
 impl Listed {
@@ -44,15 +49,15 @@ pub fn read(library: &Library) -> Result<Vec<Listed>, Diagnostics> {
     let Some(text) = library.text(FILE) else { return Ok(Vec::new()) };
     let invalid = |message: String| vec![Diagnostic::error(codes::CASE_SYNTAX, format!("{FILE}: {message}"))];
     let table: toml::Table = text.parse().map_err(|error: toml::de::Error| invalid(error.message().to_owned()))?;
-    let entries = table.get("equivalent").and_then(toml::Value::as_array).map_or(&[][..], Vec::as_slice);
-    entries.iter().map(|entry| listed(entry).map_err(invalid)).collect()
+    let entries = |key: &str| table.get(key).and_then(toml::Value::as_array).map_or(&[][..], Vec::as_slice);
+    let kinds = [("equivalent", true), ("survivor", false)];
+    kinds.iter().flat_map(|(key, equivalent)| entries(key).iter().map(|entry| listed(entry, *equivalent).map_err(invalid))).collect()
 }
 
-fn listed(entry: &toml::Value) -> Result<Listed, String> {
+fn listed(entry: &toml::Value, equivalent: bool) -> Result<Listed, String> {
     let text = |key: &str| match entry.get(key).and_then(toml::Value::as_str) {
         Some(text) if !text.is_empty() => Ok(text.to_owned()),
         _ => Err(format!("an entry has no `{key}`: {entry}")),
     };
-    text("reason")?;
-    Ok(Listed { function: text("function")?, line: text("line")?, mutation: text("mutation")? })
+    Ok(Listed { function: text("function")?, line: text("line")?, mutation: text("mutation")?, reason: text("reason")?, equivalent })
 }

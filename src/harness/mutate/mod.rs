@@ -5,8 +5,10 @@
 //!
 //! A mutant is made in naga's representation and runs in the evaluator in f32, under the same
 //! verdicts as `lamplight check`: it is killed when a row is off by more than its tolerance, when
-//! a law breaks, or when a call does not end. Mutants that no input can tell from the original
-//! are listed in `survivors.toml` at the package's root, each with a reason.
+//! a law breaks, or when a call does not end. Before that it runs in f64, where an oracle that is
+//! not the code itself holds to nine digits beside those that the code as written loses. Mutants
+//! that no input can tell from the original, and those that live for another reason, are listed
+//! in `survivors.toml` at the package's root.
 
 mod apply;
 mod coverage;
@@ -61,7 +63,7 @@ fn outcome(sources: &SourceSet, listed: &[Listed], suite: &Suite<'_>, subject: &
     let (place, line) = text.place(site.span);
     let mut outcome = Outcome { function: format!("{}::{}", suite.module, subject.name), place, line, words: text.words(site), fate };
     if let (Fate::Survived, Some(index)) = (outcome.fate, listed.iter().position(|listed| listed.is(&outcome))) {
-        outcome.fate = Fate::Equivalent(index);
+        outcome.fate = if listed[index].equivalent { Fate::Equivalent(index) } else { Fate::Explained(index) };
     }
     Some(outcome)
 }

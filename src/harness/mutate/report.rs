@@ -26,6 +26,8 @@ pub enum Fate {
     Survived,
     /// No case runs the function.
     Unreached,
+    /// Survived for a reason that is listed, by the index of the entry.
+    Explained(usize),
     /// Listed as equal to the original, by the index of the entry.
     Equivalent(usize),
 }
@@ -36,12 +38,14 @@ pub struct Report {
     pub outcomes: Vec<Outcome>,
     /// Entries of the list that no surviving mutant is like, in words.
     pub stale: Vec<String>,
+    /// Reasons of the list's entries.
+    reasons: Vec<String>,
 }
 
 pub fn report(outcomes: Vec<Outcome>, listed: &[Listed]) -> Report {
-    let used = |index: usize| outcomes.iter().any(|outcome| outcome.fate == Fate::Equivalent(index));
+    let used = |index: usize| outcomes.iter().any(|outcome| [Fate::Equivalent(index), Fate::Explained(index)].contains(&outcome.fate));
     let stale = listed.iter().enumerate().filter(|(index, _)| !used(*index)).map(|(_, listed)| listed.to_string()).collect();
-    Report { outcomes, stale }
+    Report { outcomes, stale, reasons: listed.iter().map(|listed| listed.reason.clone()).collect() }
 }
 
 impl Report {
@@ -61,10 +65,20 @@ impl Report {
     pub fn survivors(&self) -> String {
         let through = self.outcomes.iter().filter_map(|outcome| match outcome.fate {
             Fate::Survived => Some((outcome, "")),
-            Fate::Unreached => Some((outcome, " (no case runs this function)")),
-            _ => None,
+            Fate::Unreached => Some((outcome, "no case runs this function")),
+            Fate::Explained(index) => Some((outcome, self.reasons.get(index).map_or("", String::as_str))),
+            Fate::Killed | Fate::Equivalent(_) => None,
         });
-        through.map(|(outcome, why)| format!("{}: {}: {}{why}\n", outcome.place, outcome.function, outcome.words)).collect()
+        let line = |(outcome, why): (&Outcome, &str)| {
+            let why = if why.is_empty() { String::new() } else { format!(" ({why})") };
+            format!("{}: {}: {}{why}\n", outcome.place, outcome.function, outcome.words)
+        };
+        through.map(line).collect()
+    }
+
+    /// Mutants that are listed as equal to the original.
+    pub fn equivalent(&self) -> usize {
+        self.outcomes.iter().filter(|outcome| matches!(outcome.fate, Fate::Equivalent(_))).count()
     }
 
     /// The last line of the report.
