@@ -34,6 +34,94 @@ const MORE: &[One] = &[
     ("f32(pack4x8unorm(vec4f(x, 0.0, 0.0, 0.0)))", |_| 0.0, -0.5, 1.5),
     ("unpack4x8snorm(u32(x)).x", |_| 0.0, 0.0, 255.0),
     ("unpack2x16unorm(u32(x) * 99u).x", |_| 0.0, 0.0, 600.0),
+    ("unpack4x8unorm(u32(x)).x", |_| 0.0, 0.0, 255.0),
+    ("unpack2x16snorm(u32(x) * 99u).x", |_| 0.0, 0.0, 600.0),
+    ("f32(pack4x8snorm(vec4f(x, 0.0, 0.0, 0.0)) & 255u)", |_| 0.0, -1.5, 1.5),
+    ("f32(pack2x16snorm(vec2f(x, 0.0)) & 65535u)", |_| 0.0, -1.5, 1.5),
+    ("f32(pack2x16unorm(vec2f(x, 0.0)))", |_| 0.0, -0.5, 1.5),
+    ("determinant(mat3x3f(x, 1.0, 2.0, 0.5, x, 1.0, 3.0, 0.0, x))", |_| 0.0, -5.0, 5.0),
+    ("f32(any(vec2<bool>(x > 1.0, x < -1.0))) + 2.0 * f32(all(vec2<bool>(x > 0.0, x < 2.0)))", |_| 0.0, -5.0, 5.0),
+    ("f32(dot4U8Packed(u32(x) * 9999u, 67305985u))", |_| 0.0, 0.0, 500.0),
+    ("f32(dot4I8Packed(u32(x) * 9999u, 67305985u))", |_| 0.0, 0.0, 500.0),
+];
+
+/// The numeric built-ins of WGSL: each is in a sweep.
+const BUILT_INS: &[&str] = &[
+    "abs",
+    "acos",
+    "acosh",
+    "all",
+    "any",
+    "asin",
+    "asinh",
+    "atan",
+    "atan2",
+    "atanh",
+    "bitcast",
+    "ceil",
+    "clamp",
+    "cos",
+    "cosh",
+    "countLeadingZeros",
+    "countOneBits",
+    "countTrailingZeros",
+    "cross",
+    "degrees",
+    "determinant",
+    "distance",
+    "dot",
+    "dot4I8Packed",
+    "dot4U8Packed",
+    "exp",
+    "exp2",
+    "extractBits",
+    "faceForward",
+    "firstLeadingBit",
+    "firstTrailingBit",
+    "floor",
+    "fma",
+    "fract",
+    "frexp",
+    "insertBits",
+    "inverseSqrt",
+    "ldexp",
+    "length",
+    "log",
+    "log2",
+    "max",
+    "min",
+    "mix",
+    "modf",
+    "normalize",
+    "pack2x16float",
+    "pack2x16snorm",
+    "pack2x16unorm",
+    "pack4x8snorm",
+    "pack4x8unorm",
+    "pow",
+    "quantizeToF16",
+    "radians",
+    "reflect",
+    "refract",
+    "reverseBits",
+    "round",
+    "saturate",
+    "select",
+    "sign",
+    "sin",
+    "sinh",
+    "smoothstep",
+    "sqrt",
+    "step",
+    "tan",
+    "tanh",
+    "transpose",
+    "trunc",
+    "unpack2x16float",
+    "unpack2x16snorm",
+    "unpack2x16unorm",
+    "unpack4x8snorm",
+    "unpack4x8unorm",
 ];
 
 /// Where a driver strays further than the specification lets it: expression, executor, and the
@@ -42,7 +130,15 @@ const WAIVERS: &[(&str, &str, f64)] = &[("asin(x)", "gl", 4e-4)];
 
 pub fn trials() -> Vec<Trial> {
     let drivers = executors::ALL.iter().filter(|executor| ["vulkan", "gl", "swiftshader"].contains(&executor.name));
-    drivers.map(|executor| Trial::test(format!("eval/drivers/{}", executor.name), move || run(executor))).collect()
+    let sweeps = drivers.map(|executor| Trial::test(format!("eval/drivers/{}", executor.name), move || run(executor)));
+    sweeps.chain([Trial::test("eval/drivers/every_built_in", every_built_in)]).collect()
+}
+
+fn every_built_in() -> Result<(), Failed> {
+    let is_called = |name: &str, text: &str| text.split(|c: char| !c.is_alphanumeric()).any(|word| word == name);
+    let is_swept = |name: &&&str| ONE.iter().chain(MORE).any(|(expression, ..)| is_called(name, expression));
+    let missing: Vec<&str> = BUILT_INS.iter().filter(|name| !is_swept(name)).copied().collect();
+    if missing.is_empty() { Ok(()) } else { Err(format!("no sweep calls {}", missing.join(", ")).into()) }
 }
 
 /// Sessions are opened, used and dropped on a thread of their own.
