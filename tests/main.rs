@@ -22,6 +22,7 @@ mod packages;
 mod permute;
 mod pipelines;
 mod programs;
+mod published;
 mod regressions;
 mod robust;
 mod scale;
@@ -53,6 +54,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     permute::trials,
     pipelines::trials,
     programs::trials,
+    published::trials,
     regressions::trials,
     robust::trials,
     scale::trials,
