@@ -24,6 +24,7 @@ mod packages;
 mod permute;
 mod pipelines;
 mod programs;
+mod published;
 mod regressions;
 mod report;
 mod robust;
@@ -59,6 +60,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     permute::trials,
     pipelines::trials,
     programs::trials,
+    published::trials,
     regressions::trials,
     report::trials,
     robust::trials,
