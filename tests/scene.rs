@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
-use glam::{DMat3, DMat4, DVec3, DVec4Swizzles};
+use glam::{DMat3, DMat4, DVec3, Vec4Swizzles};
 use lamplight::scene::{self, Bounds, Clip, CubeMap, Depth, Equirect, MeshError};
 use libtest_mimic::{Failed, Trial};
 
