@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use lamplight::generate::lean;
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -15,7 +16,8 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 15] = [
+    let cases: [Case; 16] = [
+        ("comments_and_layout_go_and_nothing_else", layout),
         ("a_second_run_does_nothing", nothing_to_do),
         ("an_edit_compiles_what_it_reaches", edits),
         ("what_is_not_reached_is_not_compiled", unreached),
@@ -33,6 +35,38 @@ pub fn trials() -> Vec<Trial> {
         ("a_redis_server_can_be_shared", shared_server),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("generate::{name}"), case)).collect()
+}
+
+fn layout() -> Outcome {
+    let wgsl = [
+        ("a / b;", "a / b;"),
+        ("a // b\nc", "a c"),
+        ("a /* b /* c */ d */ e", "a e"),
+        ("a/**/b/*/ */c", "a b c"),
+        ("a//", "a"),
+        ("a /* open", "a"),
+        ("a /", "a /"),
+        ("é // é\u{2028}b", "é b"),
+        ("a //* b\n*/c", "a */c"),
+        ("/* a */ fn red // b\n ( x : f32 ) { }", "fn red(x : f32){}"),
+        ("a - -b; c & &d", "a - -b;c & &d"),
+        ("a\u{a0} b", "a\u{a0} b"),
+        (" \n", ""),
+    ];
+    let glsl = [
+        ("#version 450\n\n  int a; // b\n", "#version 450\nint a;\n"),
+        ("a /* b\n c */ d / e", "a d / e\n"),
+        ("  #define A (b)\n void  main( /* c */ ) { }", "#define A (b)\nvoid main(){}\n"),
+        ("a /* /* */ b", "a b\n"),
+        ("/", "/\n"),
+        ("a /* open", "a\n"),
+    ];
+    let wgsl = wgsl.into_iter().map(|(text, wanted)| (lean::wgsl(text), wanted));
+    let glsl = glsl.into_iter().map(|(text, wanted)| (lean::glsl(text), wanted));
+    match wgsl.chain(glsl).find(|(found, wanted)| found != wanted) {
+        None => Ok(()),
+        Some((found, wanted)) => Err(format!("{found:?}, wanted {wanted:?}").into()),
+    }
 }
 
 const MANIFEST: &str = r#"

@@ -9,7 +9,7 @@
 
 mod compile;
 mod entry;
-mod lean;
+pub mod lean;
 mod lint;
 mod shard;
 mod sink;

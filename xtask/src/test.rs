@@ -8,7 +8,6 @@ pub fn run(arguments: &[String]) -> Outcome {
     machine::prepare()?;
     // With every feature: shared stores are tested against a server.
     let test = |what: &[&str], rest| cargo(&[&["test", "--package", "lamplight", "--features", "store"], what].concat(), rest);
-    test(&["--lib"], &[])?;
     test(&["--doc"], &[])?;
     test(&["--test", "all"], arguments)
 }
