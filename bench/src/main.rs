@@ -4,7 +4,6 @@
 
 mod compose;
 mod corpus;
-#[cfg(feature = "eval")]
 mod eval;
 mod generate;
 mod library;
@@ -16,14 +15,8 @@ use std::process::ExitCode;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-const BENCHMARKS: &[(&str, fn() -> Outcome)] = &[
-    ("compose", compose::run),
-    #[cfg(feature = "eval")]
-    ("eval", eval::run),
-    ("gen", generate::run),
-    ("load", load::run),
-    ("scale", scale::run),
-];
+const BENCHMARKS: &[(&str, fn() -> Outcome)] =
+    &[("compose", compose::run), ("eval", eval::run), ("gen", generate::run), ("load", load::run), ("scale", scale::run)];
 
 fn main() -> ExitCode {
     let asked = std::env::args().nth(1).unwrap_or_default();

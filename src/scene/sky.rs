@@ -51,15 +51,19 @@ impl Equirect {
         })
     }
 
-    /// The radiance from a direction: linear between pixels, around the seam, and up to the poles.
+    /// The radiance from a direction: linear between pixels, around the seam and over the poles.
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         let d = direction.normalize_or_zero();
         let around = (-d.z).atan2(-d.x).rem_euclid(TAU) / TAU * self.width as f64 - 0.5;
         let down = (FRAC_PI_2 - d.y.clamp(-1.0, 1.0).asin()) / PI * self.height as f64 - 0.5;
-        let (left, top) = (around.floor(), down.floor());
+        let (height, top) = (self.height as f64, down.floor());
         let row = |row: f64| {
-            let row = row.clamp(0.0, self.height as f64 - 1.0) as usize;
-            let pixel = |column: f64| self.pixels[row * self.width + column.rem_euclid(self.width as f64) as usize];
+            // Beyond a pole the same row goes on, half way round.
+            let beyond = row < 0.0 || row >= height;
+            let inside = if row < 0.0 { -1.0 - row } else { row.min(2.0 * height - 1.0 - row) };
+            let around = if beyond { around + 0.5 * self.width as f64 } else { around };
+            let left = around.floor();
+            let pixel = |column: f64| self.pixels[inside as usize * self.width + column.rem_euclid(self.width as f64) as usize];
             pixel(left).lerp(pixel(left + 1.0), around - left)
         };
         row(top).lerp(row(top + 1.0), down - top)
