@@ -1,13 +1,15 @@
-//! `cargo xtask gen`: the library's bundle, and what the external validators say of it.
+//! `cargo xtask gen`: the library's bundle, as `lamplight gen` makes it, and what the external validators say of it.
 
 use std::io::{IsTerminal, Write, stderr};
 use std::path::{Path, PathBuf};
 
+use lamplight::bundle::{self, DirectoryWriter};
+use lamplight::cache::{Cache, Folder, Recorder, Run, Told, Trace};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::generate::{Generated, Progress, Request, in_memory};
+use lamplight::generate::{Generated, Progress, Request, Summary, Tools, generate};
+use lamplight::project;
 use lamplight::source::SourceSet;
-use lamplight::{bundle, project};
 
 use crate::validate::{Earlier, validate};
 use crate::{Failure, Outcome};
@@ -19,7 +21,7 @@ pub fn bundle() -> PathBuf {
 
 /// The workspace's root.
 pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new(".")).to_owned()
 }
 
 /// Generates, prints the summary, and validates what is new.
@@ -27,22 +29,37 @@ pub fn run(arguments: &[String]) -> Outcome {
     if !arguments.is_empty() {
         return Err(Failure::usage("usage: cargo xtask gen (for other manifests: lamplight gen)"));
     }
+    let path = root().join("shaderlib").join(project::MANIFEST);
     let mut sources = SourceSet::default();
-    let generated = library(&mut sources);
-    let Generated { contents, summary, warnings } =
-        generated.map_err(|diagnostics| Failure::input(render(&sources, &diagnostics, Form::Human)))?;
+    let input = |sources: &SourceSet, diagnostics: Diagnostics| Failure::input(render(sources, &diagnostics, Form::Human));
+    let (manifest, packages) = project::declared(&path, &mut sources).map_err(|diagnostics| input(&sources, diagnostics))?;
+    let (declared, recorder) = (sources.clone(), Recorder::default());
+    let (packages, out, request) = (recorder.observe(packages), bundle(), Request::default());
+    let cache = Cache::new(vec![Box::new(Folder::new(root().join("target/lamplight-cache")))]);
+    let as_run = || Run { manifest: &path, declared: &declared, request: &request, packages: &packages, out: &out };
+    if let Some(Trace { summary, told, .. }) = Trace::find(&cache, as_run()) {
+        eprint!("{}", told.text(Form::Human));
+        return finish(&Summary { up_to_date: true, ..summary });
+    }
+    let writer = DirectoryWriter::create(&out).map_err(environment)?;
+    let tools = Tools { sink: &writer, cache: Some(&cache), progress: &show };
+    let generated = generate(&mut sources, &packages, &manifest, &request, &tools);
+    let Generated { contents, summary, warnings } = generated.map_err(|diagnostics| input(&sources, diagnostics))?;
+    writer.finish(&contents).map_err(environment)?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
-    bundle::write_directory(&contents, bundle()).map_err(|error| Failure::environment(error.to_string()))?;
+    let trace = Trace::new(&recorder, &out, summary.clone(), Told::new(&path, &sources, &warnings));
+    trace.into_iter().for_each(|trace| trace.keep(&cache, as_run()));
+    finish(&summary)
+}
+
+fn finish(summary: &Summary) -> Outcome {
     print!("{summary}");
     println!("written to target/bundles/lamplight");
     validate(&bundle(), Earlier::Trust)
 }
 
-fn library(sources: &mut SourceSet) -> Result<Generated, Diagnostics> {
-    let folder = root().join("shaderlib");
-    let manifest = project::read_manifest(&folder.join(project::MANIFEST), sources)?;
-    let packages = project::packages(&folder, sources)?;
-    in_memory(sources, &packages, &manifest, &Request::default(), &show)
+fn environment(error: bundle::Error) -> Failure {
+    Failure::environment(error.to_string())
 }
 
 fn show(progress: Progress) {
