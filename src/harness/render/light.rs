@@ -28,7 +28,7 @@ impl LightView {
         let points = scene.points();
         match kind(last) {
             // The picture of the map itself shows its last hundredth.
-            LampKind::Spot => Self::spot(lamp, &points, size, last.is("curve", "igl").then_some(0.045)),
+            LampKind::Spot => Self::spot(lamp, &points, size, last.is("curve", "igl").then_some(0.07)),
             LampKind::Directional => Self::directional(lamp, &points, size),
             LampKind::Point => Self::point(lamp, &points, size / 2),
         }

@@ -7,6 +7,7 @@
 //! ([`Rasterizer`]). What a pass drew comes back as numbers, exact to the bit, and goes into the
 //! next as a texture, so that all painters share everything but the drawing itself.
 
+pub mod gallery;
 mod light;
 mod mesh;
 mod passes;

@@ -48,7 +48,8 @@ enum Left {
     Color(Texture),
 }
 
-/// Smallest and largest shadow map, texels along an edge; between, twice the picture.
+/// Smallest and largest shadow map, texels along an edge; between, twice the picture. Moments are
+/// blurred, and half as fine.
 const MAP_SIZES: (u32, u32) = (256, 1024);
 
 /// Draws all passes of a plan but the last, and prepares that one.
@@ -80,17 +81,18 @@ impl Studio<'_> {
             Some(_) => light.clip_from_world.iter().map(|matrix| prepared.view(&self.light_camera(*matrix))).collect(),
             None => vec![Buffers::new()],
         };
-        let size = [light.size; 2];
+        let side = if pass.program == "depth" { light.size } else { (light.size / 2).max(1) };
+        let size = [side; 2];
         if prepared.stages.fragment.is_none() {
             let frames = prepared.draw(self.painter, &views, size, None)?;
-            return Ok(Left::Depth(frames.into_iter().map(|frame| frame.depth).collect(), light.size));
+            return Ok(Left::Depth(frames.into_iter().map(|frame| frame.depth).collect(), side));
         }
         let frames = prepared.draw_colors(self.painter, &views, size)?;
         let cleared = self.values.cleared_moments();
         let frame = frames.into_iter().next().ok_or_else(|| vec![no_frame()])?;
         let texels = frame.targets.iter().flatten().copied().collect::<Vec<u32>>();
         let texels = texels.chunks(4).flat_map(|pixel| colour(pixel).unwrap_or(cleared)).collect();
-        Ok(Left::Color(Texture { kind: TextureKind::Color2d, width: light.size, height: light.size, texels }))
+        Ok(Left::Color(Texture { kind: TextureKind::Color2d, width: side, height: side, texels }))
     }
 
     fn light_camera(&self, clip_from_world: DMat4) -> Camera {

@@ -57,9 +57,10 @@ impl Plan {
     /// A program whose last pass is no picture.
     pub fn of_point(programs: &Programs, program: &Program, point: &Assignment) -> Result<Self, Diagnostics> {
         let Some((_, scene)) = PICTURES.iter().find(|(name, _)| *name == program.name) else {
+            let known: Vec<&str> = PICTURES.iter().map(|(name, _)| *name).collect();
             let message = format!("the program `{}` draws no picture by itself", program.name);
-            let known = PICTURES.iter().map(|(name, _)| *name);
-            return Err(vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message).suggest(&program.name, known)]);
+            let note = format!("programs that do: {}", known.join(", "));
+            return Err(vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message).note(note)]);
         };
         let settings = program.space.settings(point);
         let last = Pass { program: program.name.clone(), key: program.space.key(point).to_string(), settings };

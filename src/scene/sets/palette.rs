@@ -59,7 +59,7 @@ pub fn lamps(key: Lamp, radius: f64, height: f64, share: f64) -> Vec<Lamp> {
         let place = key.target + DVec3::new(cos, 0.0, sin) * radius * (0.55 + 0.05 * index as f64);
         Lamp {
             // A point light reaches all that a spot light leaves dark.
-            color: *color * share * if kind == LampKind::Point { 0.4 } else { 1.0 },
+            color: *color * share * if kind == LampKind::Point { 0.25 } else { 1.0 },
             position: DVec3::new(place.x, height, place.z),
             target: DVec3::new(place.x, key.target.y, place.z),
             half_angle: 0.5,

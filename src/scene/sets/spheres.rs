@@ -14,11 +14,11 @@ pub fn scene() -> Scene {
         // Away from the viewer and upwards, from the left to the right.
         let step = index as f64 - 2.0;
         let place = placed(1.5 * step, 0.62 * step, -1.1 * step, 0.0);
-        let material = Material::default().glossy(0.55).shiny(5.0 * 3.0_f64.powi(index as i32));
+        let material = Material::default().glossy(0.55).shiny(9.0 * 2.6_f64.powi(index as i32));
         Object::new(ball.clone(), place, *color).of(material, index as u32)
     };
     let objects = COLORS.iter().enumerate().map(object).collect();
-    let eye = Eye { position: DVec3::new(-0.6, 0.6, 12.4), target: DVec3::new(-0.25, -0.05, 0.0), fov_y: 0.56, near: 0.5, far: 40.0 };
+    let eye = Eye { position: DVec3::new(-0.6, 0.6, 12.4), target: DVec3::new(-0.5, -0.1, 0.0), fov_y: 0.63, near: 0.5, far: 40.0 };
     let key = Lamp {
         color: DVec3::splat(0.95),
         position: DVec3::new(-3.5, 5.5, 6.5),

@@ -33,12 +33,12 @@ pub fn scene() -> Scene {
     let eye = Eye { position: DVec3::new(0.5, 5.6, 10.5), target: DVec3::new(0.0, 0.4, 0.0), fov_y: 0.8, near: 0.5, far: 60.0 };
     let key = Lamp {
         color: DVec3::new(1.25, 1.08, 0.85),
-        position: DVec3::new(-9.0, 6.0, 1.0),
+        position: DVec3::new(-8.0, 6.5, 4.5),
         target: DVec3::new(0.0, 0.5, 0.0),
         half_angle: 0.7,
         kind: LampKind::Directional,
     };
     let mut scene = base(objects, eye, palette::lamps(key, 6.0, 4.0, 0.4));
-    scene.haze_range = (5.0, 26.0);
+    scene.haze_range = (6.0, 36.0);
     scene
 }

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use super::floor::tiles;
-use super::palette::{self, CHALK, CLAY, TEAL};
+use super::palette::{self, CHALK, TEAL};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, base, placed};
 use crate::scene::shape::Shape;
 
@@ -34,11 +34,11 @@ pub fn scene() -> Scene {
     let glaze = Material::default().glossy(0.5).shiny(90.0);
     let cup: Vec<DVec2> = CUP.iter().map(|(radius, height)| DVec2::new(*radius, *height)).collect();
     let objects = vec![
-        Object::new(tiles(10, 1.2, [CHALK, CLAY * 1.3], 2), DMat4::IDENTITY, DVec3::ONE).of(Material::default().glossy(0.06), 11),
+        Object::new(tiles(10, 1.2, [CHALK, CHALK * 0.72], 2), DMat4::IDENTITY, DVec3::ONE).of(Material::default().glossy(0.06), 11),
         Object::new(pot(), placed(-0.3, 0.0, 0.0, -0.45), TEAL).of(glaze, 9),
-        Object::new(Shape::lathe(&cup, (48, 40)), placed(1.9, 0.0, 1.9, 0.0), CHALK).of(glaze, 5),
+        Object::new(Shape::lathe(&cup, (48, 40)), placed(1.55, 0.0, 2.1, 0.0), CHALK).of(glaze, 5),
     ];
-    let eye = Eye { position: DVec3::new(1.0, 3.6, 7.4), target: DVec3::new(0.1, 0.9, 0.2), fov_y: 0.66, near: 0.5, far: 40.0 };
+    let eye = Eye { position: DVec3::new(0.9, 4.0, 8.6), target: DVec3::new(0.2, 0.85, 0.2), fov_y: 0.6, near: 0.5, far: 40.0 };
     let key = Lamp {
         color: DVec3::new(1.0, 0.97, 0.9),
         position: DVec3::new(-4.0, 6.2, 4.6),

@@ -1,8 +1,11 @@
 //! `lamplight render`: pictures.
 
+mod gallery;
+
 use std::io::{Write, stdout};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 use clap::Args;
 
@@ -36,7 +39,11 @@ pub struct Arguments {
     /// What is drawn [default: the scene of the preset, or `casters`].
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
-    /// Where the picture goes [default: the name of the preset, or `render.png`].
+    /// Draw every preset, with pages that show them.
+    #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene"])]
+    all: bool,
+    /// Where the picture goes [default: the name of the preset, or `render.png`]; with `--all`, a
+    /// folder [default: `gallery`].
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Pixels across and down.
@@ -75,16 +82,27 @@ pub fn run(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure> {
 
 fn draw(arguments: &Arguments) -> Result<(), Failure> {
     let programs = Programs::load().map_err(|(sources, problems)| Failure::Input(sources, problems))?;
-    let plan = plan(&programs, arguments)?;
     let shot = shot(arguments)?;
+    if arguments.all {
+        let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
+        return gallery::run(open(&arguments.executor)?.as_ref(), &programs, &shot, &folder);
+    }
+    let plan = plan(&programs, arguments)?;
     let painter = open(&arguments.executor)?;
+    let start = Instant::now();
     let picture = render::render(painter.as_ref(), &programs, &plan, &shot).map_err(|problems| input(&programs, problems))?;
     let name = arguments.preset.as_deref().unwrap_or("render");
     let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
-    output::write(&path, &picture.png().map_err(Failure::environment)?)?;
+    write(&path, &picture.png().map_err(Failure::environment)?)?;
     let last = plan.last().map_or("", |pass| pass.key.as_str());
     let [width, height] = shot.size;
-    Ok(writeln!(stdout(), "{}: {width} x {height}, {}, `{last}`, {}", path.display(), plan.scene, painter.adapter())?)
+    let (path, scene, adapter, seconds) = (path.display(), &plan.scene, painter.adapter(), start.elapsed().as_secs_f64());
+    Ok(writeln!(stdout(), "{path}: {width} x {height} of {scene}, `{last}`, in {seconds:.2} s, {adapter}")?)
+}
+
+/// Writes a file that is what was asked for.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    output::write(path, bytes).map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display())))
 }
 
 /// Opens an executor that draws.
