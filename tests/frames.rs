@@ -260,6 +260,7 @@ fn agrees(renderer: &Renderer, scene: &Scene) -> Result<Tally, String> {
         items: &[Item { mesh, buffers }],
         views: &[Buffers::new()],
         buffers: &Buffers::new(),
+        plain: &[],
         fixtures: &scene.fixtures,
         levels: &BTreeMap::new(),
         size: [WIDTH, HEIGHT],

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::{Failure, input, library, write};
 use crate::harness::frame::{Painter, Programs};
-use crate::harness::render::gallery::{self, Exhibit};
+use crate::harness::render::gallery::{self, Card, Exhibit};
 use crate::harness::render::{Plan, Shot};
 
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
@@ -21,8 +21,9 @@ pub fn run(painter: &dyn Painter, programs: &Programs, shot: &Shot, folder: &Pat
         write(&folder.join(format!("{}.png", preset.name)), &png)?;
         exhibits.push(exhibit);
     }
-    write(&folder.join("README.md"), gallery::markdown(&exhibits).as_bytes())?;
-    for (path, text) in gallery::composed(&exhibits) {
+    let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
+    write(&folder.join("README.md"), gallery::markdown(&cards).as_bytes())?;
+    for (path, text) in gallery::composed(&cards) {
         write(&folder.join(path), text.as_bytes())?;
     }
     write(&folder.join("index.html"), gallery::html(&exhibits).map_err(Failure::environment)?.as_bytes())?;

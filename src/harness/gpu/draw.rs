@@ -59,6 +59,9 @@ pub struct Drawing<'a> {
     pub views: &'a [Buffers],
     /// Uniform buffers of all frames and items.
     pub buffers: &'a Buffers,
+    /// Those uniform buffers that no texture coordinate depends on: the first to be bound otherwise
+    /// where a driver fails with as many as there are.
+    pub plain: &'a [(u32, u32)],
     /// Textures and samplers.
     pub fixtures: &'a BTreeMap<(u32, u32), Arc<Fixture>>,
     /// Smaller levels of those textures that have them, the larger first.
@@ -115,7 +118,8 @@ pub struct Frame {
 /// `uni_offsets[ubo * PIPE_MAX_CONSTANT_BUFFERS + i]`), so that those of the fourth block land on
 /// the table of counts behind. The next draw then reads a push constant that there is not, and
 /// the process dies: `forward` with a shadow branches on its fourth block. Storage blocks, laid
-/// out the same, are not looked at.
+/// out the same, are not looked at; but where a triangle ends, what they hold is 0 in the helpers of a
+/// quad, and derivatives of what was computed from it are wrong.
 const LAVAPIPE_BLOCKS: usize = 3;
 const LAVAPIPE_DETOUR: &str = "uniform blocks were bound as storage blocks: lavapipe crashes where a branch reads the fourth of a stage";
 
@@ -159,11 +163,10 @@ impl Gpu {
     /// Draws the frame of every view and reads it back.
     pub fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         let used: Vec<_> = std::iter::once(drawing.vertex).chain(drawing.fragment).map(used).collect::<Result<_, _>>()?;
-        let blocks = |used: &BTreeSet<Place>| used.iter().filter(|place| drawing.is_buffer(**place)).count();
-        let as_storage = self.is_lavapipe() && used.iter().any(|used| blocks(used) > LAVAPIPE_BLOCKS);
+        let as_storage = if self.is_lavapipe() { spared(drawing, &used) } else { BTreeSet::new() };
         let all: BTreeSet<Place> = used.into_iter().flatten().collect();
-        let frames = self.guarded(|gpu| gpu.submit_frames(drawing, all, as_storage))??;
-        let detour = as_storage.then_some(LAVAPIPE_DETOUR);
+        let frames = self.guarded(|gpu| gpu.submit_frames(drawing, all, &as_storage))??;
+        let detour = (!as_storage.is_empty()).then_some(LAVAPIPE_DETOUR);
         frames.into_iter().map(|frame| frame.read(self, detour)).collect()
     }
 
@@ -172,7 +175,12 @@ impl Gpu {
         info.backend == wgpu::Backend::Vulkan && info.name.starts_with("llvmpipe")
     }
 
-    fn submit_frames(&self, drawing: &Drawing<'_>, used: BTreeSet<Place>, as_storage: bool) -> Result<Vec<target::Pending>, Diagnostic> {
+    fn submit_frames(
+        &self,
+        drawing: &Drawing<'_>,
+        used: BTreeSet<Place>,
+        as_storage: &BTreeSet<Place>,
+    ) -> Result<Vec<target::Pending>, Diagnostic> {
         let pipeline = self.mesh_pipeline(drawing, as_storage);
         let bindings = Bindings::new(self, drawing, used)?;
         let meshes: Vec<_> = drawing.items.iter().map(|item| Uploaded::new(self, item.mesh)).collect();
@@ -196,13 +204,12 @@ impl Gpu {
         Ok(frames)
     }
 
-    fn shader(&self, stage: Stage<'_>, as_storage: bool) -> wgpu::ShaderModule {
-        let module = if as_storage { storage_blocks(stage.module) } else { stage.module.clone() };
-        let source = wgpu::ShaderSource::Naga(Cow::Owned(module));
+    fn shader(&self, stage: Stage<'_>, as_storage: &BTreeSet<Place>) -> wgpu::ShaderModule {
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(storage_blocks(stage.module, as_storage)));
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
 
-    fn mesh_pipeline(&self, drawing: &Drawing<'_>, as_storage: bool) -> wgpu::RenderPipeline {
+    fn mesh_pipeline(&self, drawing: &Drawing<'_>, as_storage: &BTreeSet<Place>) -> wgpu::RenderPipeline {
         let mesh = drawing.items.first().map(|item| item.mesh);
         let attributes = mesh.map(Mesh::layout).unwrap_or_default();
         let layout = wgpu::VertexBufferLayout {
@@ -292,11 +299,28 @@ impl Uploaded {
     }
 }
 
-/// The module with uniform blocks declared as storage blocks that are read.
-fn storage_blocks(module: &naga::Module) -> naga::Module {
+/// The uniform blocks to bind otherwise, so that no stage has too many: as few of the plain ones
+/// as will do, or all blocks.
+fn spared(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<Place> {
+    let blocks: Vec<BTreeSet<Place>> =
+        stages.iter().map(|used| used.iter().copied().filter(|place| drawing.is_buffer(*place)).collect()).collect();
+    let fits = |spared: &BTreeSet<Place>| blocks.iter().all(|blocks| blocks.difference(spared).count() <= LAVAPIPE_BLOCKS);
+    let mut spared = BTreeSet::new();
+    for place in drawing.plain {
+        if fits(&spared) {
+            break;
+        }
+        spared.insert(*place);
+    }
+    if fits(&spared) { spared } else { blocks.into_iter().flatten().collect() }
+}
+
+/// The module with some uniform blocks declared as storage blocks that are read.
+fn storage_blocks(module: &naga::Module, places: &BTreeSet<Place>) -> naga::Module {
     let mut module = module.clone();
     for (_, variable) in module.global_variables.iter_mut() {
-        if variable.space == AddressSpace::Uniform {
+        let is_spared = variable.binding.is_some_and(|place| places.contains(&(place.group, place.binding)));
+        if variable.space == AddressSpace::Uniform && is_spared {
             variable.space = AddressSpace::Storage { access: StorageAccess::LOAD };
         }
     }

@@ -27,6 +27,7 @@ pub struct Prepared {
     pub fixtures: BTreeMap<(u32, u32), Arc<Fixture>>,
     pub levels: BTreeMap<(u32, u32), Vec<Texture>>,
     pub state: State,
+    plain: Vec<(u32, u32)>,
     /// The binding of the camera, which each view fills; screens have none.
     camera: Option<Binding>,
     eye: Camera,
@@ -57,10 +58,13 @@ const MAP_SIZES: (u32, u32) = (256, 1024);
 /// # Errors
 /// Those of compositions and of the painter.
 pub fn prepare(painter: &dyn Painter, programs: &Programs, plan: &Plan, shot: &Shot) -> Result<Prepared, Diagnostics> {
-    let (Some(last), Some(scene)) = (plan.last(), sets::scene(&plan.scene)) else {
+    let (Some(last), Some(mut scene)) = (plan.last(), sets::scene(&plan.scene)) else {
         return Err(vec![Diagnostic::error(codes::EXECUTOR_FAILED, format!("there is no scene `{}`", plan.scene))]);
     };
-    let key = scene.lamps.first().copied().ok_or_else(|| vec![Diagnostic::error(codes::EXECUTOR_FAILED, "the scene has no lamp")])?;
+    let no_lamp = || vec![Diagnostic::error(codes::EXECUTOR_FAILED, "the scene has no lamp")];
+    let key = scene.lamps.first_mut().ok_or_else(no_lamp)?;
+    plan.place(key);
+    let key = *key;
     let size = (2 * shot.size[0].max(shot.size[1])).next_power_of_two().clamp(MAP_SIZES.0, MAP_SIZES.1);
     let light = LightView::new(&scene, &key, last, size);
     let values = Values { plan, scene: &scene, last, light: &light, shot };
@@ -122,10 +126,13 @@ impl Studio<'_> {
                 }
             }
         }
+        let plain = PLAIN.iter().filter_map(|name| bindings.iter().find(|binding| binding.name == *name));
+        let plain = plain.map(|binding| (binding.group, binding.binding)).collect();
         let items = self.items(pass, &stages, &bindings);
         let eye = self.eye();
         let background = Background::new(&self.values, eye);
-        Ok(Prepared { state: self.state(pass, camera.is_some()), stages, items, buffers, fixtures, levels, camera, eye, background })
+        let state = self.state(pass, camera.is_some());
+        Ok(Prepared { stages, items, buffers, fixtures, levels, state, plain, camera, eye, background })
     }
 
     fn eye(&self) -> Camera {
@@ -170,6 +177,9 @@ impl Studio<'_> {
         self.values.scene.objects.iter().map(item).collect()
     }
 }
+
+/// Blocks of `forward` that decide about colours alone.
+const PLAIN: &[&str] = &["materials", "haze", "surroundings"];
 
 /// Blocks that each view or each object fills.
 fn is_own(name: &str) -> bool {
@@ -302,6 +312,7 @@ impl Prepared {
             items: &items,
             views,
             buffers: &self.buffers,
+            plain: &self.plain,
             fixtures: &self.fixtures,
             levels: &self.levels,
             size,

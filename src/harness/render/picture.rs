@@ -57,7 +57,7 @@ impl Background {
             Seen::Around(values.shot.surroundings.clone())
         } else if unlit && values.last.is("ambient", "sh9") {
             Seen::Probe(Box::new(values.probe().map(DVec3::from_array)), 0.5 / std::f64::consts::PI)
-        } else if unlit && values.last.is("ambient", "hemisphere") {
+        } else if values.last.is("ambient", "hemisphere") {
             Seen::Hemisphere(values.scene.ground, values.scene.sky)
         } else {
             Seen::Backdrop

@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
+
 use crate::catalogue::preset::{Number, Preset};
 use crate::catalogue::probe::Probe;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::harness::frame::Programs;
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, Settings, key};
+use crate::scene::sets::Lamp;
 use crate::source::SourceSet;
 
 /// Programs whose last pass is a picture, each with the scene it shows where none is asked for.
@@ -72,6 +75,19 @@ impl Plan {
     /// The pass that draws the picture.
     pub fn last(&self) -> Option<&Pass> {
         self.passes.last()
+    }
+
+    /// Puts a lamp where the source has it, so that its shadow falls from there.
+    pub(super) fn place(&self, lamp: &mut Lamp) {
+        let vector = |field| self.number("light", field).and_then(|values| values.try_into().ok()).map(DVec3::from_array);
+        let (axis, reach) = (lamp.axis(), lamp.reach());
+        lamp.position = vector("position").unwrap_or(lamp.position);
+        if let Some(axis) = vector("axis").or_else(|| vector("position").map(|_| axis)) {
+            lamp.target = lamp.position + axis * reach;
+        }
+        if let Some(cutoff) = self.number("light", "cutoff").and_then(|values| values.first().copied()) {
+            lamp.half_angle = cutoff.clamp(-1.0, 1.0).acos();
+        }
     }
 
     /// A published number.

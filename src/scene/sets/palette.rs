@@ -9,7 +9,6 @@ pub const AMBER: DVec3 = DVec3::new(0.86, 0.52, 0.13);
 pub const LEAF: DVec3 = DVec3::new(0.33, 0.58, 0.2);
 pub const TEAL: DVec3 = DVec3::new(0.1, 0.5, 0.55);
 pub const INDIGO: DVec3 = DVec3::new(0.22, 0.27, 0.7);
-pub const CLAY: DVec3 = DVec3::new(0.62, 0.42, 0.3);
 pub const CHALK: DVec3 = DVec3::new(0.78, 0.76, 0.72);
 pub const SLATE: DVec3 = DVec3::new(0.3, 0.32, 0.36);
 

@@ -30,7 +30,7 @@ pub fn scene() -> Scene {
         vertex.uv *= 8.0;
     });
     let objects = vec![Object::new(land, DMat4::IDENTITY, DVec3::ONE).of(Material::default().glossy(0.04).shiny(12.0), 12)];
-    let eye = Eye { position: DVec3::new(0.5, 5.6, 10.5), target: DVec3::new(0.0, 0.4, 0.0), fov_y: 0.8, near: 0.5, far: 60.0 };
+    let eye = Eye { position: DVec3::new(3.2, 6.6, 10.5), target: DVec3::new(0.0, -0.3, -1.0), fov_y: 0.72, near: 0.5, far: 60.0 };
     let key = Lamp {
         color: DVec3::new(1.25, 1.08, 0.85),
         position: DVec3::new(-8.0, 6.5, 4.5),

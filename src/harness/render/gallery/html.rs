@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Exhibit, first_alike};
+use super::{Card, Exhibit, first_alike};
 
 const HEAD: &str = "<!doctype html>
 <html lang=\"en\">
@@ -34,22 +34,23 @@ pre { overflow: auto; max-height: 30rem; padding: .8rem; border: 1px solid var(-
 /// In words: a picture that cannot be written.
 pub fn page(exhibits: &[Exhibit]) -> Result<String, String> {
     let mut text = HEAD.to_owned();
-    for (exhibit, first) in exhibits.iter().zip(first_alike(exhibits)) {
-        article(&mut text, exhibit, &exhibits[first])?;
+    let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
+    for (exhibit, first) in exhibits.iter().zip(first_alike(&cards)) {
+        article(&mut text, exhibit, cards[first])?;
     }
     text.push_str("</body>\n</html>\n");
     Ok(text)
 }
 
-fn article(text: &mut String, exhibit: &Exhibit, first: &Exhibit) -> Result<(), String> {
-    let preset = &exhibit.preset;
+fn article(text: &mut String, exhibit: &Exhibit, first: &Card) -> Result<(), String> {
+    let preset = &exhibit.card.preset;
     let name = escaped(&preset.name);
     let (width, height) = (exhibit.picture.width, exhibit.picture.height);
     let picture = base64(&exhibit.picture.png()?);
     let _ = write!(text, "<article id=\"{name}\">\n<img alt=\"{name}\" width=\"{width}\" height=\"{height}\" ");
     let _ = write!(text, "src=\"data:image/png;base64,{picture}\">\n<div>\n<h2>{name}</h2>\n<p>{}</p>\n<ul>\n", prose(&preset.doc));
     let _ = writeln!(text, "<li>{}</li>", escaped(&preset.source));
-    for pass in exhibit.passes() {
+    for pass in exhibit.card.passes() {
         let _ = writeln!(text, "<li><code>{}</code></li>", escaped(&pass));
     }
     let _ = writeln!(text, "<li>scene: {}</li>", escaped(&preset.scene));
@@ -61,20 +62,20 @@ fn article(text: &mut String, exhibit: &Exhibit, first: &Exhibit) -> Result<(), 
     if let Some(probe) = &preset.probe {
         let _ = writeln!(text, "<li>light probe: {}</li>", escaped(probe));
     }
-    let _ = writeln!(text, "<li><code>{}</code></li>\n</ul>", escaped(&exhibit.command()));
-    composed(text, exhibit, first);
+    let _ = writeln!(text, "<li><code>{}</code></li>\n</ul>", escaped(&exhibit.card.command()));
+    composed(text, &exhibit.card, first);
     let _ = writeln!(text, "<p class=\"quiet\">{}</p>\n</div>\n</article>", escaped(&exhibit.adapter));
     Ok(())
 }
 
-fn composed(text: &mut String, exhibit: &Exhibit, first: &Exhibit) {
-    if first.preset.name != exhibit.preset.name {
+fn composed(text: &mut String, card: &Card, first: &Card) {
+    if first.preset.name != card.preset.name {
         let name = escaped(&first.preset.name);
         let _ = writeln!(text, "<p>The composed text is that of <a href=\"#{name}\">{name}</a>.</p>");
         return;
     }
     text.push_str("<details><summary>composed text</summary>\n");
-    for composed in &exhibit.texts {
+    for composed in &card.texts {
         let _ = writeln!(text, "<pre>{}</pre>", escaped(composed));
     }
     text.push_str("</details>\n");
