@@ -1,9 +1,5 @@
 //! Whole programs: permutations of `forward` drawn on each driver, and every sampled fragment
-//! computed again by the evaluator from the very inputs the driver gave it.
-//!
-//! A fragment agrees where each component of its colour lies within the bound of value plus error.
-//! It is open where it does not, but a comparison on the way was too close to call, or where the
-//! specification gives no bound.
+//! computed again by the evaluator.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,16 +7,16 @@ use std::sync::Arc;
 use lamplight::bundle::{Kind as BindingKind, Reflection};
 use lamplight::compose::Language;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::eval::{self, Bounded, Function, Kind, Machine, Number, Program, Resources};
 use lamplight::harness::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use lamplight::harness::frame::{
     Attribute, Buffers, Composed, Drawing, Item, Mesh, Painter, Programs, Renderer, Stage, Stages, State, pack, probe,
 };
-use lamplight::harness::kernel::SENTINEL;
 use lamplight::harness::on_thread;
 use lamplight::permute::axis::ValueSet;
 use lamplight::permute::{Assignment, Space};
 use libtest_mimic::{Failed, Trial};
+
+use crate::fragments::{self, Tally, Watched};
 
 /// Pixels from left to right, and from top to bottom.
 const WIDTH: u32 = 256;
@@ -81,32 +77,6 @@ fn covering(space: &Space) -> Vec<Assignment> {
         next = pin.and_then(|pin| space.pick_valid(&[pin], choose));
     }
     points
-}
-
-/// What became of the fragments.
-#[derive(Default)]
-struct Tally {
-    tried: usize,
-    open: usize,
-    /// Largest error over its bound.
-    share: f64,
-    detours: BTreeMap<&'static str, usize>,
-}
-
-impl Tally {
-    fn add(&mut self, other: &Self) {
-        self.tried += other.tried;
-        self.open += other.open;
-        self.share = self.share.max(other.share);
-        other.detours.iter().for_each(|(detour, count)| *self.detours.entry(detour).or_default() += count);
-    }
-}
-
-impl std::fmt::Display for Tally {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} fragments, {} open, at most {:.0} % of the bound", self.tried, self.open, 100.0 * self.share)?;
-        self.detours.iter().try_for_each(|(detour, count)| write!(f, "; {count} times {detour}"))
-    }
 }
 
 /// The library's programs in one language.
@@ -267,81 +237,13 @@ fn agrees(renderer: &Renderer, scene: &Scene) -> Result<Tally, String> {
         state: State::default(),
     };
     let frame = renderer.draw(&drawing).map_err(|problem| problem.message)?.remove(0);
-    let program = Program::new(&fragment.validated.module, &fragment.validated.info).map_err(|error| error.to_string())?;
     let mut tally = Tally { detours: frame.detour.map(|detour| (detour, 1)).into_iter().collect(), ..Tally::default() };
-    recompute(&program, fragment.entry, scene, &frame.targets, &mut tally)?;
+    let resources = fragments::resources(buffers.clone(), &scene.fixtures, &BTreeMap::new());
+    let watched = Watched { size: [WIDTH, HEIGHT], targets: &frame.targets };
+    fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
     match tally {
         Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
         Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => Err(format!("{open} of {tried} fragments are open")),
         tally => Ok(tally),
     }
-}
-
-/// Computes the sampled fragments of a frame again.
-fn recompute(program: &Program, entry: &str, scene: &Scene, targets: &[Vec<u32>], tally: &mut Tally) -> Result<(), String> {
-    // GLSL has a plain function of that name too; entry points come after functions.
-    let (id, _) = program.functions().filter(|(_, function)| function.name == entry).last().ok_or("no entry point")?;
-    let signature = program.signature(id).ok_or("no entry point")?;
-    let mut machine = Machine::<Bounded>::new(program).map_err(|error| error.to_string())?;
-    machine.bind(resources(scene)).map_err(|error| error.to_string())?;
-    for quad in quads(&targets[0]) {
-        let arguments = quad.map(|pixel| slots(signature, targets, pixel));
-        machine.forget();
-        let wanted = machine.quad(id, [0, 1, 2, 3].map(|lane| arguments[lane].as_slice())).map_err(|error| error.to_string())?;
-        let doubt = !machine.findings().is_empty();
-        for (pixel, wanted) in quad.into_iter().zip(wanted) {
-            let found = four(&targets[0], pixel).map(|word| f64::from(f32::from_bits(word)));
-            let share = |(found, wanted): (f64, &Bounded)| {
-                if found == wanted.value() { 0.0 } else { (found - wanted.value()).abs() / wanted.error() }
-            };
-            let shares: Vec<f64> = found.into_iter().zip(&wanted).map(share).collect();
-            if shares.len() != 4 {
-                return Err(format!("{} numbers in place of a colour", shares.len()));
-            }
-            let far = shares.iter().position(|share| !(*share <= 1.0));
-            tally.tried += 1;
-            if wanted.iter().any(|value| !value.error().is_finite()) || far.is_some() && doubt {
-                tally.open += 1;
-            } else if let Some(i) = far {
-                let (x, y) = (pixel as u32 % WIDTH, pixel as u32 / WIDTH);
-                let (value, error) = (wanted[i].value(), wanted[i].error());
-                return Err(format!("pixel ({x}, {y}): found {}, wanted {value} within {error:e}", found[i]));
-            } else {
-                tally.share = shares.into_iter().fold(tally.share, f64::max);
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Whole quads all over the frame, in the order the evaluator takes them.
-fn quads(found: &[u32]) -> impl Iterator<Item = [usize; 4]> + '_ {
-    let quads = (0..HEIGHT / 2).flat_map(|y| (0..WIDTH / 2).map(move |x| (2 * x, 2 * y))).step_by(STEP);
-    let pixels = quads.map(|(x, y)| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * WIDTH + x + i) as usize));
-    pixels.filter(|quad| quad.iter().all(|pixel| four(found, *pixel) != [SENTINEL; 4]))
-}
-
-fn four(target: &[u32], pixel: usize) -> [u32; 4] {
-    std::array::from_fn(|word| target[4 * pixel + word])
-}
-
-/// What a fragment was given: behind the colour.
-fn slots(signature: &Function, targets: &[Vec<u32>], pixel: usize) -> Vec<Bounded> {
-    let words = targets[1..].iter().flat_map(|target| four(target, pixel));
-    let slot = |(kind, word): (&Kind, u32)| match kind {
-        Kind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
-        _ => Bounded::from_word(word),
-    };
-    signature.arguments.iter().zip(words).map(slot).collect()
-}
-
-fn resources(scene: &Scene) -> Resources {
-    let mut resources = Resources { buffers: scene.buffers.clone(), ..Resources::default() };
-    for (place, fixture) in &scene.fixtures {
-        match &**fixture {
-            Fixture::Texture(texture) => drop(resources.textures.insert(*place, eval::Texture::from(texture))),
-            Fixture::Sampler(sampler) => drop(resources.samplers.insert(*place, eval::Sampler::from(*sampler))),
-        }
-    }
-    resources
 }
