@@ -47,10 +47,15 @@ pub struct Watched<'a> {
 }
 
 impl Watched<'_> {
-    /// Whole quads all over the frame, one in so many, in the order the evaluator takes them.
-    fn quads(&self, step: usize) -> impl Iterator<Item = [usize; 4]> + '_ {
+    /// Quads that are drawn to all four fragments.
+    pub fn whole_quads(&self) -> usize {
+        self.quads().count()
+    }
+
+    /// Whole quads all over the frame, in the order the evaluator takes them.
+    fn quads(&self) -> impl Iterator<Item = [usize; 4]> + '_ {
         let [width, height] = self.size;
-        let quads = (0..height / 2).flat_map(move |y| (0..width / 2).map(move |x| (2 * x, 2 * y))).step_by(step);
+        let quads = (0..height / 2).flat_map(move |y| (0..width / 2).map(move |x| (2 * x, 2 * y)));
         let pixels = quads.map(move |(x, y)| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * width + x + i) as usize));
         pixels.filter(|quad| quad.iter().all(|pixel| self.is_drawn(*pixel)))
     }
@@ -73,7 +78,7 @@ fn four(target: &[u32], pixel: usize) -> [u32; 4] {
     std::array::from_fn(|word| target[4 * pixel + word])
 }
 
-/// Computes fragments of a frame again, one quad in `step`.
+/// Computes fragments of a frame again, one whole quad in `step`.
 pub fn recompute(stage: &Composed, resources: Resources, watched: &Watched<'_>, step: usize, tally: &mut Tally) -> Result<(), String> {
     let program = Program::new(&stage.validated.module, &stage.validated.info).map_err(|error| error.to_string())?;
     // GLSL has a plain function of that name too; entry points come after functions.
@@ -81,7 +86,7 @@ pub fn recompute(stage: &Composed, resources: Resources, watched: &Watched<'_>, 
     let signature = program.signature(id).ok_or("no entry point")?;
     let mut machine = Machine::<Bounded>::new(&program).map_err(|error| error.to_string())?;
     machine.bind(resources).map_err(|error| error.to_string())?;
-    for quad in watched.quads(step) {
+    for quad in watched.quads().step_by(step) {
         let arguments = quad.map(|pixel| slots(signature, watched, pixel));
         machine.forget();
         let wanted = machine.quad(id, [0, 1, 2, 3].map(|lane| arguments[lane].as_slice())).map_err(|error| error.to_string())?;

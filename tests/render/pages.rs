@@ -49,7 +49,7 @@ fn gallery_is_current() -> Result<(), Failed> {
     for (path, wanted) in files {
         let found = std::fs::read_to_string(folder.join(&path)).map_err(|error| format!("{path}: {error}"))?;
         if found != wanted {
-            return Err(format!("{path} is not current: run `lamplight render --all --size 192x192 --samples 8 -o docs/gallery`").into());
+            return Err(format!("{path} is not current: run `lamplight render --all --size 192x192 -o docs/gallery`").into());
         }
     }
     let adapters = std::fs::read_to_string(folder.join("adapters.txt"))?;

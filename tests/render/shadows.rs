@@ -82,6 +82,10 @@ impl Casters {
         if towards.y >= 0.0 {
             return Way::Clear;
         }
+        if from.y < margin {
+            // Where a caster touches the floor, the place that is looked up may be below it.
+            return Way::Unclear;
+        }
         let at = from - towards * (from.y / towards.y);
         let reach = at.x.abs().max(at.z.abs());
         if reach < self.floor_half - margin {
@@ -204,7 +208,7 @@ fn acne(bench: &Bench<'_>) -> Result<(), String> {
         ("nothing", &[("depth_pass", "polygon_offset", &[0.0, 0.0])]),
         ("a constant", &[("depth_pass", "polygon_offset", &[0.0, 0.0]), ("caster", "bias", &[0.01])]),
         ("polygon offset", &[("depth_pass", "polygon_offset", &[2.0, 4.0])]),
-        ("an offset along the normal", &[("depth_pass", "polygon_offset", &[0.0, 0.0]), ("caster", "normal_offset", &[2.0])]),
+        ("an offset along the normal", &[("depth_pass", "polygon_offset", &[0.0, 0.0]), ("caster", "normal_offset", &[3.0])]),
         ("back faces alone", &[("depth_pass", "cull_front", &[1.0])]),
     ];
     let light = DVec3::new(-4.0, 5.0, -1.5);
