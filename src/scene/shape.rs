@@ -94,7 +94,7 @@ impl Shape {
         Self::surface(quads.0, quads.1, |u, v| {
             let ahead = (smooth(&line, (v + 1e-3).min(1.0)) - smooth(&line, (v - 1e-3).max(0.0))).normalize_or_zero();
             let (sin, cos) = (TAU * u).sin_cos();
-            let side = (DVec3::new(-ahead.y, ahead.x, 0.0) * cos - DVec3::Z * sin) * smooth(&radii, v).x.max(0.0);
+            let side = (DVec3::new(-ahead.y, ahead.x, 0.0) * cos + DVec3::Z * sin) * smooth(&radii, v).x.max(0.0);
             smooth(&line, v).extend(0.0) + side
         })
     }

@@ -107,7 +107,8 @@ impl Casters {
         ];
         // What lies on a caster is not asked of the same: it is lit on this side.
         let on_ball = from.distance(self.ball) < 1.02;
-        let on_box = self.object_from_box.transform_point3(from).abs().cmple(self.box_half + 0.01).all();
+        let on_floor = fragment.position.y < 1e-3;
+        let on_box = !on_floor && self.object_from_box.transform_point3(from).abs().cmple(self.box_half + 0.01).all();
         let asked = [true, !on_ball, !on_box, true];
         let ways = || ways.iter().zip(asked).filter(|(_, asked)| *asked).map(|(way, _)| *way);
         if ways().any(|way| way == Way::Blocked) {
@@ -138,7 +139,7 @@ fn octants(bench: &Bench<'_>) -> Result<(), String> {
         let numbers: Numbers<'_> = &[("light", "axis", &(-towards).to_array()), ("light", "color", &[1.0; 3])];
         let prepared = bench.prepared(&bench.plan(&format!("{DIRECTIONAL},shadow=hard"), "casters", numbers)?, SIZE)?;
         let margin = 3.0 * uniform(&prepared, "caster", "texel").ok_or("no texel")?;
-        let (mut counts, mut wrong) = ([0, 0], 0);
+        let (mut counts, mut wrong) = ([0, 0], Vec::new());
         for fragment in bench.fragments_of(&prepared, SIZE)?.iter().filter(|fragment| fragment.normal.dot(towards) > 0.25) {
             let wanted = match casters.way(fragment, towards, margin) {
                 Way::Unclear => continue,
@@ -146,12 +147,15 @@ fn octants(bench: &Bench<'_>) -> Result<(), String> {
                 Way::Blocked => 0,
             };
             counts[wanted] += 1;
-            wrong += usize::from((visibility(fragment, towards) - wanted as f64).abs() > 0.01);
+            if (visibility(fragment, towards) - wanted as f64).abs() > 0.01 {
+                wrong.push(*fragment);
+            }
         }
         // From below, the floor is before everything.
         let enough = counts[0] > 100 && (towards.y < 0.0 || counts[1] > 1000);
-        if wrong > 0 || !enough {
-            return Err(format!("light from {towards}: {wrong} wrong of {} dark and {} lit fragments", counts[0], counts[1]));
+        if !wrong.is_empty() || !enough {
+            let [dark, lit] = counts;
+            return Err(format!("light from {towards}: of {dark} dark and {lit} lit fragments are wrong {wrong:.3?}"));
         }
     }
     Ok(())
