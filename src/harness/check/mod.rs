@@ -54,6 +54,9 @@ pub struct Outcome {
     pub adapter: String,
     /// Index of the case in its file.
     pub case: usize,
+    /// What its measurements are recorded under: the function's path and, from its second case
+    /// on, the number of the case, `math::safe::saturate#2`.
+    pub record: String,
     /// What was found; or why the executor did not run it.
     pub verdict: Result<Verdict, Diagnostic>,
     /// Share of the stated tolerance that was recorded for this adapter.
@@ -70,7 +73,7 @@ impl Outcome {
 
     /// Whether every row and law holds, and no more is needed than was recorded.
     pub fn passed(&self) -> bool {
-        self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict)) && !self.exceeds_driver()
+        self.is_within() && !self.exceeds_driver()
     }
 
     /// Whether more error was met than the driver tier allows.
@@ -82,6 +85,11 @@ impl Outcome {
     pub fn of_driver(&self) -> Option<f64> {
         let share = self.verdict.as_ref().ok()?.worst.map_or(0.0, |worst| worst.share());
         Some(share / (ratchet::SLACK * self.recorded?))
+    }
+
+    /// Whether the values are within what is stated, or what a waiver allows.
+    pub fn is_within(&self) -> bool {
+        self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict))
     }
 
     fn is_waived(&self, verdict: &Verdict) -> bool {
@@ -180,8 +188,9 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outc
                 executor: open.executor,
                 adapter: adapter.clone(),
                 case: job.index,
+                record: job.record.clone(),
                 verdict: run(job, kernel, open.session.as_mut(), &mut first, options),
-                recorded: options.ratchet.and_then(|ratchet| ratchet.share(&path, open.executor, &adapter)),
+                recorded: options.ratchet.and_then(|ratchet| ratchet.share(&job.record, open.executor, &adapter)),
                 waiver: waiver.map(|waiver| (waiver.share, waiver.reason.clone())),
             });
         }
