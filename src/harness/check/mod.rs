@@ -2,12 +2,14 @@
 
 pub(super) mod job;
 pub(super) mod judge;
+pub mod law;
 mod profile;
 mod proof;
 mod report;
 mod shrink;
 
-pub use judge::{LawVerdict, Verdict, Worst};
+pub use judge::{Verdict, Worst};
+pub use law::LawVerdict;
 pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
 pub use proof::{Parity, Proof, Spec, Value};
 pub use report::{failures, failures_of, language, short, stricter, table};
@@ -210,7 +212,12 @@ fn run(
     let mut verdict = judge::judge(job, &job.rows, &job.expected, &results);
     for law in &job.laws {
         let transformed = law.rows.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
-        verdict.laws.push(judge::law(job, law, &results, transformed.as_deref()));
+        let transformed = law.rows.as_ref().zip(transformed.as_deref());
+        let mut found = law::judge(job, law.law, &law::Given { rows: &job.rows, expected: &job.expected, results: &results, transformed });
+        if let Some(row) = found.row {
+            found.smallest = Some(shrink::shrink_law(job, kernel, session, law.law, row)?);
+        }
+        verdict.laws.push(found);
     }
     if let Some(row) = verdict.failing.first() {
         verdict.smallest = Some(shrink::shrink(job, kernel, session, *row)?);
