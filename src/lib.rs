@@ -5,6 +5,12 @@
 //! `source -> parse -> resolve -> permute -> compose -> validate -> emit -> bundle`
 
 pub mod bundle;
+#[cfg(feature = "single-file")]
+#[path = "packing/zstd.rs"]
+mod packing;
+#[cfg(not(feature = "single-file"))]
+#[path = "packing/absent.rs"]
+mod packing;
 
 #[cfg(feature = "compile")]
 pub mod cache;

@@ -178,6 +178,14 @@ const CASE_ERRORS: &[(&str, &str)] = &[
         "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { rises = \"x\" }\n",
         "mine.toml:5:8: error[case-invalid]: this table is no law",
     ),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { continuous = \"x\", slop = 1 }\n",
+        "mine.toml:5:28: error[case-invalid]: the law `continuous` has no `slop`",
+    ),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { integral = \"x\", gives = 1, within = 1 }\n",
+        "mine.toml:5:8: error[case-invalid]: `x` is no direction",
+    ),
     ("[[case]]\nfunction = \"hal\"\ninputs = { x = 1 }\n", "mine.toml:2:12: error["),
     (
         "[[case]]\nfunction = \"half\"\ninputs = { x = { hemisphere = \"n\", count = 2 } }\nformula = \"x\"\n",

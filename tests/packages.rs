@@ -96,8 +96,7 @@ fn npm_package_is_complete() -> Result<(), Failed> {
     }
 
     if Command::new("node").arg("--version").output().is_err() {
-        eprintln!("packages::npm: node is not installed, so the bundle was read as JSON only");
-        return Ok(());
+        return Err("node is not installed: `apt-get install nodejs`".into());
     }
     let script =
         "import lamplight, { weslBundle } from 'lamplight'; console.log(JSON.stringify(lamplight === weslBundle ? lamplight : {}))";

@@ -11,10 +11,12 @@ use tempfile::TempDir;
 type Outcome = Result<(), Failed>;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 4] = [
+    let cases: [(&str, fn() -> Outcome); 6] = [
         ("forms_list_the_failure", forms_list_the_failure),
         ("pasted_case_fails_alike", pasted_case_fails_alike),
         ("off_before_rounding", off_before_rounding),
+        ("broken_laws", broken_laws),
+        ("kept_laws", kept_laws),
         ("passing_report", passing_report),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("report::{name}"), case)).collect()
@@ -28,6 +30,10 @@ fn fade(d: f32, reach: f32) -> f32 {
 
 fn threshold(x: f32) -> f32 {
     return select(0.0, 1.0, x > 0.5);
+}
+
+fn lobe(n: vec3f, l: vec3f) -> f32 {
+    return max(dot(n, l), 0.0);
 }
 ";
 
@@ -114,6 +120,66 @@ fn pasted_case_fails_alike() -> Outcome {
     let again = Checked::new(MODULE, pasted)?;
     again.exits(3)?;
     if found(&again.errors()) == found(&errors) { Ok(()) } else { Err(format!("{errors}\nagain:\n{}", again.errors()).into()) }
+}
+
+/// Each law with one that is broken; whether one input breaks it, which is then shrunk.
+const BROKEN: &[(&str, &str, &str, bool)] = &[
+    ("threshold", "{ range = [0, 0.5] }", "{ x = { grid = [0, 1], count = 9 } }", true),
+    ("threshold", "{ falling = \"x\" }", "{ x = { around = 0.5, ulps = 9 } }", true),
+    ("threshold", "{ continuous = \"x\", slope = 4 }", "{ x = { around = 0.5, ulps = 9 } }", true),
+    ("threshold", "{ at = { x = 2 }, gives = 0 }", "{ x = 0 }", true),
+    ("threshold", "{ even = \"x\" }", "{ x = [0, 0.75] }", true),
+    ("fade", "{ swap = [\"d\", \"reach\"] }", "{ d = [1, 3], reach = [1, 2] }", true),
+    ("fade", "{ reaches = [0, 2] }", "{ d = 1, reach = [1, 2] }", false),
+    ("lobe", "{ integral = \"l\", about = \"n\", gives = 3.1, within = 0.01 }", "{ n = { unit = 4 }, l = { same = \"n\" } }", false),
+    (
+        "lobe",
+        "{ integral = \"l\", about = \"n\", cosine = true, at_most = 2, within = 0.01 }",
+        "{ n = { unit = 4 }, l = { same = \"n\" } }",
+        false,
+    ),
+    ("lobe", "{ integral = \"l\", about = \"n\", gives = 0, within = 9 }", "{ n = [[[0, 0, 0]]], l = { unit = 9 } }", false),
+];
+
+/// Laws that do not hold are told, with a small input that breaks them where one does, as a case.
+fn broken_laws() -> Outcome {
+    for (function, law, inputs, is_of_one_input) in BROKEN {
+        let name = law.trim_start_matches("{ ").split(' ').next().unwrap_or_default();
+        let said = format!("the law `{name}` is broken");
+        let case = format!("[[case]]\nfunction = \"{function}\"\noracle = \"none\"\nlaws = [{law}]\ninputs = {inputs}\n");
+        let checked = Checked::new(MODULE, &case)?;
+        checked.exits(3)?;
+        let errors = checked.errors();
+        contains(&errors, &[&said])?;
+        match errors.find("[[case]]") {
+            Some(start) if *is_of_one_input => {
+                let again = Checked::new(MODULE, errors[start..].split("\n\n").next().unwrap_or_default())?;
+                again.exits(3)?;
+                contains(&again.errors(), &[&said])?;
+            }
+            None if !is_of_one_input => {}
+            _ => return Err(errors.into()),
+        }
+    }
+    Ok(())
+}
+
+/// Laws that hold of the same functions.
+fn kept_laws() -> Outcome {
+    let laws = [
+        ("lobe", "{ integral = \"l\", about = \"n\", gives = 3.141592653589793, within = 1e-6 }"),
+        ("lobe", "{ integral = \"l\", about = \"n\", cosine = true, at_most = 2.0944, within = 1e-4 }"),
+        ("lobe", "{ integral = \"l\", steps = 64, gives = 3.141592653589793, within = 1e-2 }"),
+        ("lobe", "{ continuous = \"l\", slope = 1.01 }"),
+    ];
+    for (function, law) in laws {
+        let inputs = "{ n = { unit = 8 }, l = { unit = 8 } }";
+        let case = format!(
+            "[[case]]\nfunction = \"{function}\"\noracle = \"none\"\ntolerance = {{ ulp = 2 }}\nlaws = [{law}]\ninputs = {inputs}\n"
+        );
+        Checked::new(MODULE, &case)?.exits(0)?;
+    }
+    Ok(())
 }
 
 /// What the tolerance of f32 hides is found in f64.

@@ -156,8 +156,9 @@ fn parse(texts: &[String]) -> Result<Naga, String> {
     let parse = |text: &String| naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text));
     let parsed = timed(|| texts.iter().map(parse).collect::<Result<Vec<_>, _>>());
     let modules = parsed.value?;
-    let validated = timed(|| modules.iter().try_for_each(|module| validator().validate(module).map(drop)));
-    validated.value.map_err(|error| error.to_string())?;
+    let validate = |module: &naga::Module| validator().validate(module).map(drop).map_err(|error| error.to_string());
+    let validated = timed(|| modules.iter().try_for_each(validate));
+    validated.value?;
     Ok(Naga { parse: parsed.elapsed, validate: validated.elapsed })
 }
 
@@ -171,7 +172,8 @@ fn naga_oil_modules() -> Result<Timed<()>, Box<dyn Error>> {
     let added = timed(|| {
         (0..MODULES).try_for_each(|module| {
             let (source, path) = (corpus::module(module, Dialect::NagaOil), corpus::path(module).join("/"));
-            composer.add_composable_module(ComposableModuleDescriptor { source: &source, file_path: &path, ..Default::default() }).map(drop)
+            let descriptor = ComposableModuleDescriptor { source: &source, file_path: &path, ..Default::default() };
+            composer.add_composable_module(descriptor).map(drop).map_err(Box::new)
         })
     });
     added.value?;

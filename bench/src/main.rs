@@ -15,7 +15,9 @@ use std::process::ExitCode;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-const BENCHMARKS: &[(&str, fn() -> Outcome)] =
+type Benchmark = (&'static str, fn() -> Outcome);
+
+const BENCHMARKS: &[Benchmark] =
     &[("compose", compose::run), ("eval", eval::run), ("gen", generate::run), ("load", load::run), ("scale", scale::run)];
 
 fn main() -> ExitCode {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -12,6 +13,7 @@ use super::contents::{Hash, checksum};
 use super::layout::*;
 use super::store::{Artifact, Program, Programs, Store, Unit};
 use super::{Error, Reflection, VERSION};
+use crate::packing;
 
 /// Decompressed groups that are kept: what a level's worth of similar shaders needs.
 const KEPT_GROUPS: usize = 16;
@@ -202,7 +204,10 @@ impl Packed {
         if checksum(packed) != expected {
             return Err(Error::corrupt(part, "the checksum does not match"));
         }
-        let bytes = zstd::bulk::decompress(packed, raw).map_err(|error| Error::corrupt(part.as_str(), error.to_string()))?;
+        let bytes = packing::decompress(packed, raw).map_err(|error| match error.kind() {
+            ErrorKind::Unsupported => error.into(),
+            _ => Error::corrupt(part.as_str(), error.to_string()),
+        })?;
         if bytes.len() == raw { Ok(bytes) } else { Err(Error::corrupt(part, "the length does not match")) }
     }
 

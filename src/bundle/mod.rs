@@ -2,7 +2,7 @@
 //!
 //! The directory form is for reading and for version control: `manifest.json`, described by
 //! [`SCHEMA`], and `blobs/` named by content. The single file is for shipping: see [`pack`].
-//! This module uses nothing else of the crate.
+//! Of the crate, this module uses the compression of the single file and nothing else.
 
 mod contents;
 mod diff;

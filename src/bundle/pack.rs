@@ -10,14 +10,12 @@ use super::layout::{
     EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, ProgramMeta, RECORD_BYTES, SLOT_BYTES, TargetMeta, hash,
 };
 use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
+use crate::packing;
 
 /// A group is closed at so many blobs or bytes: large enough for neighbours to share their
 /// common text, small enough to be decompressed within a millisecond.
 const GROUP_BLOBS: usize = 32;
 const GROUP_BYTES: usize = 256 << 10;
-
-/// zstd's: higher ones gain a few percent and cost several times as long.
-const LEVEL: i32 = 9;
 
 /// The single-file form. The same contents give the same bytes.
 ///
@@ -175,7 +173,7 @@ impl Packer {
             members += 1;
             let next = self.blobs.get(index + 1).map_or(usize::MAX, |blob| blob.len());
             if members == GROUP_BLOBS || raw.len().saturating_add(next) > GROUP_BYTES {
-                let packed = zstd::bulk::compress(&raw, LEVEL)?;
+                let packed = packing::compress(&raw)?;
                 groups.extend_from_slice(&(data.len() as u64).to_le_bytes());
                 put(&mut groups, &[number(packed.len())?, number(raw.len())?]);
                 groups.extend_from_slice(&checksum(&packed));

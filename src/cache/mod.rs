@@ -114,7 +114,7 @@ impl Cache {
     }
 
     fn put(&self, kind: &str, key: Hash, payload: Option<Vec<u8>>) {
-        let Some(record) = payload.and_then(|payload| record::seal(&payload)) else { return };
+        let Some(record) = payload.map(|payload| record::seal(&payload)) else { return };
         self.storages.iter().for_each(|storage| storage.put(&name(kind, key), &record));
     }
 }

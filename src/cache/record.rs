@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use lz4_flex::block;
 use serde::{Deserialize, Serialize};
 
 use super::short;
@@ -10,20 +11,17 @@ use crate::bundle::{Artifact, Native, Reflection, Unit};
 use crate::diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
 use crate::source::{SourceId, Span};
 
-const MAGIC: &[u8; 4] = b"LLC1";
+const MAGIC: &[u8; 4] = b"LLC2";
 const SUM_BYTES: usize = 16;
 
 /// Bytes of a payload: bounds what damage can allocate.
 const MOST_BYTES: usize = 1 << 30;
 
-/// zstd's: three texts in one language and others like them pack eight to one, at little cost.
-const LEVEL: i32 = 1;
-
 /// A payload, packed, with its checksum.
-pub fn seal(payload: &[u8]) -> Option<Vec<u8>> {
-    let packed = zstd::bulk::compress(payload, LEVEL).ok()?;
+pub fn seal(payload: &[u8]) -> Vec<u8> {
+    let packed = block::compress_prepend_size(payload);
     let sum = short(&blake3::hash(&packed));
-    Some([MAGIC.as_slice(), &sum, &packed].concat())
+    [MAGIC.as_slice(), &sum, &packed].concat()
 }
 
 /// The payload of a record that is as it was written.
@@ -32,8 +30,8 @@ pub fn open(record: &[u8]) -> Option<Vec<u8>> {
     if short(&blake3::hash(packed)) != *sum {
         return None;
     }
-    let size = zstd::zstd_safe::get_frame_content_size(packed).ok().flatten()?;
-    zstd::bulk::decompress(packed, usize::try_from(size).ok().filter(|size| *size <= MOST_BYTES)?).ok()
+    let (size, packed) = block::uncompressed_size(packed).ok().filter(|(size, _)| *size <= MOST_BYTES)?;
+    block::decompress(packed, size).ok()
 }
 
 /// What stands before the bytes of a unit's targets.

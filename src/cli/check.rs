@@ -14,7 +14,7 @@ use crate::harness::check::{Open, Options, Report, failures, stricter, table};
 use crate::harness::executors;
 use crate::harness::library::Library;
 use crate::harness::on_thread;
-use crate::harness::ratchet::FILE;
+use crate::harness::ratchet::{FILE, Ratchet};
 use crate::output;
 use crate::project;
 use crate::report;
@@ -99,11 +99,12 @@ fn one(
 ) -> Result<Result<Report, Failure>, Diagnostics> {
     let library = &selection.library;
     let ratchet = library.ratchet(sources)?;
+    let held = if arguments.bless { ratchet.as_ref().map(Ratchet::waivers_only) } else { ratchet.clone() };
     let options = Options {
         references: library.has_references(),
         profile: arguments.report.is_some(),
         prove: !arguments.bless,
-        ratchet: ratchet.as_ref().filter(|_| !arguments.bless),
+        ratchet: held.as_ref(),
     };
     let report = library.check_with(sources, &selection.files, &selection.languages, sessions, &options)?;
     if !arguments.bless {

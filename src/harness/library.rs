@@ -67,7 +67,8 @@ impl Library {
         folders
     }
 
-    /// Checks case files (paths below the package) in the languages on the open executors.
+    /// Checks case files (paths below the package) in the languages on the open executors, which
+    /// are held to what was recorded of them.
     pub fn check(
         &self,
         sources: &Mutex<SourceSet>,
@@ -75,7 +76,9 @@ impl Library {
         languages: &[Language],
         open: &mut [Open],
     ) -> Result<Report, Diagnostics> {
-        self.check_with(sources, paths, languages, open, &check::Options { references: self.has_references(), ..check::Options::default() })
+        let ratchet = self.ratchet(sources)?;
+        let options = check::Options { references: self.has_references(), ratchet: ratchet.as_ref(), ..check::Options::default() };
+        self.check_with(sources, paths, languages, open, &options)
     }
 
     /// Whether the crate's references are about this package.

@@ -9,6 +9,9 @@
 //! eval = 0.5
 //! vulkan = 0.5
 //!
+//! [share."lighting::spot::cone_hard#2"]  # of the function's second case
+//! eval = 0.1
+//!
 //! [[waiver]]                           # a driver that needs more than is stated, and why
 //! function = "color::transfer::fog_exp"
 //! executor = "gl"
@@ -43,7 +46,7 @@ const HEADER: &str = "# The driver tier: error over stated tolerance, worst of a
 pub struct Ratchet {
     /// Adapter by executor, what is in parentheses left out.
     pub adapters: BTreeMap<String, String>,
-    /// Share by function and executor.
+    /// Share by case ([`Outcome::record`](super::check::Outcome::record)) and executor.
     pub shares: BTreeMap<String, BTreeMap<String, f64>>,
     pub waivers: Vec<Waiver>,
 }
@@ -98,10 +101,15 @@ impl Ratchet {
         text
     }
 
-    /// The recorded share of a function on an executor, if it was measured on that adapter.
-    pub fn share(&self, function: &str, executor: &str, adapter: &str) -> Option<f64> {
+    /// The waivers alone, for what is to be measured anew.
+    pub fn waivers_only(&self) -> Self {
+        Self { waivers: self.waivers.clone(), ..Self::default() }
+    }
+
+    /// The recorded share of a case on an executor, if it was measured on that adapter.
+    pub fn share(&self, record: &str, executor: &str, adapter: &str) -> Option<f64> {
         self.adapters.get(executor).filter(|known| **known == pinned(adapter))?;
-        self.shares.get(function)?.get(executor).copied()
+        self.shares.get(record)?.get(executor).copied()
     }
 
     /// The waiver of a function on an executor.
@@ -110,7 +118,7 @@ impl Ratchet {
     }
 
     /// Lowers the shares to what a report measured; raises them only by force. What was recorded
-    /// on another adapter is measured anew.
+    /// on another adapter is measured anew. What fails is not recorded.
     pub fn bless(&mut self, report: &Report, force: bool) {
         for (executor, adapter) in report.outcomes.iter().map(|outcome| (outcome.executor, pinned(&outcome.adapter))) {
             if self.adapters.get(executor) != Some(&adapter) {
@@ -118,23 +126,23 @@ impl Ratchet {
                 self.adapters.insert(executor.to_owned(), adapter);
             }
         }
-        for ((function, executor), measured) in measured(report) {
-            let shares = self.shares.entry(function).or_default();
+        for ((record, executor), measured) in measured(report) {
+            let shares = self.shares.entry(record).or_default();
             let known = shares.get(executor).copied().filter(|_| !force).unwrap_or(f64::INFINITY);
             shares.insert(executor.to_owned(), known.min(measured));
         }
     }
 }
 
-/// The worst share of each function and executor that ran, rounded up.
+/// The worst share of each case and executor that holds, rounded up.
 fn measured(report: &Report) -> BTreeMap<(String, &'static str), f64> {
     let mut found = BTreeMap::new();
-    for outcome in &report.outcomes {
+    for outcome in report.outcomes.iter().filter(|outcome| outcome.is_within()) {
         let Ok(verdict) = &outcome.verdict else { continue };
         let share = verdict.worst.map_or(0.0, |worst| worst.share());
         if share.is_finite() {
             let share = ((share / LEAST).ceil() * LEAST * 1e6).round() / 1e6;
-            let known: &mut f64 = found.entry((outcome.path(), outcome.executor)).or_insert(LEAST);
+            let known: &mut f64 = found.entry((outcome.record.clone(), outcome.executor)).or_insert(LEAST);
             *known = known.max(share);
         }
     }

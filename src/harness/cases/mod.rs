@@ -60,7 +60,7 @@ use std::sync::Arc;
 
 use super::fixture::Fixture;
 use super::formula::{Formula, Scope};
-use super::laws::{self, Law};
+use super::laws::{self, Integral, Law};
 use super::tolerance::{self, Term};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::{SourceId, SourceSet, Span};
@@ -291,14 +291,44 @@ fn law(node: &Node) -> Result<Law, Diagnostic> {
         return Err(node.error("this table is no law").note(format!("laws are {}", known.join(", "))));
     };
     let texts = |node: &Node| node.one_or_more().iter().map(|one| one.text().map(str::to_owned)).collect::<Result<Vec<_>, _>>();
-    let mut law = Law { kind, span: node.span, names: Vec::new(), numbers: Vec::new(), at: Vec::new() };
+    if let Some((key, _)) = entries.iter().find(|(key, _)| key.name != kind.name && !kind.takes.options().contains(&key.name.as_str())) {
+        let message = format!("the law `{}` has no `{}`", kind.name, key.name);
+        return Err(Diagnostic::error(codes::CASE_INVALID, message)
+            .at(key.span, "here")
+            .suggest(&key.name, kind.takes.options().iter().copied()));
+    }
+    let mut law = Law { kind, span: node.span, names: Vec::new(), numbers: Vec::new(), at: Vec::new(), integral: None };
     match kind.takes {
         laws::Takes::Numbers => law.numbers = value.numbers()?,
         laws::Takes::Names => law.names = texts(value)?,
+        laws::Takes::Slope => {
+            law.names = vec![value.text()?.to_owned()];
+            law.numbers = vec![node.required("slope")?.number()?];
+        }
+        laws::Takes::Integral => {
+            law.names = vec![value.text()?.to_owned()];
+            law.numbers = node.get("at_most").map_or_else(|| node.required("gives"), Ok)?.numbers()?;
+            law.integral = Some(integral(node)?);
+        }
         laws::Takes::Point => {
             law.at = values_by_path("", value, &[])?;
             law.numbers = node.required("gives")?.numbers()?;
         }
     }
     Ok(law)
+}
+
+fn integral(node: &Node) -> Result<Integral, Diagnostic> {
+    let about = node.get("about").map(|about| about.text().map(str::to_owned)).transpose()?;
+    let cosine = node.get("cosine").is_some_and(|cosine| matches!(cosine.value, reader::Value::Bool(true)));
+    if cosine && about.is_none() {
+        return Err(node.error("`cosine` is that to `about`, which is missing"));
+    }
+    Ok(Integral {
+        about,
+        cosine,
+        steps: node.get("steps").map_or(Ok(16), |steps| steps.count(2, 128))? as usize,
+        within: node.required("within")?.number()?,
+        at_most: node.get("at_most").is_some(),
+    })
 }

@@ -24,6 +24,8 @@ pub struct Job<'a> {
     pub case: &'a Case,
     /// Index of the case in its file.
     pub index: usize,
+    /// What its measurements are recorded under.
+    pub record: String,
     pub kernels: Vec<(Language, Kernel)>,
     pub rows: Rows,
     /// For each row; empty where the case has laws alone.
@@ -104,7 +106,7 @@ pub fn prepare<'a>(
         .map(|language| Ok((*language, subjects(module, *language, &functions)?)))
         .collect::<Result<_, Diagnostics>>()
         .map_err(|errors| errors.into_iter().map(|error| placed(error, file)).collect::<Vec<_>>())?;
-    let jobs: Vec<_> = file.cases.par_iter().enumerate().map(|(index, case)| job(module, (index, case), &modules, options)).collect();
+    let jobs: Vec<_> = (0..file.cases.len()).into_par_iter().map(|index| job(module, file, index, &modules, options)).collect();
     let (mut done, mut errors) = (Vec::new(), Vec::new());
     for result in jobs {
         match result {
@@ -131,10 +133,12 @@ fn placed_at(error: Diagnostic, case: &Case) -> Diagnostic {
 
 fn job<'a>(
     module: &str,
-    (index, case): (usize, &'a Case),
+    file: &'a File,
+    index: usize,
     modules: &[(Language, Arc<naga::Module>)],
     options: &Options<'_>,
 ) -> Result<Job<'a>, Diagnostic> {
+    let case = &file.cases[index];
     let placed = |error: Diagnostic| placed_at(error, case);
     let kernels: Vec<(Language, Kernel)> = modules
         .iter()
@@ -156,6 +160,7 @@ fn job<'a>(
         .collect::<Result<_, Diagnostic>>()?;
     let mut job = Job {
         module: module.to_owned(),
+        record: record(module, file, index),
         case,
         index,
         terms,
@@ -170,6 +175,15 @@ fn job<'a>(
     };
     job.expected = expected(&job)?;
     Ok(job)
+}
+
+/// `math::safe::saturate`, and from a function's second case on `math::safe::saturate#2`.
+fn record(module: &str, file: &File, index: usize) -> String {
+    let function = &file.cases[index].function;
+    match file.cases[..index].iter().filter(|case| case.function == *function).count() {
+        0 => format!("{module}::{function}"),
+        earlier => format!("{module}::{function}#{}", earlier + 1),
+    }
 }
 
 /// Both languages must have the same parameters and results.

@@ -1,9 +1,9 @@
 //! Compares what an executor returned with what was expected.
 
-use super::job::{BoundLaw, Job, Target};
+use super::job::{Job, Target};
+use super::law::LawVerdict;
 use super::profile::Profile;
 use crate::harness::cases::{Rows, number};
-use crate::harness::laws;
 use crate::harness::tolerance;
 use naga::ScalarKind;
 
@@ -40,15 +40,6 @@ pub struct Worst {
     pub expected: f64,
     pub error: f64,
     pub allowed: f64,
-}
-
-/// What became of a law.
-#[derive(Debug)]
-pub struct LawVerdict {
-    pub name: &'static str,
-    /// Rows that break it, with the first one's words.
-    pub broken: usize,
-    pub example: Option<String>,
 }
 
 impl Verdict {
@@ -135,7 +126,7 @@ fn compare_one(job: &Job<'_>, row: &[f64], of: (&[f64], &[f64]), found: &[u32], 
 }
 
 /// How far off a component is. Subnormals may be flushed; no number is infinitely far off.
-fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
+pub fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
     let error = if found == expected { 0.0 } else { (found - expected).abs() };
     if error.is_nan() {
         f64::INFINITY
@@ -169,51 +160,4 @@ pub fn parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
         }
     };
     first.iter().zip(second).zip(kinds.iter().cycle()).map(apart).fold(0.0, f64::max)
-}
-
-/// Judges one law over all rows.
-pub fn law(job: &Job<'_>, law: &BoundLaw<'_>, results: &[u32], transformed: Option<&[u32]>) -> LawVerdict {
-    let kinds = job.kernel().result_kinds();
-    let mut verdict = LawVerdict { name: law.law.kind.name, broken: 0, example: None };
-    if law.law.kind.name == "reaches" {
-        return reaches(law, results, &kinds, verdict);
-    }
-    for index in 0..job.rows.len() {
-        let row = job.rows.row(index);
-        let outside = law.rows.as_ref().zip(job.filter.as_ref()).is_some_and(|(rows, filter)| filter.scalar(rows.row(index)) != 1.0);
-        if outside || job.expected.get(index).is_some_and(is_indeterminate) || is_ambiguous(job, row) {
-            continue;
-        }
-        let values = tolerance::values(&job.terms, row);
-        for (word, kind) in kinds.iter().enumerate().filter(|(_, kind)| **kind != ScalarKind::Bool) {
-            let at = index * kinds.len() + word;
-            let value = number(results[at], *kind);
-            let other = transformed.map(|words| number(words[at], *kind));
-            let allowed = if other.is_some() {
-                let own = job.expected.get(index).and_then(|target| target.errors.get(word)).copied().unwrap_or(0.0);
-                2.0 * (tolerance::allowed(&job.terms, &values, word, value) + own) + f64::from(f32::MIN_POSITIVE)
-            } else {
-                0.0
-            };
-            let broken = laws::broken_by(law.law, value, other, word);
-            if value.is_nan() || other.is_some_and(f64::is_nan) || broken > allowed {
-                verdict.broken += 1;
-                let text = || format!("{row:?} gives {value}, compared with {other:?}: off by {broken:e}, allowed {allowed:e}");
-                verdict.example.get_or_insert_with(text);
-            }
-        }
-    }
-    verdict
-}
-
-fn reaches(law: &BoundLaw<'_>, results: &[u32], kinds: &[ScalarKind], mut verdict: LawVerdict) -> LawVerdict {
-    let values = || results.iter().zip(kinds.iter().cycle()).map(|(word, kind)| number(*word, *kind));
-    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-    if let [low, high] = law.law.numbers[..]
-        && (least > low || most < high)
-    {
-        verdict.broken = 1;
-        verdict.example = Some(format!("values lie in [{least}, {most}], expected to reach [{low}, {high}]"));
-    }
-    verdict
 }

@@ -2,12 +2,14 @@
 
 pub(super) mod job;
 pub(super) mod judge;
+pub mod law;
 mod profile;
 mod proof;
 mod report;
 mod shrink;
 
-pub use judge::{LawVerdict, Verdict, Worst};
+pub use judge::{Verdict, Worst};
+pub use law::LawVerdict;
 pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
 pub use proof::{Parity, Proof, Spec, Value};
 pub use report::{failures, failures_of, language, short, stricter, table};
@@ -54,6 +56,9 @@ pub struct Outcome {
     pub adapter: String,
     /// Index of the case in its file.
     pub case: usize,
+    /// What its measurements are recorded under: the function's path and, from its second case
+    /// on, the number of the case, `math::safe::saturate#2`.
+    pub record: String,
     /// What was found; or why the executor did not run it.
     pub verdict: Result<Verdict, Diagnostic>,
     /// Share of the stated tolerance that was recorded for this adapter.
@@ -70,7 +75,7 @@ impl Outcome {
 
     /// Whether every row and law holds, and no more is needed than was recorded.
     pub fn passed(&self) -> bool {
-        self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict)) && !self.exceeds_driver()
+        self.is_within() && !self.exceeds_driver()
     }
 
     /// Whether more error was met than the driver tier allows.
@@ -82,6 +87,11 @@ impl Outcome {
     pub fn of_driver(&self) -> Option<f64> {
         let share = self.verdict.as_ref().ok()?.worst.map_or(0.0, |worst| worst.share());
         Some(share / (ratchet::SLACK * self.recorded?))
+    }
+
+    /// Whether the values are within what is stated, or what a waiver allows.
+    pub fn is_within(&self) -> bool {
+        self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict))
     }
 
     fn is_waived(&self, verdict: &Verdict) -> bool {
@@ -180,8 +190,9 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outc
                 executor: open.executor,
                 adapter: adapter.clone(),
                 case: job.index,
+                record: job.record.clone(),
                 verdict: run(job, kernel, open.session.as_mut(), &mut first, options),
-                recorded: options.ratchet.and_then(|ratchet| ratchet.share(&path, open.executor, &adapter)),
+                recorded: options.ratchet.and_then(|ratchet| ratchet.share(&job.record, open.executor, &adapter)),
                 waiver: waiver.map(|waiver| (waiver.share, waiver.reason.clone())),
             });
         }
@@ -201,7 +212,12 @@ fn run(
     let mut verdict = judge::judge(job, &job.rows, &job.expected, &results);
     for law in &job.laws {
         let transformed = law.rows.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
-        verdict.laws.push(judge::law(job, law, &results, transformed.as_deref()));
+        let transformed = law.rows.as_ref().zip(transformed.as_deref());
+        let mut found = law::judge(job, law.law, &law::Given { rows: &job.rows, expected: &job.expected, results: &results, transformed });
+        if let Some(row) = found.row {
+            found.smallest = Some(shrink::shrink_law(job, kernel, session, law.law, row)?);
+        }
+        verdict.laws.push(found);
     }
     if let Some(row) = verdict.failing.first() {
         verdict.smallest = Some(shrink::shrink(job, kernel, session, *row)?);

@@ -172,7 +172,7 @@ fn share(job: &Job<'_>, inputs: &[f64], found: &Target, target: &Target) -> f64 
     let values = tolerance::values(&job.terms, inputs);
     let of = |expected: &Vec<f64>| {
         let component = |(word, (found, expected)): (usize, (&f64, &f64))| {
-            let off = (found - expected).abs();
+            let off = judge::distance(*found, *expected, false);
             if off == 0.0 { 0.0 } else { off / tolerance::allowed(&job.terms, &values, word, *expected) }
         };
         found.expected.value.iter().zip(expected).enumerate().map(component).fold(0.0, f64::max)

@@ -139,6 +139,7 @@ pub fn failures_of(outcomes: &[Outcome], proofs: &[Proof]) -> String {
                 }
                 for law in verdict.laws.iter().filter(|law| law.broken > 0) {
                     text += &format!("  the law `{}` is broken {} times: {}\n", law.name, law.broken, law.example.as_deref().unwrap_or(""));
+                    text += law.smallest.as_deref().unwrap_or("");
                 }
                 text += verdict.smallest.as_deref().unwrap_or("");
                 text += "\n";

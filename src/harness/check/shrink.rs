@@ -2,10 +2,13 @@
 
 use super::job::{Job, Target};
 use super::judge;
+use super::law::{self, Given};
 use crate::diagnostic::Diagnostic;
 use crate::harness::Session;
-use crate::harness::cases::number;
+use crate::harness::cases::{Rows, number};
+use crate::harness::formula::Scope;
 use crate::harness::kernel::Kernel;
+use crate::harness::laws::{self, Law};
 use naga::ScalarKind;
 
 /// Rounds of candidates: each round keeps the simplest input that still fails.
@@ -14,16 +17,11 @@ const ROUNDS: usize = 24;
 /// The smallest failing input found from a failing row, as text: values in decimal and hex, and a
 /// case ready to paste.
 pub fn shrink(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, failing: usize) -> Result<String, Diagnostic> {
-    let mut best = job.rows.row_words(failing).to_vec();
-    let ranges = ranges(job);
-    for _ in 0..ROUNDS {
-        let mut candidates = candidates(job, &best);
-        candidates.retain(|candidate| complexity(job, candidate) < complexity(job, &best) && meant(job, &ranges, candidate));
-        candidates.sort_by_key(|candidate| complexity(job, candidate));
-        candidates.truncate(1024);
-        let Some(simpler) = first_failing(job, kernel, session, &candidates)? else { break };
-        best = simpler;
-    }
+    let best = smallest(job, failing, &mut |rows| {
+        let Some(expected) = job.targets(rows)? else { return Ok(None) };
+        let results = session.run(kernel, &rows.words)?;
+        Ok(judge::judge(job, rows, &expected, &results).failing.first().copied())
+    })?;
     let found = session.run(kernel, &best)?;
     let target = if best == job.rows.row_words(failing) { None } else { job.targets(&job.rows.with_words(best.clone()))? };
     match target.as_ref().and_then(|targets| targets.first()).or(job.expected.get(failing)) {
@@ -32,20 +30,45 @@ pub fn shrink(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, failing
     }
 }
 
-fn first_failing(
+/// The same for a row that breaks a law.
+pub fn shrink_law(job: &Job<'_>, kernel: &Kernel, session: &mut dyn Session, law: &Law, failing: usize) -> Result<String, Diagnostic> {
+    let scope = Scope(job.kernel().words().collect());
+    let best = smallest(job, failing, &mut |rows| {
+        let others = laws::transformed(law, rows, &scope)?;
+        let expected = job.targets(rows)?.unwrap_or_default();
+        let results = session.run(kernel, &rows.words)?;
+        let transformed = others.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
+        let transformed = others.as_ref().zip(transformed.as_deref());
+        Ok(law::judge(job, law, &Given { rows, expected: &expected, results: &results, transformed }).row)
+    })?;
+    let found = session.run(kernel, &best)?;
+    let input = Input::new(job, &best);
+    let found = format!("  found {}\n\n", values(&found, &job.kernel().result_kinds()));
+    let head = format!("[[case]]\nfunction = {:?}\noracle = \"none\"\n", job.case.function);
+    let laws = format!("{}laws = [{}]\n# {}\n", fixtures(job), laws::toml(law), input.bits);
+    Ok(format!("{}{found}{head}{laws}inputs = {{ {} }}\n", input.text, input.lists))
+}
+
+/// The simplest input found that still fails; `first_failing` gives the index of a row that does.
+fn smallest(
     job: &Job<'_>,
-    kernel: &Kernel,
-    session: &mut dyn Session,
-    candidates: &[Vec<u32>],
-) -> Result<Option<Vec<u32>>, Diagnostic> {
-    if candidates.is_empty() {
-        return Ok(None);
+    failing: usize,
+    first_failing: &mut dyn FnMut(&Rows) -> Result<Option<usize>, Diagnostic>,
+) -> Result<Vec<u32>, Diagnostic> {
+    let mut best = job.rows.row_words(failing).to_vec();
+    let ranges = ranges(job);
+    for _ in 0..ROUNDS {
+        let mut candidates = candidates(job, &best);
+        candidates.retain(|candidate| complexity(job, candidate) < complexity(job, &best) && meant(job, &ranges, candidate));
+        candidates.sort_by_key(|candidate| complexity(job, candidate));
+        candidates.truncate(1024);
+        if candidates.is_empty() {
+            break;
+        }
+        let Some(simpler) = first_failing(&job.rows.with_words(candidates.concat()))? else { break };
+        best = candidates.swap_remove(simpler);
     }
-    let rows = job.rows.with_words(candidates.concat());
-    let Some(expected) = job.targets(&rows)? else { return Ok(None) };
-    let results = session.run(kernel, &rows.words)?;
-    let verdict = judge::judge(job, &rows, &expected, &results);
-    Ok(verdict.failing.first().map(|index| candidates[*index].clone()))
+    Ok(best)
 }
 
 /// Inputs with one value, or one unit vector, made simpler.
@@ -109,43 +132,62 @@ fn complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
     row.iter().zip(&job.rows.kinds).map(cost).fold((0, 0), |sum, cost| (sum.0 + cost.0, sum.1 + cost.1))
 }
 
+/// One row, parameter by parameter.
+struct Input {
+    /// In decimal and hex, a line each.
+    text: String,
+    /// As a table's row has them.
+    row: String,
+    /// As `inputs` lists them.
+    lists: String,
+    bits: String,
+}
+
+impl Input {
+    fn new(job: &Job<'_>, words: &[u32]) -> Self {
+        let numbers = crate::harness::cases::numbers(words, &job.rows.kinds);
+        let (mut text, mut at) = (String::new(), 0);
+        let (mut row, mut lists, mut bits) = (Vec::new(), Vec::new(), Vec::new());
+        for (name, shape) in job.kernel().words() {
+            let range = at..at + shape.words() as usize;
+            at = range.end;
+            text += &format!("  {name} = {}\n", values(&words[range.clone()], &job.rows.kinds[range.clone()]));
+            bits.push(format!("{name} = {}", hex(&words[range.clone()])));
+            row.push(format!("{name} = {}", list(&numbers[range.clone()])));
+            lists.push(if range.len() == 1 { row[row.len() - 1].clone() } else { format!("{name} = [{}]", list(&numbers[range])) });
+        }
+        Self { text, row: row.join(", "), lists: lists.join(", "), bits: bits.join(", ") }
+    }
+}
+
 /// The input in decimal and hex, then a case to paste that fails alike.
 fn describe(job: &Job<'_>, words: &[u32], target: &Target, found: &[u32]) -> String {
-    let row = crate::harness::cases::numbers(words, &job.rows.kinds);
-    let kinds = job.kernel().result_kinds();
-    let mut text = String::new();
-    let mut at = 0;
-    let (mut paste, mut bits) = (Vec::new(), Vec::new());
-    for (name, shape) in job.kernel().words() {
-        let range = at..at + shape.words() as usize;
-        at = range.end;
-        text += &format!("  {name} = {}\n", values(&words[range.clone()], &job.rows.kinds[range.clone()]));
-        bits.push(format!("{name} = {}", hex(&words[range.clone()])));
-        paste.push(format!("{name} = {}", list(&row[range])));
-    }
-    text += &format!("  found {}\n", values(found, &kinds));
-    text += &format!("  expected {}\n", list(&target.expected.value));
+    let input = Input::new(job, words);
     let worst = judge::judge(job, &job.rows.with_words(words.to_vec()), std::slice::from_ref(target), found).worst;
     let allowed = worst.map_or(0.0, |worst| worst.allowed);
-    text += &format!("  allowed {allowed:e}\n\n");
-    paste.push(format!("expect = {}", list(&target.expected.value)));
-    text + &pasted(job, &paste.join(", "), &bits.join(", "), allowed)
+    let (found, expected) = (values(found, &job.kernel().result_kinds()), list(&target.expected.value));
+    let said = format!("  found {found}\n  expected {expected}\n  allowed {allowed:e}\n\n");
+    input.text.clone() + &said + &pasted(job, &input, &expected, allowed)
 }
 
 /// A case with the one row, with the fixtures that it names.
-fn pasted(job: &Job<'_>, row: &str, bits: &str, allowed: f64) -> String {
+fn pasted(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> String {
     let mut text = format!("[[case]]\nfunction = {:?}\n", job.case.function);
     if allowed > 0.0 {
         text += &format!("tolerance = {{ abs = {allowed:e} }}\n");
     }
-    if !job.case.fixture_names.is_empty() {
-        let names: Vec<String> = job.case.fixture_names.iter().map(|(parameter, name)| format!("{parameter} = {name:?}")).collect();
-        text += &format!("fixtures = {{ {} }}\n", names.join(", "));
+    text += &fixtures(job);
+    if !input.bits.is_empty() {
+        text += &format!("# {}\n", input.bits);
     }
-    if !bits.is_empty() {
-        text += &format!("# {bits}\n");
-    }
-    text + &format!("rows = [{{ {row} }}]\n")
+    let separator = if input.row.is_empty() { "" } else { ", " };
+    text + &format!("rows = [{{ {}{separator}expect = {expected} }}]\n", input.row)
+}
+
+/// The line that names them, if there are any.
+fn fixtures(job: &Job<'_>) -> String {
+    let names: Vec<String> = job.case.fixture_names.iter().map(|(parameter, name)| format!("{parameter} = {name:?}")).collect();
+    if names.is_empty() { String::new() } else { format!("fixtures = {{ {} }}\n", names.join(", ")) }
 }
 
 /// Numbers as TOML writes them.

@@ -17,6 +17,7 @@ use crate::harness::cases::{File, Rows};
 use crate::harness::check::Options;
 use crate::harness::check::job::{self, Job, Judge, Target};
 use crate::harness::check::judge;
+use crate::harness::check::law::{self, Given};
 use crate::harness::interpreter::{Calls, Interpreter, value, word_of};
 use crate::harness::kernel::Kernel;
 use crate::harness::library::Library;
@@ -279,7 +280,9 @@ impl Ready<'_> {
         }
         for law in &self.job.laws {
             let transformed = law.rows.as_ref().map(|rows| runner.run(&rows.words)).transpose()?;
-            if judge::law(&self.job, law, &results, transformed.as_deref()).broken > 0 {
+            let transformed = law.rows.as_ref().zip(transformed.as_deref());
+            let given = Given { rows: &self.job.rows, expected: &self.job.expected, results: &results, transformed };
+            if law::judge(&self.job, law.law, &given).broken > 0 {
                 return Ok(true);
             }
         }

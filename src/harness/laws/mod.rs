@@ -6,13 +6,21 @@
 //! | `rising = "x"`, `falling = "x"` | a larger `x` never gives a smaller (larger) value, up to the tolerance |
 //! | `swap = ["l", "v"]` | exchanging the parameters changes nothing: symmetry, reciprocity |
 //! | `even = ["n", "l"]` | negating the parameters changes nothing |
+//! | `continuous = "x", slope = 4` | `x` a little larger changes the value by no more than that slope allows: no jumps |
 //! | `at = { d = 0 }, gives = 1` | the value there, whatever the other parameters are |
+//! | `integral = "l", about = "n", gives = 3.14, within = 0.001` | the integral over the hemisphere of directions `l` about `n`, for the case's other values; over the sphere without `about`; `cosine = true` for the cosine as a factor; `at_most` in place of `gives` for energy; `steps = 16` |
 //! | `reaches = [low, high]` | some row comes at least that low and some that high: the inputs are no trivial ones |
+
+mod integral;
+
+pub use integral::Integral;
+
+use std::ops::Range;
 
 use super::cases::Rows;
 use super::formula::Scope;
 use super::kernel::Shape;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, codes};
 use crate::source::Span;
 use naga::ScalarKind;
 
@@ -27,8 +35,24 @@ pub struct Kind {
 pub enum Takes {
     Numbers,
     Names,
+    /// A parameter; the largest slope is in `slope`.
+    Slope,
+    /// The direction's parameter; see [`Integral`].
+    Integral,
     /// Values of parameters; the expected result is in `gives`.
     Point,
+}
+
+impl Takes {
+    /// What else the law's table may have.
+    pub fn options(self) -> &'static [&'static str] {
+        match self {
+            Self::Numbers | Self::Names => &[],
+            Self::Slope => &["slope"],
+            Self::Integral => &["about", "cosine", "steps", "gives", "at_most", "within"],
+            Self::Point => &["gives"],
+        }
+    }
 }
 
 /// Every kind.
@@ -39,7 +63,9 @@ pub const KINDS: &[Kind] = &[
     Kind { name: "falling", takes: Takes::Names },
     Kind { name: "swap", takes: Takes::Names },
     Kind { name: "even", takes: Takes::Names },
+    Kind { name: "continuous", takes: Takes::Slope },
     Kind { name: "at", takes: Takes::Point },
+    Kind { name: "integral", takes: Takes::Integral },
 ];
 
 /// One law of a case.
@@ -50,11 +76,33 @@ pub struct Law {
     pub names: Vec<String>,
     pub numbers: Vec<f64>,
     pub at: Vec<(String, Vec<f64>)>,
+    pub integral: Option<Integral>,
 }
 
 impl std::fmt::Debug for Kind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name)
+    }
+}
+
+/// The law as a case file has it. An integral is of many rows: none of them alone breaks it.
+pub fn toml(law: &Law) -> String {
+    let names = law.names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
+    let point = || law.at.iter().map(|(name, values)| format!("{name:?} = {values:?}")).collect::<Vec<_>>().join(", ");
+    let value = match law.kind.takes {
+        Takes::Numbers => format!("{:?}", law.numbers),
+        Takes::Names => format!("[{names}]"),
+        Takes::Integral => names,
+        Takes::Slope => format!("{names}, slope = {:?}", law.number(0)),
+        Takes::Point => format!("{{ {} }}, gives = {:?}", point(), law.numbers),
+    };
+    format!("{{ {} = {value} }}", law.kind.name)
+}
+
+impl Law {
+    /// The number for a component: a single one is for all.
+    pub fn number(&self, word: usize) -> f64 {
+        self.numbers.get(if self.numbers.len() == 1 { 0 } else { word }).copied().unwrap_or(f64::NAN)
     }
 }
 
@@ -65,17 +113,18 @@ pub fn find(name: &str) -> Option<&'static Kind> {
 
 /// The rows that the law compares a case's rows with; `None` for laws of single values.
 pub fn transformed(law: &Law, rows: &Rows, scope: &Scope<'_>) -> Result<Option<Rows>, Diagnostic> {
+    if let Some(integral) = &law.integral {
+        let direction = |name: &String| direction(law, name, scope);
+        let over = law.names.first().map(direction).transpose()?.unwrap_or_default();
+        return Ok(Some(integral.rows(rows, over, integral.about.as_ref().map(direction).transpose()?)));
+    }
     let mut words = rows.words.clone();
     let places: Vec<_> = law.names.iter().map(|name| place(law, name, scope)).collect::<Result<_, _>>()?;
     for row in words.chunks_mut(rows.stride) {
         match law.kind.name {
-            "rising" | "falling" => places
-                .iter()
-                .flat_map(|(first, shape)| *first..first + shape.words() as usize)
-                .for_each(|word| raise(&mut row[word], rows.kinds[word])),
-            "even" => {
-                places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize).for_each(|word| row[word] ^= 0x8000_0000)
-            }
+            "rising" | "falling" => words_of(&places).for_each(|word| raise(&mut row[word], rows.kinds[word])),
+            "continuous" => words_of(&places).for_each(|word| nudge(&mut row[word], rows.kinds[word])),
+            "even" => words_of(&places).for_each(|word| row[word] ^= 0x8000_0000),
             "swap" => swap(row, &places),
             "at" => set(law, row, scope)?,
             _ => return Ok(None),
@@ -87,6 +136,27 @@ pub fn transformed(law: &Law, rows: &Rows, scope: &Scope<'_>) -> Result<Option<R
 fn place<'a>(law: &Law, name: &str, scope: &'a Scope<'_>) -> Result<(usize, &'a Shape), Diagnostic> {
     let parts: Vec<String> = name.split('.').map(str::to_owned).collect();
     scope.find(&parts).ok_or_else(|| scope.unknown(name).at(law.span, "in this law"))
+}
+
+/// Words of three floats.
+fn direction(law: &Law, name: &str, scope: &Scope<'_>) -> Result<Range<usize>, Diagnostic> {
+    let (first, shape) = place(law, name, scope)?;
+    if shape.kinds() == [ScalarKind::Float; 3] {
+        return Ok(first..first + 3);
+    }
+    Err(Diagnostic::error(codes::CASE_INVALID, format!("`{name}` is no direction: it has not three floats")).at(law.span, "in this law"))
+}
+
+fn words_of<'a>(places: &'a [(usize, &Shape)]) -> impl Iterator<Item = usize> + 'a {
+    places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize)
+}
+
+/// A value a little larger: enough to cross an edge that a case goes close to.
+fn nudge(word: &mut u32, kind: ScalarKind) {
+    if kind == ScalarKind::Float {
+        let value = f32::from_bits(*word);
+        *word = (value + value.abs() / 256.0 + 1.0 / 4096.0).to_bits();
+    }
 }
 
 /// A value one part in sixteen larger, at least by the smallest normal number.
@@ -120,10 +190,11 @@ fn set(law: &Law, row: &mut [u32], scope: &Scope<'_>) -> Result<(), Diagnostic> 
 }
 
 /// How far a value breaks a law, beyond nothing: `value` of the row itself, `other` of the
-/// transformed row, `word` the component.
-pub fn broken_by(law: &Law, value: f64, other: Option<f64>, word: usize) -> f64 {
-    let number = |index: usize| law.numbers.get(if law.numbers.len() == 1 { 0 } else { index }).copied().unwrap_or(f64::NAN);
+/// transformed row, which is `moved` away, `word` the component.
+pub fn broken_by(law: &Law, value: f64, other: Option<f64>, moved: f64, word: usize) -> f64 {
+    let number = |index: usize| law.number(index);
     match (law.kind.name, other) {
+        ("continuous", Some(other)) => ((other - value).abs() - number(0) * moved).max(0.0),
         ("range", _) => (number(0) - value).max(value - number(1)).max(0.0),
         ("rising", Some(other)) => (value - other).max(0.0),
         ("falling", Some(other)) => (other - value).max(0.0),
