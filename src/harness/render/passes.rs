@@ -337,13 +337,20 @@ impl Prepared {
         let views: Vec<Buffers> = shifts.iter().map(|shift| self.eye_view(*shift, shot.size)).collect();
         let mut picture = Linear::new(shot.size);
         let views = if self.camera.is_some() { &views[..] } else { &views[..1] };
-        for (frame, shift) in self.draw_colors(painter, views, shot.size)?.iter().zip(&shifts) {
-            let target = frame.targets.first().map_or(&[][..], Vec::as_slice);
-            picture.add(target.chunks(4).map(colour), *shift, &self.background, shot.exposure);
+        let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize;
+        let at_once = (AT_ONCE / bytes.max(1)).max(1);
+        for (views, shifts) in views.chunks(at_once).zip(shifts.chunks(at_once)) {
+            for (frame, shift) in self.draw_colors(painter, views, shot.size)?.iter().zip(shifts) {
+                let target = frame.targets.first().map_or(&[][..], Vec::as_slice);
+                picture.add(target.chunks(4).map(colour), *shift, &self.background, shot.exposure);
+            }
         }
         Ok(picture)
     }
 }
+
+/// Bytes of the frames that are drawn at once.
+const AT_ONCE: usize = 64 << 20;
 
 /// Where in the pixel a sample is taken, from its middle: Halton's points, the middle alone for one.
 fn shift(index: u32, samples: u32) -> [f64; 2] {

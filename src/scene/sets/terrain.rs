@@ -11,7 +11,8 @@ const SIDE: f64 = 16.0;
 
 /// Hills of several sizes around a valley, in scene units.
 pub fn height(x: f64, z: f64) -> f64 {
-    let ridge = 1.0 - (0.8 * (0.45 * x + 0.9 * (0.3 * z).sin()).sin()).abs();
+    // Rounded, or the ridges would be knives.
+    let ridge = 1.0 - ((0.8 * (0.45 * x + 0.9 * (0.3 * z).sin()).sin()).powi(2) + 0.01).sqrt();
     let valley = 1.0 - (-(x - 0.6 * (0.5 * z).sin()).powi(2) / 3.0).exp();
     let bumps = 0.16 * (1.9 * x + 0.7).sin() * (1.7 * z).cos() + 0.07 * (3.7 * x + 1.3 * z).sin() * (3.1 * z - 0.4).cos();
     valley * (1.5 * ridge * ridge + 0.4) + bumps
