@@ -107,7 +107,7 @@ fn judge(watched: &Watched<'_>, pixel: usize, wanted: &[Bounded], doubt: bool, t
     if shares.len() != 4 {
         return Err(format!("{} numbers in place of a colour", shares.len()));
     }
-    let far = shares.iter().position(|share| !(*share <= 1.0));
+    let far = shares.iter().position(|share| share.is_nan() || *share > 1.0);
     tally.tried += 1;
     if wanted.iter().any(|value| !value.error().is_finite()) || far.is_some() && doubt {
         tally.open += 1;

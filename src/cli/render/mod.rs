@@ -131,9 +131,9 @@ fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
         None => of_point(programs, arguments, program(programs, arguments.program.as_deref().unwrap_or("forward"))?, None)?,
     };
     if let Some(scene) = &arguments.scene {
-        let known = || sets::SETS.iter().map(|(name, _, _)| *name);
-        if !known().any(|name| name == scene) {
-            return Err(unknown("scene", scene, known()));
+        let known = sets::SETS.iter().map(|(name, _, _)| *name);
+        if !known.clone().any(|name| name == scene) {
+            return Err(unknown("scene", scene, known));
         }
         plan.scene.clone_from(scene);
     }
@@ -169,8 +169,14 @@ fn program<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Failur
     programs.manifest().program(name).ok_or_else(|| unknown("program", name, known))
 }
 
-fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> Failure {
-    let hint = nearest(name, known).map_or(String::new(), |nearest| format!("\nhelp: did you mean `{nearest}`?"));
+/// A name that nothing has: with the nearest, or with all where they are few.
+fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Failure {
+    const FEW: usize = 12;
+    let hint = match nearest(name, known.clone()) {
+        Some(nearest) => format!("\nhelp: did you mean `{nearest}`?"),
+        None if known.clone().count() <= FEW => format!("\nhelp: there are {}", known.collect::<Vec<_>>().join(", ")),
+        None => String::new(),
+    };
     Failure::input(format!("there is no {what} `{name}`{hint}"))
 }
 

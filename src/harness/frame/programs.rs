@@ -58,7 +58,7 @@ impl Programs {
         &self.manifest
     }
 
-    /// The texts that were read so far, with those of the caller.
+    /// The texts that were read so far.
     pub fn texts(&self) -> SourceSet {
         self.kept().texts.clone()
     }

@@ -14,6 +14,7 @@ mod passes;
 mod picture;
 mod plan;
 mod raster;
+mod textures;
 mod values;
 
 pub use passes::{Prepared, prepare};

@@ -162,8 +162,11 @@ impl Scene {
     }
 }
 
-/// Scenes: name, what it is, how it is made.
-pub const SETS: &[(&str, &str, fn() -> Scene)] = &[
+/// A scene's name, what it is, and how it is made.
+pub type Set = (&'static str, &'static str, fn() -> Scene);
+
+/// All scenes.
+pub const SETS: &[Set] = &[
     ("spheres", "a row of spheres of rising shininess before the viewer", spheres::scene),
     ("floor", "a tessellated floor with a light above it", floor::scene),
     ("casters", "a sphere, a box and a torus over a floor that their shadows fall on", casters::scene),
