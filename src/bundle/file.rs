@@ -116,12 +116,6 @@ fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error>
     if next == bytes.len() { Ok(sections) } else { Err(Error::corrupt("data", "bytes follow the last section")) }
 }
 
-/// The four numbers of a slot, read at once.
-fn words(slot: &[u8; SLOT_BYTES]) -> [u32; 4] {
-    let slot = u128::from_le_bytes(*slot);
-    [slot as u32, (slot >> 32) as u32, (slot >> 64) as u32, (slot >> 96) as u32]
-}
-
 impl Packed {
     /// A section, its checksum verified once.
     fn section(&self, index: usize) -> Result<&[u8], Error> {
@@ -270,12 +264,12 @@ impl Store for Packed {
         let hash = hash(key.as_bytes());
         let mask = slots.len() - 1;
         for step in 0..slots.len() {
-            let [tag, index, at, length] = words(&slots[(hash as usize).wrapping_add(step) & mask]);
-            if index == 0 {
+            let slot = u128::from_le_bytes(slots[(hash as usize).wrapping_add(step) & mask]);
+            if slot as u32 == 0 {
                 return Ok(None);
             }
-            if tag == (hash >> 32) as u32 && slice(keys, at as usize, length as usize, "keys")? == key.as_bytes() {
-                return self.unit_of(keys, entry, index as usize - 1).map(Some);
+            if slot >> 32 == hash >> 32 {
+                return self.unit_of(keys, entry, slot as u32 as usize - 1).map(Some);
             }
         }
         Ok(None)

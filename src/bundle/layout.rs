@@ -82,30 +82,36 @@ pub struct KeySet {
     pub count: u32,
     /// Where the records start in KEYS.
     pub records: u32,
-    /// Where the hash slots start in KEYS, and how many there are: a power of two. Each is the
-    /// upper half of a key's hash, the index of its record plus one, and where its text starts and
-    /// its length, or zeros: a lookup reads a slot, the text and the unit, and nothing else that
-    /// is far apart.
+    /// Where the hash slots start in KEYS, and how many there are: a power of two. Each is 96 bits
+    /// of a key's [`hash`] above the index of its record plus one, or zeros. A lookup compares the
+    /// bits and no text, which would be one more read from far away; two keys are alike in them
+    /// with a chance of 2^-96.
     pub slots: u32,
     pub slot_count: u32,
 }
 
-/// Mixes a key, eight bytes at a time; the multiplier is 2^64 over the golden ratio.
-pub fn hash(key: &[u8]) -> u64 {
-    const MULTIPLIER: u64 = 0x9e37_79b9_7f4a_7c15;
-    let mix = |state: u64, word: [u8; 8]| (state.rotate_left(23) ^ u64::from_le_bytes(word)).wrapping_mul(MULTIPLIER);
-    let mut state = key.len() as u64;
-    let mut rest = key;
-    while let Some((word, after)) = rest.split_first_chunk::<8>() {
-        state = mix(state, *word);
-        rest = after;
-    }
+/// 128 bits of a key: two chains of multiplications over its words, each product folded so that
+/// all its bits count.
+pub fn hash(key: &[u8]) -> u128 {
+    // Odd fractions of the square roots of 2, 3, 5 and 7.
+    const ROOTS: [u64; 4] = [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b, 0xa54f_f53a_5f1d_36f1];
+    let fold = |a: u64, b: u64| {
+        let product = u128::from(a) * u128::from(b);
+        product as u64 ^ (product >> 64) as u64
+    };
+    let length = key.len() as u64;
+    let (mut low, mut high) = (length ^ ROOTS[2], length.rotate_left(32) ^ ROOTS[3]);
+    let mut mix = |word: [u8; 8]| {
+        let word = u64::from_le_bytes(word);
+        (low, high) = (fold(low ^ word, ROOTS[0]), fold(high.rotate_left(29) ^ word, ROOTS[1]));
+    };
+    let (words, rest) = key.as_chunks::<8>();
+    words.iter().for_each(|word| mix(*word));
     let mut last = [0; 8];
     last[..rest.len()].copy_from_slice(rest);
-    state = mix(state, last);
-    // A product spreads upwards only: folded and multiplied once more, all bits depend on all.
-    state = (state ^ (state >> 32)).wrapping_mul(MULTIPLIER);
-    state ^ (state >> 29)
+    mix(last);
+    let (low, high) = (fold(low ^ ROOTS[3], ROOTS[1] ^ high), fold(high ^ ROOTS[2], ROOTS[0] ^ low));
+    u128::from(high) << 64 | u128::from(low)
 }
 
 /// `length` bytes from `at`.

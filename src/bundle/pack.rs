@@ -107,8 +107,7 @@ impl Packer {
             put(&mut self.keys, &[number(text_at)?, number(key.len())?]);
             text_at += key.len();
         }
-        let texts_at = self.keys.len() + slot_count * SLOT_BYTES;
-        put(&mut self.keys, &slots(&keys, slot_count, texts_at)?);
+        slots(&keys, slot_count)?.iter().for_each(|slot| self.keys.extend_from_slice(&slot.to_le_bytes()));
         keys.iter().for_each(|key| self.keys.extend_from_slice(key.as_bytes()));
         sets.insert(keys, set);
         Ok(set)
@@ -193,19 +192,18 @@ fn in_key_order(entry: &EntryContents) -> impl Iterator<Item = &Unit> {
     entry.keys.values().filter_map(|hash| entry.units.get(hash))
 }
 
-/// The hash table of a key set whose texts follow each other from `text_at`.
-fn slots(keys: &[&str], count: usize, mut text_at: usize) -> Result<Vec<u32>, Error> {
-    let mut slots = vec![[0; 4]; count];
+/// The hash table of a key set.
+fn slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
+    let mut slots = vec![0; count];
     for (index, key) in keys.iter().enumerate() {
         let hash = hash(key.as_bytes());
         let mut at = hash as usize & (count - 1);
-        while slots[at] != [0; 4] {
+        while slots[at] != 0 {
             at = (at + 1) & (count - 1);
         }
-        slots[at] = [(hash >> 32) as u32, number(index + 1)?, number(text_at)?, number(key.len())?];
-        text_at += key.len();
+        slots[at] = hash >> 32 << 32 | u128::from(number(index + 1)?);
     }
-    Ok(slots.into_iter().flatten().collect())
+    Ok(slots)
 }
 
 /// (offset, length) of each text in the section, then the texts.
