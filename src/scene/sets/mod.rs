@@ -198,7 +198,7 @@ fn base(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
         sky: DVec3::new(0.55, 0.68, 0.9),
         ground: DVec3::new(0.2, 0.15, 0.1),
         haze: DVec3::new(0.42, 0.48, 0.56),
-        haze_range: (2.0, 16.0),
+        haze_range: (5.0, 26.0),
         maps: maps::bricks,
     }
 }
