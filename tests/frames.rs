@@ -1,32 +1,25 @@
 //! Whole programs: permutations of `forward` drawn on each driver, and every sampled fragment
-//! computed again by the evaluator from the very inputs the driver gave it.
-//!
-//! A fragment agrees where each component of its colour lies within the bound of value plus error.
-//! It is open where it does not, but a comparison on the way was too close to call, or where the
-//! specification gives no bound.
+//! computed again by the evaluator.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use lamplight::bundle::{Kind as BindingKind, Reflection};
-use lamplight::compose::{self, Language, Options};
-use lamplight::diagnostic::Diagnostics;
+use lamplight::compose::Language;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::emit::reflect;
-use lamplight::eval::{self, Bounded, Function, Kind, Machine, Number, Program, Resources};
 use lamplight::harness::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
-use lamplight::harness::frame::{Attribute, BACKENDS, Drawing, Mesh, Renderer, Stage, pack, probe};
-use lamplight::harness::kernel::{SENTINEL, TARGET_WIDTH};
+use lamplight::harness::frame::{
+    Attribute, Buffers, Composed, Drawing, Item, Mesh, Painter, Programs, Renderer, Stage, Stages, State, pack, probe,
+};
 use lamplight::harness::on_thread;
 use lamplight::permute::axis::ValueSet;
-use lamplight::permute::{Assignment, Settings, Space};
-use lamplight::project;
-use lamplight::resolve::{self, Packages};
-use lamplight::source::SourceSet;
-use lamplight::validate::{Validated, validate};
+use lamplight::permute::{Assignment, Space};
 use libtest_mimic::{Failed, Trial};
 
-/// Pixels from top to bottom.
+use crate::fragments::{self, Tally, Watched};
+
+/// Pixels from left to right, and from top to bottom.
+const WIDTH: u32 = 256;
 const HEIGHT: u32 = 64;
 /// One quad in so many is computed again.
 const STEP: usize = 29;
@@ -35,12 +28,13 @@ const LEAST: usize = 200;
 /// Largest share of open fragments of a permutation.
 const OPEN: f64 = 0.01;
 
+const BACKENDS: [&str; 2] = ["vulkan", "gl"];
 const LANGUAGES: [(&str, Language); 2] = [("wesl", Language::Wesl), ("glsl", Language::Glsl)];
 
 type Place = (u32, u32);
 
 pub fn trials() -> Vec<Trial> {
-    let pairs = LANGUAGES.iter().flat_map(|language| BACKENDS.iter().map(move |(backend, _)| (language, *backend)));
+    let pairs = LANGUAGES.iter().flat_map(|language| BACKENDS.iter().map(move |backend| (language, *backend)));
     pairs
         .map(|(language, backend)| Trial::test(format!("frames/forward/{}/{backend}", language.0), move || run(language, backend)))
         .collect()
@@ -85,101 +79,44 @@ fn covering(space: &Space) -> Vec<Assignment> {
     points
 }
 
-/// What became of the fragments.
-#[derive(Default)]
-struct Tally {
-    tried: usize,
-    open: usize,
-    /// Largest error over its bound.
-    share: f64,
-    detours: BTreeMap<&'static str, usize>,
-}
-
-impl Tally {
-    fn add(&mut self, other: &Self) {
-        self.tried += other.tried;
-        self.open += other.open;
-        self.share = self.share.max(other.share);
-        other.detours.iter().for_each(|(detour, count)| *self.detours.entry(detour).or_default() += count);
-    }
-}
-
-impl std::fmt::Display for Tally {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} fragments, {} open, at most {:.0} % of the bound", self.tried, self.open, 100.0 * self.share)?;
-        self.detours.iter().try_for_each(|(detour, count)| write!(f, "; {count} times {detour}"))
-    }
-}
-
-/// The program's graphs.
+/// The library's programs in one language.
 struct Sources {
-    texts: SourceSet,
+    programs: Programs,
+    language: Language,
     space: Space,
-    graphs: Graphs,
-}
-
-enum Graphs {
-    Wesl(resolve::wesl::Graph),
-    /// Vertex and fragment stage.
-    Glsl([resolve::glsl::Graph; 2]),
 }
 
 /// A permutation with everything it is drawn with.
 struct Scene {
-    /// Vertex and fragment stage, with the names of their entry points.
-    stages: [(Arc<Validated>, &'static str); 2],
+    vertex: Composed,
+    fragment: Composed,
     mesh: Mesh,
-    buffers: BTreeMap<Place, Vec<u8>>,
+    buffers: Buffers,
     fixtures: BTreeMap<Place, Arc<Fixture>>,
 }
 
 impl Sources {
     fn load(language: Language) -> Result<Self, String> {
-        let (mut texts, manifest) = project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
-        let packages = project::library();
-        let space = manifest.programs.into_iter().find(|program| program.name == "forward").ok_or("no forward")?.space;
-        let graphs = match language {
-            Language::Wesl => resolve::wesl::load(&mut texts, &packages, "programs/forward.wesl").map(Graphs::Wesl),
-            Language::Glsl => stages(&mut texts, &packages).map(Graphs::Glsl),
-        };
-        match graphs {
-            Ok(graphs) => Ok(Self { texts, space, graphs }),
-            Err(problems) => Err(render(&texts, &problems, Form::Human)),
-        }
+        let programs = Programs::load().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+        let space = programs.manifest().program("forward").ok_or("no forward")?.space.clone();
+        Ok(Self { programs, language, space })
     }
 
     fn scene(&self, point: &Assignment) -> Result<Scene, String> {
-        let stages = self.stages(&self.space.settings(point)).map_err(|problems| render(&self.texts, &problems, Form::Human))?;
-        let reflected = |(validated, entry): &(Arc<Validated>, &str)| reflect(validated, entry).map_err(|problem| problem.message);
-        let (vertex, fragment) = (reflected(&stages[0])?, reflected(&stages[1])?);
-        let (mut buffers, mut fixtures) = (BTreeMap::new(), BTreeMap::new());
-        for binding in vertex.bindings.iter().chain(&fragment.bindings) {
+        let program = self.programs.manifest().program("forward").ok_or("no forward")?;
+        let stages = self.programs.stages(program, &self.space.settings(point), self.language);
+        let Stages { vertex, fragment } = stages.map_err(|problems| render(&self.programs.texts(), &problems, Form::Human))?;
+        let fragment = fragment.ok_or("no fragment stage")?;
+        let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
+        for binding in vertex.reflection.bindings.iter().chain(&fragment.reflection.bindings) {
             let place = (binding.group, binding.binding);
             match binding.kind {
                 BindingKind::Uniform => drop(buffers.insert(place, pack(binding, &number))),
                 _ => drop(fixtures.insert(place, Arc::new(fixture(binding.kind, &binding.name, &binding.ty)))),
             }
         }
-        Ok(Scene { mesh: mesh(&vertex), stages, buffers, fixtures })
+        Ok(Scene { mesh: mesh(&vertex.reflection), vertex, fragment, buffers, fixtures })
     }
-
-    fn stages(&self, settings: &Settings) -> Result<[(Arc<Validated>, &'static str); 2], Diagnostics> {
-        match &self.graphs {
-            Graphs::Wesl(graph) => {
-                let both = Arc::new(validate(&compose::wesl::compose(graph, settings, &Options::default())?)?);
-                Ok([(both.clone(), "vs_main"), (both, "fs_main")])
-            }
-            Graphs::Glsl([vertex, fragment]) => {
-                let stage = |graph| validate(&compose::glsl::compose(graph, settings, &Options::default())?).map(Arc::new);
-                Ok([(stage(vertex)?, "main"), (stage(fragment)?, "main")])
-            }
-        }
-    }
-}
-
-fn stages(texts: &mut SourceSet, packages: &Packages) -> Result<[resolve::glsl::Graph; 2], Diagnostics> {
-    let mut load = |path| resolve::glsl::load(texts, packages, path);
-    Ok([load("programs/forward.vert.glsl")?, load("programs/forward.frag.glsl")?])
 }
 
 /// A number for every uniform, sensible where it matters.
@@ -280,97 +217,33 @@ fn mesh(vertex: &Reflection) -> Mesh {
     let squares =
         (0..64).flat_map(|square| [(0, 0), (1, 0), (0, 1), (0, 1), (1, 0), (1, 1)].map(|(x, y)| (square % 8 + x, square / 8 + y)));
     let words = squares.flat_map(|(x, y)| corner(x, y)).collect();
-    Mesh { attributes, words }
+    Mesh { attributes, words, indices: Vec::new() }
 }
 
 fn agrees(renderer: &Renderer, scene: &Scene) -> Result<Tally, String> {
-    let [(vertex, vs), (fragment, fs)] = &scene.stages;
-    let watched = probe::watched(&fragment.module, fs).ok_or("no colour")?;
+    let Scene { vertex, fragment, mesh, buffers, .. } = scene;
+    let watched = probe::watched(&fragment.validated.module, fragment.entry).ok_or("no colour")?;
     let drawing = Drawing {
-        vertex: Stage { module: &vertex.module, entry: vs },
-        fragment: Stage { module: &watched.module, entry: fs },
+        vertex: Stage { module: &vertex.validated.module, entry: vertex.entry },
+        fragment: Some(Stage { module: &watched.module, entry: fragment.entry }),
         targets: watched.targets,
-        mesh: &scene.mesh,
-        buffers: &scene.buffers,
+        items: &[Item { mesh, buffers }],
+        views: &[Buffers::new()],
+        buffers: &Buffers::new(),
+        plain: &[],
         fixtures: &scene.fixtures,
-        height: HEIGHT,
+        levels: &BTreeMap::new(),
+        size: [WIDTH, HEIGHT],
+        state: State::default(),
     };
-    let frame = renderer.draw(&drawing).map_err(|problem| problem.message)?;
-    let program = Program::new(&fragment.module, &fragment.info).map_err(|error| error.to_string())?;
+    let frame = renderer.draw(&drawing).map_err(|problem| problem.message)?.remove(0);
     let mut tally = Tally { detours: frame.detour.map(|detour| (detour, 1)).into_iter().collect(), ..Tally::default() };
-    recompute(&program, fs, scene, &frame.targets, &mut tally)?;
+    let resources = fragments::resources(buffers.clone(), &scene.fixtures, &BTreeMap::new());
+    let watched = Watched { size: [WIDTH, HEIGHT], targets: &frame.targets };
+    fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
     match tally {
         Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
         Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => Err(format!("{open} of {tried} fragments are open")),
         tally => Ok(tally),
     }
-}
-
-/// Computes the sampled fragments of a frame again.
-fn recompute(program: &Program, entry: &str, scene: &Scene, targets: &[Vec<u32>], tally: &mut Tally) -> Result<(), String> {
-    // GLSL has a plain function of that name too; entry points come after functions.
-    let (id, _) = program.functions().filter(|(_, function)| function.name == entry).last().ok_or("no entry point")?;
-    let signature = program.signature(id).ok_or("no entry point")?;
-    let mut machine = Machine::<Bounded>::new(program).map_err(|error| error.to_string())?;
-    machine.bind(resources(scene)).map_err(|error| error.to_string())?;
-    for quad in quads(&targets[0]) {
-        let arguments = quad.map(|pixel| slots(signature, targets, pixel));
-        machine.forget();
-        let wanted = machine.quad(id, [0, 1, 2, 3].map(|lane| arguments[lane].as_slice())).map_err(|error| error.to_string())?;
-        let doubt = !machine.findings().is_empty();
-        for (pixel, wanted) in quad.into_iter().zip(wanted) {
-            let found = four(&targets[0], pixel).map(|word| f64::from(f32::from_bits(word)));
-            let share = |(found, wanted): (f64, &Bounded)| {
-                if found == wanted.value() { 0.0 } else { (found - wanted.value()).abs() / wanted.error() }
-            };
-            let shares: Vec<f64> = found.into_iter().zip(&wanted).map(share).collect();
-            if shares.len() != 4 {
-                return Err(format!("{} numbers in place of a colour", shares.len()));
-            }
-            let far = shares.iter().position(|share| !(*share <= 1.0));
-            tally.tried += 1;
-            if wanted.iter().any(|value| !value.error().is_finite()) || far.is_some() && doubt {
-                tally.open += 1;
-            } else if let Some(i) = far {
-                let (x, y) = (pixel as u32 % TARGET_WIDTH, pixel as u32 / TARGET_WIDTH);
-                let (value, error) = (wanted[i].value(), wanted[i].error());
-                return Err(format!("pixel ({x}, {y}): found {}, wanted {value} within {error:e}", found[i]));
-            } else {
-                tally.share = shares.into_iter().fold(tally.share, f64::max);
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Whole quads all over the frame, in the order the evaluator takes them.
-fn quads(found: &[u32]) -> impl Iterator<Item = [usize; 4]> + '_ {
-    let quads = (0..HEIGHT / 2).flat_map(|y| (0..TARGET_WIDTH / 2).map(move |x| (2 * x, 2 * y))).step_by(STEP);
-    let pixels = quads.map(|(x, y)| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * TARGET_WIDTH + x + i) as usize));
-    pixels.filter(|quad| quad.iter().all(|pixel| four(found, *pixel) != [SENTINEL; 4]))
-}
-
-fn four(target: &[u32], pixel: usize) -> [u32; 4] {
-    std::array::from_fn(|word| target[4 * pixel + word])
-}
-
-/// What a fragment was given: behind the colour.
-fn slots(signature: &Function, targets: &[Vec<u32>], pixel: usize) -> Vec<Bounded> {
-    let words = targets[1..].iter().flat_map(|target| four(target, pixel));
-    let slot = |(kind, word): (&Kind, u32)| match kind {
-        Kind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
-        _ => Bounded::from_word(word),
-    };
-    signature.arguments.iter().zip(words).map(slot).collect()
-}
-
-fn resources(scene: &Scene) -> Resources {
-    let mut resources = Resources { buffers: scene.buffers.clone(), ..Resources::default() };
-    for (place, fixture) in &scene.fixtures {
-        match &**fixture {
-            Fixture::Texture(texture) => drop(resources.textures.insert(*place, eval::Texture::from(texture))),
-            Fixture::Sampler(sampler) => drop(resources.samplers.insert(*place, eval::Sampler::from(*sampler))),
-        }
-    }
-    resources
 }

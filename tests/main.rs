@@ -14,6 +14,7 @@ mod eval;
 mod examples;
 #[path = "../xtask/src/external.rs"]
 mod external;
+mod fragments;
 mod frames;
 mod generate;
 mod harness;
@@ -26,6 +27,7 @@ mod pipelines;
 mod programs;
 mod published;
 mod regressions;
+mod render;
 mod report;
 mod robust;
 mod scale;
@@ -62,6 +64,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     programs::trials,
     published::trials,
     regressions::trials,
+    render::trials,
     report::trials,
     robust::trials,
     scale::trials,

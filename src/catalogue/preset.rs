@@ -26,17 +26,8 @@ use super::probe::Probe;
 use super::reader;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Manifest, Program, Quoted, key};
+use crate::scene::sets::SETS;
 use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
-
-/// What a preset may show, and what the scene has.
-pub const SCENES: &[(&str, &str)] = &[
-    ("spheres", "a row of spheres of rising shininess before the viewer"),
-    ("floor", "a tessellated floor with a light above it"),
-    ("casters", "a sphere, a box and a torus over a floor that their shadows fall on"),
-    ("sheet", "an open, curled sheet: both of its sides are visible"),
-    ("room", "a box seen from inside, with textures and a baked lightmap"),
-    ("screen", "one triangle that covers the picture"),
-];
 
 /// One example.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,7 +40,7 @@ pub struct Preset {
     pub program: String,
     /// Its permutation, canonical.
     pub key: String,
-    /// One of [`SCENES`].
+    /// One of [`SETS`](crate::scene::sets::SETS).
     pub scene: String,
     /// One of the light probes, where the example is about one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -153,7 +144,7 @@ struct Checker<'s> {
 
 impl Checker<'_> {
     fn preset(&mut self, name: String, entry: Entry) -> Preset {
-        self.known("scene", &entry.scene, SCENES.iter().map(|(name, _)| *name));
+        self.known("scene", &entry.scene, SETS.iter().map(|(name, _, _)| *name));
         if let Some(probe) = &entry.probe {
             self.known("light probe", probe, self.probes.iter().map(|probe| probe.name.as_str()));
         }

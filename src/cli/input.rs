@@ -6,11 +6,11 @@ use clap::{Args, ValueEnum};
 
 use super::failure::{DiagnosticForm, Failure, warn};
 use crate::compose::{self, Composed, Keep, Language, Mangle, Options};
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::permute::{Program, Quoted, Setting, Settings, key};
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
+use crate::permute::{Assignment, Program, Quoted, Setting, Settings, key};
 use crate::project::{self, Project};
 use crate::resolve::{self, Graph};
-use crate::source::{SourceSet, Span};
+use crate::source::{SourceId, SourceSet, Span};
 
 /// A root module with its settings.
 #[derive(Args)]
@@ -62,7 +62,8 @@ enum MangleName {
     Underscore,
 }
 
-fn axis_value(text: &str) -> Result<(String, Setting), String> {
+/// An axis with its value, as an option has it.
+pub fn axis_value(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').ok_or("expected AXIS=VALUE")?;
     Ok((named(name)?, Setting::parse(value)))
 }
@@ -78,6 +79,16 @@ fn feature(text: &str) -> Result<(String, Setting), String> {
         value @ Setting::Bool(_) => Ok((named(name)?, value)),
         _ => Err(format!("a feature is `true` or `false`, not `{value}`")),
     }
+}
+
+/// What is wrong with a point that a source as a whole names.
+pub fn broken(program: &Program, point: &Assignment, sources: &SourceSet, id: SourceId) -> Diagnostics {
+    let span = Span::new(id, 0..sources.get(id).text.len());
+    let broken = program.space.broken(point).map(|constraint| {
+        let error = Diagnostic::error(codes::INVALID_KEY, format!("program `{}` has no such permutation", program.name));
+        error.at(span, "these values").at(constraint.span, "break this constraint")
+    });
+    broken.collect()
 }
 
 /// A composed root module with what diagnostics need.
@@ -221,11 +232,7 @@ impl Input {
         let parts: Vec<String> = self.set.iter().chain(features).map(|(axis, value)| format!("{axis}={value}")).collect();
         let id = sources.add("--set", parts.join(","));
         let point = key::parse(&program.space, &Quoted::whole(sources, id))?;
-        let span = Span::new(id, 0..sources.get(id).text.len());
-        let broken = program.space.broken(&point).map(|constraint| {
-            let warning = Diagnostic::warning(codes::INVALID_KEY, format!("program `{}` has no such permutation", program.name));
-            warning.at(span, "these values").at(constraint.span, "break this constraint")
-        });
+        let broken = broken(program, &point, sources, id).into_iter().map(|error| Diagnostic { severity: Severity::Warning, ..error });
         let mut settings = program.space.settings(&point);
         settings.values.extend(self.feature.iter().filter(|(name, _)| !is_axis(name)).cloned());
         let permutation = Some(format!("in permutation `{}` of program `{}`", program.space.key(&point), program.name));

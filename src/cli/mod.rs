@@ -19,6 +19,7 @@ mod list;
 mod merge;
 mod mutate;
 mod progress;
+mod render;
 mod show;
 mod text;
 mod variants;
@@ -58,6 +59,7 @@ enum Command {
     Eval(eval::Arguments),
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
+    Render(render::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
     Export(export::Arguments),
@@ -92,6 +94,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
+        Command::Render(arguments) => render::run(arguments, form),
         Command::Mutate(arguments) => mutate::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),

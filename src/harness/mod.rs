@@ -6,7 +6,8 @@
 //! into a fragment shader, an executor of [`executors`] runs it, [`references`] says what should
 //! come out, [`tolerance`] how far off it may be, and [`check`] compares. [`expression`] runs one
 //! expression instead of cases, [`plots`] draws functions for the [`catalogue`], [`mutate`] asks
-//! how much the cases notice, and [`frame`] draws whole programs.
+//! how much the cases notice, [`frame`] draws whole
+//! programs, and [`render`] whole pictures.
 
 pub mod cases;
 pub mod catalogue;
@@ -25,6 +26,7 @@ pub mod mutate;
 pub mod plots;
 pub mod ratchet;
 pub mod references;
+pub mod render;
 mod sampling;
 pub mod tolerance;
 

@@ -1,21 +1,27 @@
-//! Host-side mathematics of lighting: light matrices, fits, normals, skies and kernels.
+//! Host-side mathematics of lighting: light matrices, fits, normals, skies and kernels; shapes,
+//! environments and the scenes of the pictures, all by formulas.
 //!
 //! Everything is in f64 and for column vectors. World and view spaces are right-handed; a view
 //! looks down its -z axis, with +y up. Lengths are in scene units, angles in radians. Cast the
 //! results (`as_mat4`, `as_vec3`) where they enter a uniform buffer.
 
+mod environment;
 mod frustum;
 mod kernel;
 mod mesh;
 mod probe;
 mod projection;
+pub mod sets;
+mod shape;
 mod sky;
 mod view;
 
+pub use environment::{ENVIRONMENTS, Environment, environment};
 pub use frustum::{Bounds, cascade_splits, corners, depth_range, fit};
 pub use kernel::gaussian;
 pub use mesh::{MeshError, UNUSED_NORMAL, face_normals, normal_matrix, smooth_normals};
 pub use probe::{CubeMap, directions, irradiance_sh9, prefilter, sh9_basis, sh9_project};
 pub use projection::{Clip, Depth, cube_projection, orthographic, perspective, polygon_offset, shadow_matrix};
+pub use shape::{Shape, Vertex};
 pub use sky::{Equirect, Sky};
 pub use view::{FACES, cube_view, from_angles, look_along, look_at};

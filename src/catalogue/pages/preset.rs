@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::super::preset::{Preset, SCENES};
+use super::super::preset::Preset;
 use super::super::probe::{ORDER, Probe};
 use super::markdown::{cell, prose};
+use crate::scene::sets::SETS;
 
 /// The page: presets, scenes, light probes.
 pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
@@ -26,7 +27,7 @@ pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
         row(&mut text, preset, place);
     }
     text.push_str("\n## Scenes\n\n| scene | what it is |\n|---|---|\n");
-    for (name, about) in SCENES {
+    for (name, about, _) in SETS {
         let _ = writeln!(text, "| `{name}` | {about} |");
     }
     light_probes(&mut text, probes);

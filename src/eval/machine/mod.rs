@@ -19,6 +19,8 @@ use crate::diagnostic::codes;
 use lane::{Lane, Stop};
 use watch::Watch;
 
+use std::collections::BTreeMap;
+
 /// Loop trips one call may make unless set otherwise, all loops together.
 pub const LOOP_LIMIT: u64 = 1_000_000;
 
@@ -99,6 +101,15 @@ impl<'p, N: Number> Machine<'p, N> {
         self.quad.clear();
         self.resources = resources;
         Ok(())
+    }
+
+    /// Binds other buffers, textures and samplers as they are.
+    ///
+    /// # Errors
+    /// Those of [`Self::bind`].
+    pub fn bind_buffers(&mut self, buffers: BTreeMap<(u32, u32), Vec<u8>>) -> Result<(), Error> {
+        let resources = std::mem::take(&mut self.resources);
+        self.bind(Resources { buffers, ..resources })
     }
 
     /// Refuses a function one of whose buffers is missing.

@@ -3,22 +3,41 @@
 //!
 //! `reflection + values -> buffers`, `stages + mesh + buffers + fixtures -> frame`
 //!
-//! A frame's targets hold words ([`TARGET_WIDTH`](super::kernel::TARGET_WIDTH) pixels wide, four
-//! words a pixel), so that results are exact to the bit on every backend: [`probe`] rewrites a
-//! fragment entry point to give the bits of its colour and of its own inputs.
+//! A frame's targets hold words, four a pixel, so that results are exact to the bit on every
+//! backend: [`probe`] rewrites a fragment entry point to give the bits of its colour and of its
+//! own inputs.
 
 mod pack;
 pub mod probe;
+mod programs;
 
-pub use super::gpu::draw::{Attribute, Drawing, Frame, Mesh, Stage};
+pub use super::gpu::draw::{Attribute, Buffers, Drawing, Frame, Item, Mesh, Side, Stage, State};
 pub use pack::pack;
+pub use programs::{Composed, Programs, Stages};
 
+use super::Session as _;
 use super::executors::{self, Unavailable, swiftshader};
 use super::gpu::{self, Gpu, Named, Shaders, Wanted};
 use crate::diagnostic::Diagnostic;
 
-/// Executors that draw frames.
-pub const BACKENDS: &[(&str, wgpu::Backends)] = &[("vulkan", wgpu::Backends::VULKAN), ("gl", wgpu::Backends::GL)];
+/// Executors that draw frames on a device.
+pub const BACKENDS: &[(&str, wgpu::Backends, Named)] = &[
+    ("vulkan", wgpu::Backends::VULKAN, Named::Without(swiftshader::NAME)),
+    ("gl", wgpu::Backends::GL, Named::Without(swiftshader::NAME)),
+    ("swiftshader", wgpu::Backends::VULKAN, Named::With(swiftshader::NAME)),
+];
+
+/// Whatever draws frames.
+pub trait Painter {
+    /// Its name, driver and version: what a picture carries.
+    fn adapter(&self) -> String;
+
+    /// Draws a frame for each view.
+    ///
+    /// # Errors
+    /// The device's, and those of shaders it refuses.
+    fn draw(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic>;
+}
 
 /// An open device that draws frames. Open, use and drop it inside of [`super::on_thread`].
 pub struct Renderer(Gpu);
@@ -26,17 +45,22 @@ pub struct Renderer(Gpu);
 impl Renderer {
     /// Opens one of [`BACKENDS`]; the error says what to install.
     pub fn open(name: &str) -> Result<Self, String> {
-        let backend = BACKENDS.iter().find(|(known, _)| *known == name).map(|(_, backend)| *backend);
-        let (backend, entry) = backend.zip(executors::find(name)).ok_or_else(|| format!("`{name}` draws no frames"))?;
-        let wanted = Wanted { backend, named: Named::Without(swiftshader::NAME), shaders: Shaders::Translated };
+        let backend = BACKENDS.iter().find(|(known, ..)| *known == name);
+        let ((_, backend, named), entry) = backend.zip(executors::find(name)).ok_or_else(|| format!("`{name}` draws no frames"))?;
+        if matches!(named, Named::With(_)) {
+            swiftshader::announce();
+        }
+        let wanted = Wanted { backend: *backend, named: *named, shaders: Shaders::Translated };
         gpu::open(wanted).map(Self).map_err(|reason| entry.missing(&Unavailable { reason }))
     }
+}
 
-    /// Draws one frame.
-    ///
-    /// # Errors
-    /// The device's, and those of shaders it refuses.
-    pub fn draw(&self, drawing: &Drawing<'_>) -> Result<Frame, Diagnostic> {
-        self.0.draw_mesh(drawing)
+impl Painter for Renderer {
+    fn adapter(&self) -> String {
+        self.0.adapter()
+    }
+
+    fn draw(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        self.0.draw_frames(drawing)
     }
 }

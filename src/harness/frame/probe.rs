@@ -38,6 +38,17 @@ pub fn watched(module: &Module, entry: &str) -> Option<Watched> {
     Some(Watched { module, targets })
 }
 
+/// The module with a fragment entry point that returns the bits of its colour as four words.
+/// `None` as for [`watched`].
+pub fn bits(module: &Module, entry: &str) -> Option<Module> {
+    let (mut module, index) = (module.clone(), find(module, entry)?);
+    let inner = inner(&mut module, index)?;
+    let mut body = Body::new(&mut module, index);
+    let colour = body.colour(inner)?;
+    body.finish(vec![colour], index);
+    Some(module)
+}
+
 fn find(module: &Module, entry: &str) -> Option<usize> {
     module.entry_points.iter().position(|point| point.name == entry && point.stage == naga::ShaderStage::Fragment)
 }

@@ -1,4 +1,7 @@
-//! Draws a mesh with a program into targets of words.
+//! Draws meshes with a program into targets of words, depth, or both.
+
+mod bindings;
+mod target;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,21 +11,25 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, StorageAccess};
 use wgpu::util::DeviceExt;
 
-use super::{Gpu, TARGET_FORMAT, failed, fixtures};
+use super::{Gpu, TARGET_FORMAT, failed};
 use crate::diagnostic::Diagnostic;
-use crate::harness::fixture::Fixture;
-use crate::harness::kernel::{SENTINEL, TARGET_WIDTH};
+use crate::harness::fixture::{Fixture, Texture};
+use bindings::Bindings;
+use target::{DEPTH_FORMAT, Targets};
 
-/// A triangle list, its attributes interleaved.
+/// Triangles, the attributes of their corners interleaved.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
+    /// Without any, it is one triangle that the vertex stage makes from the index.
     pub attributes: Vec<Attribute>,
-    /// Words of every corner, attribute after attribute.
+    /// Words of every vertex, attribute after attribute.
     pub words: Vec<u32>,
+    /// Three vertices for each triangle; empty where every three in order are one.
+    pub indices: Vec<u32>,
 }
 
-/// One attribute of a corner.
-#[derive(Debug, Clone, Copy)]
+/// One attribute of a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Attribute {
     pub location: u32,
     pub format: wgpu::VertexFormat,
@@ -35,20 +42,61 @@ pub struct Stage<'a> {
     pub entry: &'a str,
 }
 
-/// What one frame is drawn with.
+/// Bytes of uniform buffers by group and binding.
+pub type Buffers = BTreeMap<(u32, u32), Vec<u8>>;
+
+/// What frames are drawn with. Buffers, textures and samplers that the entry points do not use
+/// are skipped.
 #[derive(Debug)]
 pub struct Drawing<'a> {
     pub vertex: Stage<'a>,
-    /// Returns four words at each of the locations 0 to `targets - 1`.
-    pub fragment: Stage<'a>,
+    /// Returns four words at each of the locations 0 to `targets - 1`; `None` draws depth alone.
+    pub fragment: Option<Stage<'a>>,
     pub targets: u32,
-    pub mesh: &'a Mesh,
-    /// Uniform buffers by group and binding; those that the entry points do not use are skipped.
-    pub buffers: &'a BTreeMap<(u32, u32), Vec<u8>>,
-    /// Textures and samplers likewise.
+    /// Drawn in order, all into each frame.
+    pub items: &'a [Item<'a>],
+    /// One frame for each, with buffers of its own.
+    pub views: &'a [Buffers],
+    /// Uniform buffers of all frames and items.
+    pub buffers: &'a Buffers,
+    /// Those uniform buffers that no texture coordinate depends on: the first to be bound otherwise
+    /// where a driver fails with as many as there are.
+    pub plain: &'a [(u32, u32)],
+    /// Textures and samplers.
     pub fixtures: &'a BTreeMap<(u32, u32), Arc<Fixture>>,
-    /// Pixels from top to bottom.
-    pub height: u32,
+    /// Smaller levels of those textures that have them, the larger first.
+    pub levels: &'a BTreeMap<(u32, u32), Vec<Texture>>,
+    /// Pixels from left to right, and from top to bottom.
+    pub size: [u32; 2],
+    pub state: State,
+}
+
+/// A mesh with uniform buffers of its own.
+#[derive(Debug, Clone, Copy)]
+pub struct Item<'a> {
+    pub mesh: &'a Mesh,
+    pub buffers: &'a Buffers,
+}
+
+/// What the pipeline does beside its stages.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct State {
+    /// Whether nearer fragments (of smaller depth) hide others.
+    pub depth_test: bool,
+    /// Whether the frame has its depth.
+    pub keep_depth: bool,
+    pub cull: Option<Side>,
+    /// Whether front faces wind clockwise in the frame: it is drawn mirrored.
+    pub mirrored: bool,
+    /// Added to depths, as of polygon offset: a share of the slope, and smallest steps.
+    pub offset: [f32; 2],
+}
+
+/// A side of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    Front,
+    Back,
 }
 
 /// What was drawn.
@@ -57,6 +105,8 @@ pub struct Frame {
     /// The words of each target, four a pixel, row by row from the top; pixels that nothing
     /// covers hold [`SENTINEL`](crate::harness::kernel::SENTINEL).
     pub targets: Vec<Vec<u32>>,
+    /// Of each pixel, 1 where nothing is; empty unless it was to be kept.
+    pub depth: Vec<f32>,
     /// What was done otherwise than asked for, since the driver would have failed.
     pub detour: Option<&'static str>,
 }
@@ -68,16 +118,10 @@ pub struct Frame {
 /// `uni_offsets[ubo * PIPE_MAX_CONSTANT_BUFFERS + i]`), so that those of the fourth block land on
 /// the table of counts behind. The next draw then reads a push constant that there is not, and
 /// the process dies: `forward` with a shadow branches on its fourth block. Storage blocks, laid
-/// out the same, are not looked at.
+/// out the same, are not looked at; but where a triangle ends, what they hold is 0 in the helpers of a
+/// quad, and derivatives of what was computed from it are wrong.
 const LAVAPIPE_BLOCKS: usize = 3;
 const LAVAPIPE_DETOUR: &str = "uniform blocks were bound as storage blocks: lavapipe crashes where a branch reads the fourth of a stage";
-
-/// What a binding keeps alive.
-enum Kept {
-    Buffer(wgpu::Buffer),
-    View(wgpu::TextureView),
-    Sampler(wgpu::Sampler),
-}
 
 type Place = (u32, u32);
 
@@ -86,8 +130,9 @@ impl Mesh {
         self.attributes.iter().map(|attribute| attribute.format.size()).sum()
     }
 
-    fn corners(&self) -> u32 {
-        (self.words.len() as u64 * 4 / self.stride().max(4)) as u32
+    /// Vertices.
+    pub fn vertices(&self) -> u32 {
+        if self.attributes.is_empty() { 3 } else { (self.words.len() as u64 * 4 / self.stride().max(4)) as u32 }
     }
 
     fn layout(&self) -> Vec<wgpu::VertexAttribute> {
@@ -102,16 +147,27 @@ impl Mesh {
     }
 }
 
+impl Drawing<'_> {
+    /// The buffer of a binding: the view's, the item's, or that of all.
+    pub fn buffer<'b>(&'b self, view: &'b Buffers, item: &'b Item<'_>, place: Place) -> Option<&'b Vec<u8>> {
+        view.get(&place).or_else(|| item.buffers.get(&place)).or_else(|| self.buffers.get(&place))
+    }
+
+    fn is_buffer(&self, place: Place) -> bool {
+        let everywhere = self.views.iter().chain(self.items.iter().map(|item| item.buffers)).chain([self.buffers]);
+        everywhere.into_iter().any(|buffers| buffers.contains_key(&place))
+    }
+}
+
 impl Gpu {
-    /// Draws one frame and reads it back.
-    pub fn draw_mesh(&self, drawing: &Drawing<'_>) -> Result<Frame, Diagnostic> {
-        let used = [used(drawing.vertex)?, used(drawing.fragment)?];
-        let blocks = |used: &BTreeSet<Place>| used.iter().filter(|place| drawing.buffers.contains_key(place)).count();
-        let as_storage = self.is_lavapipe() && used.iter().any(|used| blocks(used) > LAVAPIPE_BLOCKS);
+    /// Draws the frame of every view and reads it back.
+    pub fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        let used: Vec<_> = std::iter::once(drawing.vertex).chain(drawing.fragment).map(used).collect::<Result<_, _>>()?;
+        let as_storage = if self.is_lavapipe() { spared(drawing, &used) } else { BTreeSet::new() };
         let all: BTreeSet<Place> = used.into_iter().flatten().collect();
-        let buffers = self.guarded(|gpu| gpu.submit_mesh(drawing, &all, as_storage))??;
-        let targets = buffers.iter().map(|buffer| self.read(buffer)).collect::<Result<_, _>>()?;
-        Ok(Frame { targets, detour: as_storage.then_some(LAVAPIPE_DETOUR) })
+        let frames = self.guarded(|gpu| gpu.submit_frames(drawing, all, &as_storage))??;
+        let detour = (!as_storage.is_empty()).then_some(LAVAPIPE_DETOUR);
+        frames.into_iter().map(|frame| frame.read(self, detour)).collect()
     }
 
     fn is_lavapipe(&self) -> bool {
@@ -119,44 +175,51 @@ impl Gpu {
         info.backend == wgpu::Backend::Vulkan && info.name.starts_with("llvmpipe")
     }
 
-    fn submit_mesh(&self, drawing: &Drawing<'_>, used: &BTreeSet<Place>, as_storage: bool) -> Result<Vec<wgpu::Buffer>, Diagnostic> {
+    fn submit_frames(
+        &self,
+        drawing: &Drawing<'_>,
+        used: BTreeSet<Place>,
+        as_storage: &BTreeSet<Place>,
+    ) -> Result<Vec<target::Pending>, Diagnostic> {
         let pipeline = self.mesh_pipeline(drawing, as_storage);
-        let groups = self.groups(drawing, used, &pipeline)?;
-        let vertices = self.buffer(&words(&drawing.mesh.words), wgpu::BufferUsages::VERTEX);
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
-        let targets: Vec<_> = (0..drawing.targets).map(|_| self.texture(TARGET_WIDTH, drawing.height, usage)).collect();
-        let views: Vec<_> = targets.iter().map(|target| target.create_view(&Default::default())).collect();
-        let cleared = f64::from(SENTINEL);
-        let load = wgpu::LoadOp::Clear(wgpu::Color { r: cleared, g: cleared, b: cleared, a: cleared });
-        let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
-        let attachment = |view| Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops });
-        let attachments: Vec<_> = views.iter().map(attachment).collect();
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: &attachments, ..Default::default() });
-        pass.set_pipeline(&pipeline);
-        groups.iter().for_each(|(index, group)| pass.set_bind_group(*index, group, &[]));
-        pass.set_vertex_buffer(0, vertices.slice(..));
-        pass.draw(0..drawing.mesh.corners(), 0..1);
-        drop(pass);
-        let buffers = targets.iter().map(|target| self.download(&mut encoder, target, drawing.height)).collect();
-        self.queue.submit([encoder.finish()]);
-        Ok(buffers)
+        let bindings = Bindings::new(self, drawing, used)?;
+        let meshes: Vec<_> = drawing.items.iter().map(|item| Uploaded::new(self, item.mesh)).collect();
+        let mut frames = Vec::new();
+        for view in drawing.views {
+            let groups: Vec<_> =
+                drawing.items.iter().map(|item| bindings.groups(self, drawing, view, item, &pipeline)).collect::<Result<_, _>>()?;
+            let targets = Targets::new(&self.device, drawing);
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            targets.pass(&mut encoder, |pass| {
+                pass.set_pipeline(&pipeline);
+                for (mesh, groups) in meshes.iter().zip(&groups) {
+                    groups.iter().for_each(|(index, group)| pass.set_bind_group(*index, group, &[]));
+                    mesh.draw(pass);
+                }
+            });
+            let pending = targets.download(self, &mut encoder);
+            self.queue.submit([encoder.finish()]);
+            frames.push(pending);
+        }
+        Ok(frames)
     }
 
-    fn shader(&self, stage: Stage<'_>, as_storage: bool) -> wgpu::ShaderModule {
-        let module = if as_storage { storage_blocks(stage.module) } else { stage.module.clone() };
-        let source = wgpu::ShaderSource::Naga(Cow::Owned(module));
+    fn shader(&self, stage: Stage<'_>, as_storage: &BTreeSet<Place>) -> wgpu::ShaderModule {
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(storage_blocks(stage.module, as_storage)));
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
 
-    fn mesh_pipeline(&self, drawing: &Drawing<'_>, as_storage: bool) -> wgpu::RenderPipeline {
-        let attributes = drawing.mesh.layout();
+    fn mesh_pipeline(&self, drawing: &Drawing<'_>, as_storage: &BTreeSet<Place>) -> wgpu::RenderPipeline {
+        let mesh = drawing.items.first().map(|item| item.mesh);
+        let attributes = mesh.map(Mesh::layout).unwrap_or_default();
         let layout = wgpu::VertexBufferLayout {
-            array_stride: drawing.mesh.stride(),
+            array_stride: mesh.map_or(0, Mesh::stride),
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         };
+        let buffers = if attributes.is_empty() { Vec::new() } else { vec![Some(layout)] };
         let targets = vec![Some(wgpu::ColorTargetState::from(TARGET_FORMAT)); drawing.targets as usize];
+        let fragment = drawing.fragment.map(|stage| (self.shader(stage, as_storage), stage.entry));
         let compilation_options = wgpu::PipelineCompilationOptions::default();
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
@@ -165,14 +228,14 @@ impl Gpu {
                 module: &self.shader(drawing.vertex, as_storage),
                 entry_point: Some(drawing.vertex.entry),
                 compilation_options: compilation_options.clone(),
-                buffers: &[Some(layout)],
+                buffers: &buffers,
             },
-            primitive: Default::default(),
-            depth_stencil: None,
+            primitive: primitive(drawing.state),
+            depth_stencil: drawing.state.depth_test.then(|| depth_state(drawing.state)),
             multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &self.shader(drawing.fragment, as_storage),
-                entry_point: Some(drawing.fragment.entry),
+            fragment: fragment.as_ref().map(|(module, entry)| wgpu::FragmentState {
+                module,
+                entry_point: Some(entry),
                 compilation_options,
                 targets: &targets,
             }),
@@ -181,55 +244,83 @@ impl Gpu {
         })
     }
 
-    fn groups(
-        &self,
-        drawing: &Drawing<'_>,
-        used: &BTreeSet<Place>,
-        pipeline: &wgpu::RenderPipeline,
-    ) -> Result<Vec<(u32, wgpu::BindGroup)>, Diagnostic> {
-        let kept = used.iter().map(|place| Ok((*place, self.kept(drawing, *place)?))).collect::<Result<Vec<_>, Diagnostic>>()?;
-        let indices: BTreeSet<u32> = used.iter().map(|(group, _)| *group).collect();
-        let group = |index: u32| {
-            let own = kept.iter().filter(|((group, _), _)| *group == index);
-            let entries: Vec<_> =
-                own.map(|((_, binding), kept)| wgpu::BindGroupEntry { binding: *binding, resource: kept.resource() }).collect();
-            let layout = &pipeline.get_bind_group_layout(index);
-            (index, self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries }))
-        };
-        Ok(indices.into_iter().map(group).collect())
-    }
-
-    fn kept(&self, drawing: &Drawing<'_>, place: Place) -> Result<Kept, Diagnostic> {
-        if let Some(bytes) = drawing.buffers.get(&place) {
-            return Ok(Kept::Buffer(self.buffer(bytes, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE)));
-        }
-        match drawing.fixtures.get(&place).map(|fixture| &**fixture) {
-            Some(Fixture::Texture(texture)) => Ok(Kept::View(fixtures::upload(&self.device, &self.queue, texture))),
-            Some(Fixture::Sampler(sampler)) => Ok(Kept::Sampler(fixtures::sampler(&self.device, *sampler))),
-            None => Err(failed(format!("nothing is given for group {}, binding {}", place.0, place.1))),
-        }
-    }
-
     fn buffer(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
     }
 }
 
-impl Kept {
-    fn resource(&self) -> wgpu::BindingResource<'_> {
-        match self {
-            Self::Buffer(buffer) => buffer.as_entire_binding(),
-            Self::View(view) => wgpu::BindingResource::TextureView(view),
-            Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+fn primitive(state: State) -> wgpu::PrimitiveState {
+    wgpu::PrimitiveState {
+        front_face: if state.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+        cull_mode: state.cull.map(|side| match side {
+            Side::Front => wgpu::Face::Front,
+            Side::Back => wgpu::Face::Back,
+        }),
+        ..Default::default()
+    }
+}
+
+fn depth_state(state: State) -> wgpu::DepthStencilState {
+    let [slope_scale, constant] = state.offset;
+    wgpu::DepthStencilState {
+        format: DEPTH_FORMAT,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::Less),
+        stencil: Default::default(),
+        bias: wgpu::DepthBiasState { constant: constant as i32, slope_scale, clamp: 0.0 },
+    }
+}
+
+/// A mesh on the device.
+struct Uploaded {
+    vertices: Option<wgpu::Buffer>,
+    indices: Option<wgpu::Buffer>,
+    count: u32,
+}
+
+impl Uploaded {
+    fn new(gpu: &Gpu, mesh: &Mesh) -> Self {
+        let buffer = |numbers: &[u32], usage| (!numbers.is_empty()).then(|| gpu.buffer(&words(numbers), usage));
+        let count = if mesh.indices.is_empty() { mesh.vertices() } else { mesh.indices.len() as u32 };
+        Self { vertices: buffer(&mesh.words, wgpu::BufferUsages::VERTEX), indices: buffer(&mesh.indices, wgpu::BufferUsages::INDEX), count }
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(vertices) = &self.vertices {
+            pass.set_vertex_buffer(0, vertices.slice(..));
+        }
+        match &self.indices {
+            Some(indices) => {
+                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(0..self.count, 0, 0..1);
+            }
+            None => pass.draw(0..self.count, 0..1),
         }
     }
 }
 
-/// The module with uniform blocks declared as storage blocks that are read.
-fn storage_blocks(module: &naga::Module) -> naga::Module {
+/// The uniform blocks to bind otherwise, so that no stage has too many: as few of the plain ones
+/// as will do, or all blocks.
+fn spared(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<Place> {
+    let blocks: Vec<BTreeSet<Place>> =
+        stages.iter().map(|used| used.iter().copied().filter(|place| drawing.is_buffer(*place)).collect()).collect();
+    let fits = |spared: &BTreeSet<Place>| blocks.iter().all(|blocks| blocks.difference(spared).count() <= LAVAPIPE_BLOCKS);
+    let mut spared = BTreeSet::new();
+    for place in drawing.plain {
+        if fits(&spared) {
+            break;
+        }
+        spared.insert(*place);
+    }
+    if fits(&spared) { spared } else { blocks.into_iter().flatten().collect() }
+}
+
+/// The module with some uniform blocks declared as storage blocks that are read.
+fn storage_blocks(module: &naga::Module, places: &BTreeSet<Place>) -> naga::Module {
     let mut module = module.clone();
     for (_, variable) in module.global_variables.iter_mut() {
-        if variable.space == AddressSpace::Uniform {
+        let is_spared = variable.binding.is_some_and(|place| places.contains(&(place.group, place.binding)));
+        if variable.space == AddressSpace::Uniform && is_spared {
             variable.space = AddressSpace::Storage { access: StorageAccess::LOAD };
         }
     }

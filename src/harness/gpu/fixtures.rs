@@ -17,9 +17,14 @@ const DEPTH: &str = "
 
 /// A view of the texture with its texels in place.
 pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
+    upload_levels(device, queue, texture, &[])
+}
+
+/// A view of a texture with smaller levels, which colours may have.
+pub fn upload_levels(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture, smaller: &[Texture]) -> wgpu::TextureView {
     let cube = texture.kind.layers() == 6;
     let dimension = if cube { wgpu::TextureViewDimension::Cube } else { wgpu::TextureViewDimension::D2 };
-    let created = if texture.kind.is_depth() { depth(device, queue, texture) } else { color(device, queue, texture) };
+    let created = if texture.kind.is_depth() { depth(device, queue, texture) } else { color(device, queue, texture, smaller) };
     created.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
 }
 
@@ -43,18 +48,29 @@ pub fn sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
         address_mode_w: address,
         mag_filter: filter,
         min_filter: filter,
+        // Between levels, where a texture has them.
+        mipmap_filter: if sampler.linear && compare.is_none() { wgpu::MipmapFilterMode::Linear } else { wgpu::MipmapFilterMode::Nearest },
         compare,
         ..Default::default()
     })
 }
 
-fn color(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
+/// A texture with all its levels in 32 bits, or in 16 where those say the same and the device
+/// filters no others.
+fn color(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture, smaller: &[Texture]) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    if !device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) && texture.texels.iter().all(|texel| is_half(*texel)) {
-        return half(device, queue, texture, usage);
+    let levels = || std::iter::once(texture).chain(smaller);
+    let half = !device.features().contains(wgpu::Features::FLOAT32_FILTERABLE)
+        && levels().all(|level| level.texels.iter().all(|texel| is_half(*texel)));
+    let format = if half { wgpu::TextureFormat::Rgba16Float } else { wgpu::TextureFormat::Rgba32Float };
+    let created = create(device, texture, texture.kind.layers(), 1 + smaller.len() as u32, format, usage);
+    for (index, level) in levels().enumerate() {
+        let bytes: Vec<u8> = match half {
+            true => level.texels.iter().flat_map(|texel| half_from(f64::from(*texel)).to_le_bytes()).collect(),
+            false => level.texels.iter().flat_map(|texel| texel.to_le_bytes()).collect(),
+        };
+        write(queue, &created, level, index as u32, level.kind.layers(), &bytes);
     }
-    let created = create(device, texture, texture.kind.layers(), wgpu::TextureFormat::Rgba32Float, usage);
-    write(queue, &created, texture, 0..texture.kind.layers());
     created
 }
 
@@ -62,20 +78,9 @@ fn is_half(texel: f32) -> bool {
     half_to(half_from(f64::from(texel))) == f64::from(texel)
 }
 
-/// The same texels in 16 bits, which every device filters.
-fn half(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture, usage: wgpu::TextureUsages) -> wgpu::Texture {
-    let layers = texture.kind.layers();
-    let created = create(device, texture, layers, wgpu::TextureFormat::Rgba16Float, usage);
-    let bytes: Vec<u8> = texture.texels.iter().flat_map(|texel| half_from(f64::from(*texel)).to_le_bytes()).collect();
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texture.width * 8), rows_per_image: Some(texture.height) };
-    let size = wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers };
-    queue.write_texture(created.as_image_copy(), &bytes, layout, size);
-    created
-}
-
 fn depth(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let created = create(device, texture, texture.kind.layers(), wgpu::TextureFormat::Depth32Float, usage);
+    let created = create(device, texture, texture.kind.layers(), 1, wgpu::TextureFormat::Depth32Float, usage);
     let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let ty = wgpu::BindingType::Texture {
@@ -102,8 +107,10 @@ fn draw_layer(
     drawing: &wgpu::RenderPipeline,
 ) {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    let staged = create(device, texture, 1, wgpu::TextureFormat::R32Uint, usage);
-    write(queue, &staged, texture, layer..layer + 1);
+    let staged = create(device, texture, 1, 1, wgpu::TextureFormat::R32Uint, usage);
+    let size = (texture.width * texture.height) as usize;
+    let texels = texture.texels.iter().skip(layer as usize * size).take(size);
+    write(queue, &staged, texture, 0, 1, &texels.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>());
     let stored = staged.create_view(&Default::default());
     let entry = wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&stored) };
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &[entry] });
@@ -128,11 +135,18 @@ fn draw_layer(
     queue.submit([encoder.finish()]);
 }
 
-fn create(device: &wgpu::Device, texture: &Texture, layers: u32, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
+fn create(
+    device: &wgpu::Device,
+    texture: &Texture,
+    layers: u32,
+    levels: u32,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers },
-        mip_level_count: 1,
+        mip_level_count: levels,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
@@ -141,13 +155,11 @@ fn create(device: &wgpu::Device, texture: &Texture, layers: u32, format: wgpu::T
     })
 }
 
-/// Copies layers of the fixture to the first layers of the texture.
-fn write(queue: &wgpu::Queue, target: &wgpu::Texture, texture: &Texture, layers: std::ops::Range<u32>) {
-    let row = texture.width as usize * texture.kind.channels();
-    let layer = row * texture.height as usize;
-    let texels = &texture.texels[layers.start as usize * layer..layers.end as usize * layer];
-    let bytes: Vec<u8> = texels.iter().flat_map(|value| value.to_le_bytes()).collect();
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row as u32 * 4), rows_per_image: Some(texture.height) };
-    let size = wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers.len() as u32 };
-    queue.write_texture(target.as_image_copy(), &bytes, layout, size);
+/// Copies the bytes of so many layers into a level of the texture; `texture` has that level's size.
+fn write(queue: &wgpu::Queue, target: &wgpu::Texture, texture: &Texture, level: u32, layers: u32, bytes: &[u8]) {
+    let row = bytes.len() as u32 / (texture.height * layers).max(1);
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(texture.height) };
+    let size = wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: layers };
+    let place = wgpu::TexelCopyTextureInfo { mip_level: level, ..target.as_image_copy() };
+    queue.write_texture(place, bytes, layout, size);
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use glow::HasContext as _;
+use wgpu::hal::Instance as _;
 
 use super::{Gpu, lock};
 use crate::bundle::Target;
@@ -54,7 +55,7 @@ impl Named {
 pub fn open(wanted: Wanted) -> Result<Gpu, String> {
     let descriptor = wgpu::InstanceDescriptor { backends: wanted.backend, ..wgpu::InstanceDescriptor::new_without_display_handle() };
     let instance = wgpu::Instance::new(descriptor);
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(wanted.backend));
+    let mut adapters = adapters(&instance, wanted.backend);
     adapters.retain(|adapter| wanted.named.allows(&adapter.get_info().name));
     adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
     let adapter = adapters.into_iter().next().ok_or("no adapter was found")?;
@@ -70,6 +71,29 @@ pub fn open(wanted: Wanted) -> Result<Gpu, String> {
     let vertex = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let adapter = describe(&adapter.get_info());
     Ok(Gpu { adapter, shaders: wanted.shaders, device, queue, faults, vertex, prepared: HashMap::new(), runs: 0 })
+}
+
+/// The adapters of a backend.
+fn adapters(instance: &wgpu::Instance, backend: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let of_opengl = if backend == wgpu::Backends::GL { filtering(instance) } else { Vec::new() };
+    if of_opengl.is_empty() { pollster::block_on(instance.enumerate_adapters(backend)) } else { of_opengl }
+}
+
+/// Adapters of OpenGL, said to filter 32-bit floats as all from 3.0 on do: wgpu looks for
+/// extensions that a core profile need not name.
+fn filtering(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+    // SAFETY: the instance is borrowed all the while.
+    let Some(hal) = (unsafe { instance.as_hal::<wgpu::hal::api::Gles>() }) else { return Vec::new() };
+    // SAFETY: no surface is asked for.
+    let exposed = unsafe { hal.enumerate_adapters(None) };
+    let adapter = |mut exposed: wgpu::hal::ExposedAdapter<wgpu::hal::api::Gles>| {
+        if !exposed.adapter.adapter_context().lock().version().is_embedded {
+            exposed.features |= wgpu::Features::FLOAT32_FILTERABLE;
+        }
+        // SAFETY: the adapter comes from this instance.
+        unsafe { instance.create_adapter_from_hal(exposed) }
+    };
+    exposed.into_iter().map(adapter).collect()
 }
 
 /// OpenGL filters across the edges of a cube's faces only where it is told to, as WebGPU means it;

@@ -1,0 +1,228 @@
+//! `lamplight render`: pictures.
+
+mod gallery;
+
+use std::io::{Write, stdout};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::Args;
+
+use super::failure::{DiagnosticForm, Failure};
+use super::input::{LanguageName, axis_value};
+use crate::catalogue::preset::{self, Preset};
+use crate::catalogue::probe;
+use crate::compose::Language;
+use crate::diagnostic::{Diagnostics, nearest};
+use crate::harness::executors::{self, swiftshader};
+use crate::harness::frame::{Painter, Programs};
+use crate::harness::on_thread;
+use crate::harness::render::{self, Plan, Shot, Surroundings};
+use crate::output;
+use crate::permute::manifest::Program;
+use crate::permute::{Assignment, Quoted, Setting, key};
+use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
+use crate::source::SourceSet;
+
+/// Draw a scene with one permutation.
+#[derive(Args)]
+pub struct Arguments {
+    /// A preset: one published example (`lamplight list presets`).
+    preset: Option<String>,
+    /// Choose an axis's value, over those of the preset.
+    #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
+    set: Vec<(String, Setting)>,
+    /// What draws the picture [default: that of the preset, or `forward`].
+    #[arg(long, value_name = "NAME")]
+    program: Option<String>,
+    /// What is drawn [default: the scene of the preset, or `casters`].
+    #[arg(long, value_name = "NAME")]
+    scene: Option<String>,
+    /// Draw every preset, with pages that show them.
+    #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene"])]
+    all: bool,
+    /// Where the picture goes [default: the name of the preset, or `render.png`]; with `--all`, a
+    /// folder [default: `gallery`].
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Pixels across and down.
+    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
+    size: [u32; 2],
+    /// Places in each pixel that are averaged.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64))]
+    samples: u32,
+    /// Factor on all light, in powers of two.
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
+    exposure: f64,
+    /// What draws: `vulkan`, `gl`, `swiftshader` or `eval`, which needs no driver.
+    #[arg(long, value_name = "E", default_value = "vulkan")]
+    executor: String,
+    /// The source language.
+    #[arg(long, value_enum, default_value = "wesl")]
+    lang: LanguageName,
+    /// What is around the scene: `studio`, `daylight`, `constant`, or a Radiance file (`.hdr`).
+    #[arg(long, value_name = "NAME|FILE", default_value = "studio")]
+    environment: String,
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    const LARGEST: u32 = 4096;
+    let (width, height) = text.split_once('x').ok_or("expected WxH, such as 512x512")?;
+    let number = |text: &str| text.parse::<u32>().ok().filter(|number| (1..=LARGEST).contains(number));
+    match (number(width), number(height)) {
+        (Some(width), Some(height)) => Ok([width, height]),
+        _ => Err(format!("expected two numbers from 1 to {LARGEST}")),
+    }
+}
+
+pub fn run(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure> {
+    on_thread(|| draw(&arguments)).unwrap_or_else(|| Err(Failure::environment("the renderer stopped with an internal error")))
+}
+
+fn draw(arguments: &Arguments) -> Result<(), Failure> {
+    let programs = Programs::load().map_err(|(sources, problems)| Failure::Input(sources, problems))?;
+    let shot = shot(arguments)?;
+    if arguments.all {
+        let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
+        return gallery::run(open(&arguments.executor)?.as_ref(), &programs, &shot, &folder);
+    }
+    let plan = plan(&programs, arguments)?;
+    let painter = open(&arguments.executor)?;
+    let start = Instant::now();
+    let picture = render::render(painter.as_ref(), &programs, &plan, &shot).map_err(|problems| input(&programs, problems))?;
+    let name = arguments.preset.as_deref().unwrap_or("render");
+    let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
+    write(&path, &picture.png().map_err(Failure::environment)?)?;
+    let last = plan.last().map_or("", |pass| pass.key.as_str());
+    let [width, height] = shot.size;
+    let (path, scene, adapter, seconds) = (path.display(), &plan.scene, painter.adapter(), start.elapsed().as_secs_f64());
+    Ok(writeln!(stdout(), "{path}: {width} x {height} of {scene}, `{last}`, in {seconds:.2} s, {adapter}")?)
+}
+
+/// Writes a file that is what was asked for.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    output::write(path, bytes).map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display())))
+}
+
+/// Opens an executor that draws.
+pub fn open(name: &str) -> Result<Box<dyn Painter>, Failure> {
+    if !render::painters().any(|known| known == name) {
+        let known: Vec<&str> = render::painters().collect();
+        let what = if executors::find(name).is_some() { "draws no pictures" } else { "is no executor" };
+        return Err(Failure::usage(format!("`{name}` {what} (executors that do: {})", known.join(", "))));
+    }
+    if name == swiftshader::EXECUTOR.name {
+        swiftshader::announce();
+    }
+    render::open(name).map_err(Failure::environment)
+}
+
+fn input(programs: &Programs, problems: Diagnostics) -> Failure {
+    Failure::Input(programs.texts(), problems)
+}
+
+fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
+    let mut plan = match &arguments.preset {
+        Some(name) => of_preset(programs, arguments, name)?,
+        None if arguments.set.is_empty() && arguments.program.is_none() && arguments.scene.is_none() => {
+            return Err(Failure::usage("name a preset (`lamplight list presets`), or a permutation with `--set`"));
+        }
+        None => of_point(programs, arguments, program(programs, arguments.program.as_deref().unwrap_or("forward"))?, None)?,
+    };
+    if let Some(scene) = &arguments.scene {
+        let known = sets::SETS.iter().map(|(name, _, _)| *name);
+        if !known.clone().any(|name| name == scene) {
+            return Err(unknown("scene", scene, known));
+        }
+        plan.scene.clone_from(scene);
+    }
+    Ok(plan)
+}
+
+fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<Plan, Failure> {
+    let (presets, probes) = library(programs)?;
+    let Some(preset) = presets.iter().find(|preset| preset.name == name) else {
+        return Err(unknown("preset", name, presets.iter().map(|preset| preset.name.as_str())));
+    };
+    let plan = Plan::of_preset(programs, preset, &probes).map_err(|problems| input(programs, problems))?;
+    if arguments.set.is_empty() && arguments.program.is_none() {
+        return Ok(plan);
+    }
+    let program = program(programs, arguments.program.as_deref().unwrap_or(&preset.program))?;
+    // Another permutation needs other passes; numbers and scene are the preset's.
+    let changed = of_point(programs, arguments, program, (program.name == preset.program).then_some(preset.key.as_str()))?;
+    Ok(Plan { passes: changed.passes, ..plan })
+}
+
+/// Presets and light probes of the library.
+pub fn library(programs: &Programs) -> Result<(Vec<Preset>, Vec<probe::Probe>), Failure> {
+    let read = programs.with_texts(|texts| {
+        let probes = probe::library(texts)?;
+        Ok((preset::library(texts, programs.manifest(), &probes)?, probes))
+    });
+    read.map_err(|problems| input(programs, problems))
+}
+
+fn program<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Failure> {
+    let known = programs.manifest().programs.iter().map(|program| program.name.as_str());
+    programs.manifest().program(name).ok_or_else(|| unknown("program", name, known))
+}
+
+/// A name that nothing has: with the nearest, or with all where they are few.
+fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Failure {
+    const FEW: usize = 12;
+    let hint = match nearest(name, known.clone()) {
+        Some(nearest) => format!("\nhelp: did you mean `{nearest}`?"),
+        None if known.clone().count() <= FEW => format!("\nhelp: there are {}", known.collect::<Vec<_>>().join(", ")),
+        None => String::new(),
+    };
+    Failure::input(format!("there is no {what} `{name}`{hint}"))
+}
+
+fn of_point(programs: &Programs, arguments: &Arguments, program: &Program, over: Option<&str>) -> Result<Plan, Failure> {
+    let point = point(programs, arguments, program, over)?;
+    Plan::of_point(programs, program, &point).map_err(|problems| input(programs, problems))
+}
+
+/// The point of the program's space that is asked for, over that of a key.
+fn point(programs: &Programs, arguments: &Arguments, program: &Program, over: Option<&str>) -> Result<Assignment, Failure> {
+    let is_set = |part: &&str| arguments.set.iter().any(|(axis, _)| axis == part.split('=').next().unwrap_or(part));
+    let kept = over.filter(|key| *key != key::DEFAULT).map(|key| key.split(',').filter(|part| !is_set(part)).collect::<Vec<_>>());
+    let kept = kept.unwrap_or_default().into_iter().map(str::to_owned);
+    let parts: Vec<String> = kept.chain(arguments.set.iter().map(|(axis, value)| format!("{axis}={value}"))).collect();
+    let mut texts = programs.texts();
+    let id = texts.add("--set", parts.join(","));
+    let wrong = |texts: SourceSet, problems| Failure::Input(texts, problems);
+    let point = match key::parse(&program.space, &Quoted::whole(&texts, id)) {
+        Ok(point) => point,
+        Err(problems) => return Err(wrong(texts, problems)),
+    };
+    let problems = super::input::broken(program, &point, &texts, id);
+    if problems.is_empty() { Ok(point) } else { Err(wrong(texts, problems)) }
+}
+
+fn shot(arguments: &Arguments) -> Result<Shot, Failure> {
+    Ok(Shot {
+        size: arguments.size,
+        samples: arguments.samples,
+        exposure: arguments.exposure.clamp(-32.0, 32.0),
+        language: Language::from(arguments.lang),
+        surroundings: surroundings(&arguments.environment)?,
+    })
+}
+
+/// What is around a scene, by name or from a file.
+fn surroundings(name: &str) -> Result<Surroundings, Failure> {
+    if let Some(formula) = environment(name) {
+        return Ok(Surroundings::Formula(formula));
+    }
+    let known = ENVIRONMENTS.iter().map(|(name, _, _)| *name);
+    let bytes = match std::fs::read(name) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(unknown("environment or file", name, known)),
+        Err(error) => return Err(Failure::input(format!("cannot read `{name}`: {error}"))),
+    };
+    let image = Equirect::from_radiance(&bytes).map_err(|error| Failure::input(format!("`{name}`: {error}")))?;
+    Ok(Surroundings::Image(Arc::new(image)))
+}

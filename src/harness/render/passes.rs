@@ -1,0 +1,290 @@
+//! The passes of a plan, one after another.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+
+use super::Shot;
+use super::light::LightView;
+use super::mesh::{self, attributes};
+use super::picture::{Background, Linear};
+use super::plan::{Pass, Plan};
+use super::textures::{Left, Library, sampler};
+use super::values::{Camera, Values};
+use crate::bundle::{Binding, Kind};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::harness::fixture::{Fixture, Texture, TextureKind};
+use crate::harness::frame::{Buffers, Composed, Drawing, Frame, Item, Mesh, Painter, Programs, Side, Stage, Stages, State, pack, probe};
+use crate::harness::kernel::SENTINEL;
+use crate::scene::sets;
+use crate::scene::{Clip, Depth, perspective};
+
+/// A pass with everything it is drawn with.
+pub struct Prepared {
+    pub stages: Stages,
+    pub items: Vec<(Mesh, Buffers)>,
+    pub buffers: Buffers,
+    pub fixtures: BTreeMap<(u32, u32), Arc<Fixture>>,
+    pub levels: BTreeMap<(u32, u32), Vec<Texture>>,
+    pub state: State,
+    plain: Vec<(u32, u32)>,
+    /// The binding of the camera, which each view fills; screens have none.
+    camera: Option<Binding>,
+    eye: Camera,
+    background: Background,
+}
+
+/// What the passes share.
+struct Studio<'a> {
+    painter: &'a dyn Painter,
+    programs: &'a Programs,
+    values: Values<'a>,
+}
+
+/// Smallest and largest shadow map, texels along an edge; between, twice the picture. Moments are
+/// blurred, and half as fine.
+const MAP_SIZES: (u32, u32) = (256, 1024);
+
+/// Draws all passes of a plan but the last, and prepares that one.
+///
+/// # Errors
+/// Those of compositions and of the painter.
+pub fn prepare(painter: &dyn Painter, programs: &Programs, plan: &Plan, shot: &Shot) -> Result<Prepared, Diagnostics> {
+    let (Some(last), Some(mut scene)) = (plan.last(), sets::scene(&plan.scene)) else {
+        return Err(vec![Diagnostic::error(codes::EXECUTOR_FAILED, format!("there is no scene `{}`", plan.scene))]);
+    };
+    let no_lamp = || vec![Diagnostic::error(codes::EXECUTOR_FAILED, "the scene has no lamp")];
+    let key = scene.lamps.first_mut().ok_or_else(no_lamp)?;
+    plan.place(key);
+    let key = *key;
+    let size = (2 * shot.size[0].max(shot.size[1])).next_power_of_two().clamp(MAP_SIZES.0, MAP_SIZES.1);
+    let light = LightView::new(&scene, &key, last, size);
+    let values = Values { plan, scene: &scene, last, light: &light, shot };
+    let studio = Studio { painter, programs, values };
+    let mut left = Left::Nothing;
+    for pass in &plan.passes[..plan.passes.len() - 1] {
+        left = studio.draw(pass, &left)?;
+    }
+    studio.ready(last, &left)
+}
+
+impl Studio<'_> {
+    /// Draws an earlier pass.
+    fn draw(&self, pass: &Pass, left: &Left) -> Result<Left, Diagnostics> {
+        let prepared = self.ready(pass, left)?;
+        let light = self.values.light;
+        let views: Vec<Buffers> = match prepared.camera {
+            Some(_) => light.clip_from_world.iter().map(|matrix| prepared.view(&self.light_camera(*matrix))).collect(),
+            None => vec![Buffers::new()],
+        };
+        let side = if pass.program == "depth" { light.size } else { (light.size / 2).max(1) };
+        let size = [side; 2];
+        if prepared.stages.fragment.is_none() {
+            let frames = prepared.draw(self.painter, &views, size, None)?;
+            return Ok(Left::Depth(frames.into_iter().map(|frame| frame.depth).collect(), side));
+        }
+        let frames = prepared.draw_colors(self.painter, &views, size)?;
+        let cleared = self.values.cleared_moments();
+        let frame = frames.into_iter().next().ok_or_else(|| vec![no_frame()])?;
+        let texels = frame.targets.iter().flatten().copied().collect::<Vec<u32>>();
+        let texels = texels.chunks(4).flat_map(|pixel| colour(pixel).unwrap_or(cleared)).collect();
+        Ok(Left::Color(Texture { kind: TextureKind::Color2d, width: side, height: side, texels }))
+    }
+
+    fn light_camera(&self, clip_from_world: DMat4) -> Camera {
+        Camera { clip_from_world, world_from_view: DMat4::IDENTITY }
+    }
+
+    /// A pass with its uniforms, textures and meshes.
+    fn ready(&self, pass: &Pass, left: &Left) -> Result<Prepared, Diagnostics> {
+        let unknown = || vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, format!("there is no program `{}`", pass.program))];
+        let program = self.programs.manifest().program(&pass.program).ok_or_else(unknown)?;
+        let stages = self.programs.stages(program, &pass.settings, self.values.shot.language)?;
+        let bindings = bindings(&stages);
+        let camera = bindings.iter().find(|binding| binding.name == "camera").cloned();
+        let (mut buffers, mut fixtures, mut levels) = (Buffers::new(), BTreeMap::new(), BTreeMap::new());
+        let mut library = Library::new(&self.values, left);
+        for binding in bindings.iter().filter(|binding| !is_own(&binding.name)) {
+            let place = (binding.group, binding.binding);
+            match binding.kind {
+                Kind::Uniform => drop(buffers.insert(place, pack(binding, &|path| self.values.number(path)))),
+                Kind::Sampler | Kind::ComparisonSampler => drop(fixtures.insert(place, Arc::new(sampler(binding)))),
+                _ => {
+                    let mut chain = library.texture(&binding.name)?;
+                    fixtures.insert(place, Arc::new(Fixture::Texture(chain.remove(0))));
+                    if !chain.is_empty() {
+                        levels.insert(place, chain);
+                    }
+                }
+            }
+        }
+        let plain = PLAIN.iter().filter_map(|name| bindings.iter().find(|binding| binding.name == *name));
+        let plain = plain.map(|binding| (binding.group, binding.binding)).collect();
+        let items = self.items(pass, &stages, &bindings);
+        let eye = self.eye();
+        let background = Background::new(&self.values, eye);
+        let state = self.state(pass, camera.is_some());
+        Ok(Prepared { stages, items, buffers, fixtures, levels, state, plain, camera, eye, background })
+    }
+
+    fn eye(&self) -> Camera {
+        let eye = &self.values.scene.eye;
+        let [width, height] = self.values.shot.size;
+        let aspect = f64::from(width) / f64::from(height.max(1));
+        // What a square shows stays in a picture that is higher than wide.
+        let fov = if aspect < 1.0 { 2.0 * ((0.5 * eye.fov_y).tan() / aspect).atan() } else { eye.fov_y };
+        let view = eye.view();
+        let projection = perspective(fov, aspect, eye.near, eye.far, Clip::Wgpu, Depth::Normal);
+        Camera { clip_from_world: projection * view, world_from_view: view.inverse() }
+    }
+
+    fn state(&self, pass: &Pass, has_camera: bool) -> State {
+        let of_light = !std::ptr::eq(pass, self.values.last) && has_camera;
+        if !of_light {
+            return State { depth_test: has_camera, ..State::default() };
+        }
+        let is_map = pass.program == "depth";
+        State {
+            depth_test: true,
+            keep_depth: is_map,
+            cull: self.values.culls_front().then_some(Side::Front),
+            mirrored: self.values.light.is_cube(),
+            offset: if is_map { self.values.offset() } else { [0.0; 2] },
+        }
+    }
+
+    /// A mesh for each object with the blocks of its own; one triangle where the stage has no
+    /// attributes.
+    fn items(&self, pass: &Pass, stages: &Stages, bindings: &[Binding]) -> Vec<(Mesh, Buffers)> {
+        let vertex = &stages.vertex.reflection;
+        if attributes(vertex).is_empty() {
+            return vec![(Mesh::default(), Buffers::new())];
+        }
+        let own: Vec<&Binding> = bindings.iter().filter(|binding| matches!(binding.name.as_str(), "object" | "materials")).collect();
+        let faceted = pass.is("frequency", "flat");
+        let item = |object| {
+            let buffer = |binding: &&Binding| ((binding.group, binding.binding), pack(binding, &|path| self.values.object(object, path)));
+            (mesh::mesh(object, vertex, faceted), own.iter().map(buffer).collect())
+        };
+        self.values.scene.objects.iter().map(item).collect()
+    }
+}
+
+/// Blocks of `forward` that decide about colours alone.
+const PLAIN: &[&str] = &["materials", "haze", "surroundings"];
+
+/// Blocks that each view or each object fills.
+fn is_own(name: &str) -> bool {
+    matches!(name, "camera" | "object" | "materials")
+}
+
+/// The bindings of both stages, each once, with the members that either knows.
+fn bindings(stages: &Stages) -> Vec<Binding> {
+    let of = |stage: &Composed| stage.reflection.bindings.clone();
+    let all = of(&stages.vertex).into_iter().chain(stages.fragment.iter().flat_map(of));
+    let by_place: BTreeMap<_, _> = all.map(|binding| ((binding.group, binding.binding), binding)).collect();
+    by_place.into_values().collect()
+}
+
+impl Prepared {
+    /// The buffers of a view.
+    fn view(&self, camera: &Camera) -> Buffers {
+        let matrices = |path: &str| match path.ends_with("clip_from_world") {
+            true => camera.clip_from_world.to_cols_array().to_vec(),
+            false => camera.world_from_view.to_cols_array().to_vec(),
+        };
+        self.camera.iter().map(|binding| ((binding.group, binding.binding), pack(binding, &matrices))).collect()
+    }
+
+    /// The buffers of the viewer, moved by parts of a pixel.
+    pub fn eye_view(&self, shift: [f64; 2], size: [u32; 2]) -> Buffers {
+        let [x, y] = [0, 1].map(|axis| 2.0 * shift[axis] / f64::from(size[axis].max(1)));
+        let moved = DMat4::from_translation(DVec3::new(x, y, 0.0)) * self.eye.clip_from_world;
+        self.view(&Camera { clip_from_world: moved, ..self.eye })
+    }
+
+    /// Draws a frame for each view with the stages as they are, or with another fragment stage of
+    /// so many targets.
+    ///
+    /// # Errors
+    /// The painter's.
+    pub fn draw(
+        &self,
+        painter: &dyn Painter,
+        views: &[Buffers],
+        size: [u32; 2],
+        fragment: Option<(Stage<'_>, u32)>,
+    ) -> Result<Vec<Frame>, Diagnostics> {
+        let items: Vec<Item<'_>> = self.items.iter().map(|(mesh, buffers)| Item { mesh, buffers }).collect();
+        let vertex = Stage { module: &self.stages.vertex.validated.module, entry: self.stages.vertex.entry };
+        let drawing = Drawing {
+            vertex,
+            fragment: fragment.map(|(stage, _)| stage),
+            targets: fragment.map_or(0, |(_, targets)| targets),
+            items: &items,
+            views,
+            buffers: &self.buffers,
+            plain: &self.plain,
+            fixtures: &self.fixtures,
+            levels: &self.levels,
+            size,
+            state: self.state,
+        };
+        painter.draw(&drawing).map_err(|problem| vec![problem])
+    }
+
+    /// Draws the bits of the colours.
+    fn draw_colors(&self, painter: &dyn Painter, views: &[Buffers], size: [u32; 2]) -> Result<Vec<Frame>, Diagnostics> {
+        let stage = self.stages.fragment.as_ref().ok_or_else(|| vec![no_frame()])?;
+        let module = probe::bits(&stage.validated.module, stage.entry).ok_or_else(|| vec![no_frame()])?;
+        self.draw(painter, views, size, Some((Stage { module: &module, entry: stage.entry }, 1)))
+    }
+
+    /// The picture's linear colours, averaged over the samples of each pixel.
+    ///
+    /// # Errors
+    /// The painter's.
+    pub fn photograph(&self, painter: &dyn Painter, shot: &Shot) -> Result<Linear, Diagnostics> {
+        let shifts: Vec<[f64; 2]> = (0..shot.samples.max(1)).map(|index| shift(index, shot.samples)).collect();
+        let views: Vec<Buffers> = shifts.iter().map(|shift| self.eye_view(*shift, shot.size)).collect();
+        let mut picture = Linear::new(shot.size);
+        let views = if self.camera.is_some() { &views[..] } else { &views[..1] };
+        let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize;
+        let at_once = (AT_ONCE / bytes.max(1)).max(1);
+        for (views, shifts) in views.chunks(at_once).zip(shifts.chunks(at_once)) {
+            for (frame, shift) in self.draw_colors(painter, views, shot.size)?.iter().zip(shifts) {
+                let target = frame.targets.first().map_or(&[][..], Vec::as_slice);
+                picture.add(target.chunks(4).map(colour), *shift, &self.background, shot.exposure);
+            }
+        }
+        Ok(picture)
+    }
+}
+
+/// Bytes of the frames that are drawn at once.
+const AT_ONCE: usize = 64 << 20;
+
+/// Where in the pixel a sample is taken, from its middle: Halton's points, the middle alone for one.
+fn shift(index: u32, samples: u32) -> [f64; 2] {
+    let radical = |base: u32| {
+        let (mut rest, mut place, mut value) = (index + 1, 1.0, 0.0);
+        while rest > 0 {
+            place /= f64::from(base);
+            value += place * f64::from(rest % base);
+            rest /= base;
+        }
+        value - 0.5
+    };
+    if samples <= 1 { [0.0; 2] } else { [radical(2), radical(3)] }
+}
+
+/// The colour of a pixel; `None` where nothing was drawn.
+fn colour(pixel: &[u32]) -> Option<[f32; 4]> {
+    let words: [u32; 4] = pixel.try_into().ok()?;
+    (words != [SENTINEL; 4]).then(|| words.map(f32::from_bits))
+}
+
+fn no_frame() -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, "the pass gives no colour")
+}

@@ -1,0 +1,85 @@
+//! Environments with a high dynamic range: given by formulas, or read from Radiance files.
+
+use glam::DVec3;
+use image::ImageDecoder as _;
+use image::codecs::hdr::HdrDecoder;
+
+use super::sky::Equirect;
+
+/// Radiance by unit direction.
+pub type Environment = fn(DVec3) -> DVec3;
+
+/// Environments by formula: name, what it is, radiance.
+pub const ENVIRONMENTS: &[(&str, &str, Environment)] = &[
+    ("studio", "a grey room with a large soft box, a strip light and a warm lamp", studio),
+    ("daylight", "a blue sky with a sun over brown earth", daylight),
+    ("constant", "radiance 1 from everywhere", constant),
+];
+
+/// The environment of that name.
+pub fn environment(name: &str) -> Option<Environment> {
+    ENVIRONMENTS.iter().find(|(known, _, _)| *known == name).map(|(_, _, environment)| *environment)
+}
+
+fn constant(_: DVec3) -> DVec3 {
+    DVec3::ONE
+}
+
+fn studio(d: DVec3) -> DVec3 {
+    let wall = DVec3::new(0.16, 0.17, 0.2).lerp(DVec3::new(0.42, 0.44, 0.48), smoothstep(-0.6, 0.9, d.y));
+    let floor = DVec3::new(0.11, 0.1, 0.09);
+    let room = floor.lerp(wall, smoothstep(-0.25, -0.05, d.y));
+    room + softbox(d, DVec3::new(-0.6, 0.65, 0.45), (0.45, 0.35)) * DVec3::new(5.5, 5.4, 5.2)
+        + softbox(d, DVec3::new(0.95, 0.25, -0.1), (0.1, 0.6)) * DVec3::new(2.2, 2.6, 3.4)
+        + softbox(d, DVec3::new(0.5, 0.1, -0.9), (0.07, 0.07)) * DVec3::new(4.2, 2.4, 1.1)
+}
+
+/// 1 inside of a rectangle as seen from the origin, 0 outside, with a soft rim.
+fn softbox(d: DVec3, towards: DVec3, half: (f64, f64)) -> f64 {
+    let forward = towards.normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let depth = d.dot(forward);
+    if depth <= 0.0 {
+        return 0.0;
+    }
+    let inside = |place: f64, half: f64| 1.0 - smoothstep(half, 1.25 * half, (place / depth).abs());
+    inside(d.dot(right), half.0) * inside(d.dot(right.cross(forward)), half.1)
+}
+
+fn daylight(d: DVec3) -> DVec3 {
+    let sun = DVec3::new(-0.45, 0.6, 0.5).normalize();
+    let zenith = DVec3::new(0.18, 0.36, 0.8);
+    let horizon = DVec3::new(0.75, 0.82, 0.9);
+    let sky = horizon.lerp(zenith, d.y.max(0.0).powf(0.5));
+    let earth = DVec3::new(0.26, 0.2, 0.14);
+    let glow = d.dot(sun).max(0.0);
+    let shine = DVec3::new(1.0, 0.9, 0.7) * (18.0 * glow.powf(600.0) + 0.35 * glow.powf(8.0));
+    earth.lerp(sky + shine, smoothstep(-0.06, 0.02, d.y))
+}
+
+fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Widest and highest image that is read: 8 K once around.
+const LARGEST: u32 = 8192;
+
+impl Equirect {
+    /// The image of a Radiance file (`.hdr`).
+    ///
+    /// # Errors
+    /// In words: bytes that are no such file, or one that is too large.
+    pub fn from_radiance(bytes: &[u8]) -> Result<Self, String> {
+        let decoder = HdrDecoder::new(std::io::Cursor::new(bytes)).map_err(|error| error.to_string())?;
+        let (width, height) = decoder.dimensions();
+        if width > LARGEST || height > LARGEST {
+            return Err(format!("{width} x {height} pixels are more than {LARGEST} x {LARGEST}"));
+        }
+        let mut read = vec![0; usize::try_from(decoder.total_bytes()).map_err(|error| error.to_string())?];
+        decoder.read_image(&mut read).map_err(|error| error.to_string())?;
+        let numbers: Vec<f64> = read.as_chunks::<4>().0.iter().map(|bytes| f64::from(f32::from_ne_bytes(*bytes))).collect();
+        let pixels = numbers.as_chunks::<3>().0.iter().map(|rgb| DVec3::from_array(*rgb)).collect();
+        Self::new(width as usize, height as usize, pixels).ok_or_else(|| "the image is empty".to_owned())
+    }
+}

@@ -1,0 +1,98 @@
+//! Textures by formulas.
+
+use glam::{DVec2, DVec3, DVec4};
+
+/// Texels, row by row, linear.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map {
+    pub width: usize,
+    pub height: usize,
+    pub texels: Vec<DVec4>,
+}
+
+/// What the axes `base_map`, `normal_map` and `lightmap` read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Maps {
+    pub base: Map,
+    /// Normals in tangent space, from -1 to 1 written as 0 to 1.
+    pub normal: Map,
+    pub light: Map,
+}
+
+impl Map {
+    /// A square of `side` texels, each from its middle in [0, 1].
+    pub fn of(side: usize, at: impl Fn(DVec2) -> DVec4) -> Self {
+        let place = |index: usize| (DVec2::new((index % side) as f64, (index / side) as f64) + 0.5) / side as f64;
+        Self { width: side, height: side, texels: (0..side * side).map(|index| at(place(index))).collect() }
+    }
+
+    /// The map at half the size, each texel the mean of four; `None` for a single texel.
+    pub fn half(&self) -> Option<Self> {
+        if self.width.max(self.height) <= 1 {
+            return None;
+        }
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let texel = |x: usize, y: usize| self.texels[y.min(self.height - 1) * self.width + x.min(self.width - 1)];
+        let mean = |index: usize| {
+            let (x, y) = (2 * (index % width), 2 * (index / width));
+            (texel(x, y) + texel(x + 1, y) + texel(x, y + 1) + texel(x + 1, y + 1)) * 0.25
+        };
+        Some(Self { width, height, texels: (0..width * height).map(mean).collect() })
+    }
+
+    /// The map and all its smaller levels.
+    pub fn levels(self) -> Vec<Self> {
+        std::iter::successors(Some(self), Self::half).collect()
+    }
+}
+
+/// Bricks in a bond; the baked light is a soft spot.
+pub fn bricks() -> Maps {
+    Maps {
+        base: Map::of(256, |at| {
+            let brick = Brick::at(at);
+            let clay = DVec3::new(0.86, 0.8, 0.76) * (0.8 + 0.35 * brick.tone) * (0.92 + 0.08 * grain(at));
+            DVec3::new(0.55, 0.54, 0.52).lerp(clay, brick.height).extend(1.0)
+        }),
+        normal: Map::of(256, |at| {
+            let step = 1.0 / 512.0;
+            let slope = |axis: DVec2| (Brick::at(at + axis * step).height - Brick::at(at - axis * step).height) / (2.0 * step);
+            let normal = DVec3::new(-0.02 * slope(DVec2::X), -0.02 * slope(DVec2::Y), 1.0).normalize();
+            (normal * 0.5 + 0.5).extend(1.0)
+        }),
+        light: Map::of(32, |at| {
+            let glow = (-(at - 0.5).length_squared() * 6.0).exp();
+            (DVec3::new(1.0, 0.92, 0.8) * (0.1 + 0.9 * glow)).extend(1.0)
+        }),
+    }
+}
+
+/// Where a place of the wall is on its brick.
+struct Brick {
+    /// 0 in the joint, 1 on the brick.
+    height: f64,
+    /// Differs from brick to brick, [0, 1).
+    tone: f64,
+}
+
+impl Brick {
+    fn at(place: DVec2) -> Self {
+        const ROWS: f64 = 6.0;
+        const COLUMNS: f64 = 3.0;
+        let wrapped = place.rem_euclid(DVec2::ONE);
+        let row = (wrapped.y * ROWS).floor();
+        let along = wrapped.x * COLUMNS + if row % 2.0 == 0.0 { 0.0 } else { 0.5 };
+        let column = along.floor().rem_euclid(COLUMNS);
+        // Distance from the joint, in the height of a brick.
+        let x = 0.5 - (along.rem_euclid(1.0) - 0.5).abs();
+        let y = 0.5 - ((wrapped.y * ROWS).rem_euclid(1.0) - 0.5).abs();
+        let distance = (x * ROWS / COLUMNS).min(y);
+        Self { height: ((distance - 0.04) / 0.06).clamp(0.0, 1.0), tone: (0.618 * (7.0 * row + 3.0 * column)).fract() }
+    }
+}
+
+/// Fine noise that repeats with the texture, [-1, 1].
+fn grain(at: DVec2) -> f64 {
+    let turn = at * std::f64::consts::TAU;
+    ((23.0 * turn.x).sin() * (31.0 * turn.y).cos() + (47.0 * turn.x + 19.0 * turn.y).sin()) * 0.5
+}

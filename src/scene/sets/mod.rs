@@ -1,0 +1,204 @@
+//! The scenes of the pictures: shapes, lamps, materials and a viewer, all by formulas.
+
+mod casters;
+mod floor;
+mod maps;
+mod palette;
+mod room;
+mod screen;
+mod sheet;
+mod spheres;
+mod terrain;
+mod vessel;
+
+pub use maps::{Map, Maps};
+
+use glam::{DMat4, DVec3};
+
+use super::shape::Shape;
+use super::view::look_at;
+
+/// Everything that is drawn, and what it is seen with.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    pub objects: Vec<Object>,
+    pub eye: Eye,
+    /// Up to ten, the most important one first; the first casts the shadow.
+    pub lamps: Vec<Lamp>,
+    /// Of `material=array`: fourteen fronts with their backs.
+    pub materials: Vec<[Material; 2]>,
+    /// Light from everywhere: of one colour, from above, from below.
+    pub ambient: DVec3,
+    pub sky: DVec3,
+    pub ground: DVec3,
+    /// What distance fades into, and over which distances.
+    pub haze: DVec3,
+    pub haze_range: (f64, f64),
+    pub maps: fn() -> Maps,
+}
+
+/// A shape in its place.
+#[derive(Debug, Clone)]
+pub struct Object {
+    pub shape: Shape,
+    pub world_from_object: DMat4,
+    /// Multiplied with the colours of the corners.
+    pub color: DVec3,
+    /// Of `material=single`.
+    pub material: Material,
+    /// Of `material=array`.
+    pub material_index: u32,
+}
+
+/// The viewer.
+#[derive(Debug, Clone, Copy)]
+pub struct Eye {
+    pub position: DVec3,
+    pub target: DVec3,
+    /// The whole vertical angle, radians.
+    pub fov_y: f64,
+    pub near: f64,
+    pub far: f64,
+}
+
+/// A light that may be of any kind: a directional light shines along its axis, a point light to
+/// all sides, a spot light into its cone.
+#[derive(Debug, Clone, Copy)]
+pub struct Lamp {
+    /// What arrives at the target, whatever the falloff.
+    pub color: DVec3,
+    pub position: DVec3,
+    pub target: DVec3,
+    /// Half the angle of the cone, radians.
+    pub half_angle: f64,
+    /// Of `lights=mixed`.
+    pub kind: LampKind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LampKind {
+    Directional,
+    Point,
+    Spot,
+}
+
+/// What a surface does with light.
+#[derive(Debug, Clone, Copy)]
+pub struct Material {
+    pub emission: DVec3,
+    pub shininess: f64,
+    pub ambient: DVec3,
+    pub roughness: f64,
+    pub diffuse: DVec3,
+    pub wrap: f64,
+    pub specular: DVec3,
+    pub sigma: f64,
+}
+
+impl Default for Material {
+    /// White and a little glossy.
+    fn default() -> Self {
+        Self {
+            emission: DVec3::ZERO,
+            shininess: 40.0,
+            ambient: DVec3::ONE,
+            roughness: 0.45,
+            diffuse: DVec3::ONE,
+            wrap: 0.4,
+            specular: DVec3::splat(0.25),
+            sigma: 0.6,
+        }
+    }
+}
+
+impl Material {
+    /// A highlight of another sharpness, the roughness to match.
+    fn shiny(self, shininess: f64) -> Self {
+        Self { shininess, roughness: (2.0 / (shininess + 2.0)).powf(0.25), ..self }
+    }
+
+    fn glossy(self, share: f64) -> Self {
+        Self { specular: DVec3::splat(share), ..self }
+    }
+}
+
+impl Object {
+    fn new(shape: Shape, place: DMat4, color: DVec3) -> Self {
+        Self { shape, world_from_object: place, color, material: Material::default(), material_index: 0 }
+    }
+
+    fn of(self, material: Material, material_index: u32) -> Self {
+        Self { material, material_index, ..self }
+    }
+}
+
+impl Lamp {
+    /// Direction in which the light shines, of unit length.
+    pub fn axis(&self) -> DVec3 {
+        (self.target - self.position).normalize_or(DVec3::NEG_Y)
+    }
+
+    /// Distance of the target.
+    pub fn reach(&self) -> f64 {
+        self.position.distance(self.target)
+    }
+}
+
+impl Eye {
+    /// World to view space.
+    pub fn view(&self) -> DMat4 {
+        look_at(self.position, self.target, DVec3::Y)
+    }
+}
+
+impl Scene {
+    /// Every corner of every object, in world space.
+    pub fn points(&self) -> Vec<DVec3> {
+        let of = |object: &Object| {
+            let matrix = object.world_from_object;
+            object.shape.vertices.iter().map(move |vertex| matrix.transform_point3(vertex.position)).collect::<Vec<_>>()
+        };
+        self.objects.iter().flat_map(of).collect()
+    }
+}
+
+/// A scene's name, what it is, and how it is made.
+pub type Set = (&'static str, &'static str, fn() -> Scene);
+
+/// All scenes.
+pub const SETS: &[Set] = &[
+    ("spheres", "a row of spheres of rising shininess before the viewer", spheres::scene),
+    ("floor", "a tessellated floor with a light above it", floor::scene),
+    ("casters", "a sphere, a box and a torus over a floor that their shadows fall on", casters::scene),
+    ("sheet", "an open, curled sheet: both of its sides are visible", sheet::scene),
+    ("room", "a box seen from inside, with textures and a baked lightmap", room::scene),
+    ("screen", "one triangle that covers the picture, before it the casters as the light sees them", screen::scene),
+    ("terrain", "a field of heights under a low sun", terrain::scene),
+    ("vessel", "a turned pot with a spout and a handle, on a table", vessel::scene),
+];
+
+/// The scene of that name.
+pub fn scene(name: &str) -> Option<Scene> {
+    SETS.iter().find(|(known, _, _)| *known == name).map(|(_, _, scene)| scene())
+}
+
+/// A place, turned about y by an angle in radians.
+fn placed(x: f64, y: f64, z: f64, turn: f64) -> DMat4 {
+    DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_rotation_y(turn)
+}
+
+/// What most scenes share: the materials, light from everywhere, haze and textures.
+fn base(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
+    Scene {
+        objects,
+        eye,
+        lamps,
+        materials: palette::materials(),
+        ambient: DVec3::new(0.05, 0.055, 0.07),
+        sky: DVec3::new(0.55, 0.68, 0.9),
+        ground: DVec3::new(0.2, 0.15, 0.1),
+        haze: DVec3::new(0.42, 0.48, 0.56),
+        haze_range: (2.0, 16.0),
+        maps: maps::bricks,
+    }
+}

@@ -1,0 +1,13 @@
+//! The casters as a near light sees them: what a picture of the depth map shows.
+
+use glam::DVec3;
+
+use super::{Lamp, Scene, casters};
+
+pub fn scene() -> Scene {
+    let mut scene = casters::scene();
+    if let Some(key) = scene.lamps.first_mut() {
+        *key = Lamp { position: DVec3::new(-2.2, 5.4, 5.6), half_angle: 0.44, ..*key };
+    }
+    scene
+}

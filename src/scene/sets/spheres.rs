@@ -1,0 +1,30 @@
+//! A row of spheres of rising shininess.
+
+use glam::DVec3;
+
+use super::palette::{self, AMBER, CORAL, INDIGO, LEAF, TEAL};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, base, placed};
+use crate::scene::shape::Shape;
+
+const COLORS: [DVec3; 5] = [CORAL, AMBER, LEAF, TEAL, INDIGO];
+
+pub fn scene() -> Scene {
+    let ball = Shape::sphere(0.95, (48, 24));
+    let object = |(index, color): (usize, &DVec3)| {
+        // Away from the viewer and upwards, from the left to the right.
+        let step = index as f64 - 2.0;
+        let place = placed(1.5 * step, 0.62 * step, -1.1 * step, 0.0);
+        let material = Material::default().glossy(0.55).shiny(16.0 * 2.2_f64.powi(index as i32));
+        Object::new(ball.clone(), place, *color).of(material, index as u32)
+    };
+    let objects = COLORS.iter().enumerate().map(object).collect();
+    let eye = Eye { position: DVec3::new(-0.6, 0.6, 12.4), target: DVec3::new(-0.5, -0.1, 0.0), fov_y: 0.63, near: 0.5, far: 40.0 };
+    let key = Lamp {
+        color: DVec3::splat(0.95),
+        position: DVec3::new(-3.5, 5.5, 6.5),
+        target: DVec3::ZERO,
+        half_angle: 0.5,
+        kind: LampKind::Directional,
+    };
+    base(objects, eye, palette::lamps(key, 5.0, 4.0, 0.22))
+}

@@ -1,0 +1,162 @@
+//! Pictures: every preset on each driver against the reviewed picture and against the evaluator,
+//! and whole frames against closed forms.
+
+mod closed_forms;
+mod command;
+mod difference;
+mod frames;
+mod pages;
+mod shadows;
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use lamplight::catalogue::preset::{self, Preset};
+use lamplight::catalogue::probe::{self, Probe};
+use lamplight::compose::Language;
+use lamplight::diagnostic::Diagnostics;
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::harness::frame::{Buffers, Painter, Programs, Stage, probe as watch};
+use lamplight::harness::on_thread;
+use lamplight::harness::render::{Picture, Plan, Prepared, Shot, Surroundings, open, prepare};
+use lamplight::scene::environment;
+use libtest_mimic::{Failed, Trial};
+
+use crate::fragments::{self, Tally, Watched};
+
+/// Each driver draws in a language of its own, so that both are seen.
+const BACKENDS: [(&str, Language); 2] = [("vulkan", Language::Wesl), ("gl", Language::Glsl)];
+/// The reviewed pictures, drawn by `lamplight render --all --size 192x192`.
+const GALLERY: &str = "docs/gallery";
+const SIZE: [u32; 2] = [192, 192];
+const SAMPLES: u32 = 4;
+/// Of the frames whose fragments are computed again.
+const SMALL: [u32; 2] = [96, 96];
+/// About so many quads of each are taken; at least so many fragments there must be, and the
+/// largest share of those that stay open.
+const QUADS: usize = 40;
+const LEAST: usize = 120;
+const OPEN: f64 = 0.05;
+
+pub fn trials() -> Vec<Trial> {
+    let library = library();
+    let on_each = |preset: &'static Preset| {
+        BACKENDS.map(|(backend, language)| {
+            Trial::test(format!("render/{}/{backend}", preset.name), move || {
+                on_device(backend, |painter| shown(painter, preset, language, backend))
+            })
+        })
+    };
+    let presets = library.presets.iter().flat_map(on_each);
+    let forms = closed_forms::FORMS.iter().chain(shadows::FORMS);
+    let forms = forms.flat_map(|(name, form)| {
+        BACKENDS.map(|(backend, language)| {
+            Trial::test(format!("render/{name}/{backend}"), move || {
+                on_device(backend, |painter| form(&frames::Bench { painter, language }))
+            })
+        })
+    });
+    presets.chain(forms).chain(pages::trials()).chain(command::trials()).collect()
+}
+
+/// The library's programs and presets, read once.
+pub struct Library {
+    pub programs: Programs,
+    pub presets: Vec<Preset>,
+    pub probes: Vec<Probe>,
+}
+
+pub fn library() -> &'static Library {
+    static LIBRARY: OnceLock<Library> = OnceLock::new();
+    LIBRARY.get_or_init(|| {
+        let programs = Programs::load().map_err(|(texts, problems)| render(&texts, &problems, Form::Human)).unwrap();
+        let probes = programs.with_texts(probe::library).unwrap();
+        let presets = programs.with_texts(|texts| preset::library(texts, programs.manifest(), &probes)).unwrap();
+        Library { programs, presets, probes }
+    })
+}
+
+/// Runs a trial with a painter, on a thread that drivers can be torn down on.
+pub fn on_device(name: &str, run: impl FnOnce(&dyn Painter) -> Result<(), String> + Send) -> Result<(), Failed> {
+    let outcome = on_thread(|| run(open(name)?.as_ref()));
+    outcome.ok_or("panicked")?.map_err(Failed::from)
+}
+
+pub fn shot(size: [u32; 2], samples: u32, language: Language) -> Shot {
+    Shot { size, samples, exposure: 0.0, language, surroundings: Surroundings::Formula(environment("studio").unwrap()) }
+}
+
+pub fn said(problems: Diagnostics) -> String {
+    render(&library().programs.texts(), &problems, Form::Short)
+}
+
+pub fn plan(preset: &Preset) -> Result<Plan, String> {
+    Plan::of_preset(&library().programs, preset, &library().probes).map_err(said)
+}
+
+/// A preset looks as it did when it was reviewed, and its fragments are what the evaluator computes.
+fn shown(painter: &dyn Painter, preset: &Preset, language: Language, backend: &str) -> Result<(), String> {
+    let plan = plan(preset)?;
+    let shot = shot(SIZE, SAMPLES, language);
+    let picture = lamplight::harness::render::render(painter, &library().programs, &plan, &shot).map_err(said)?;
+    difference::reviewed(&picture, &preset.name, backend)?;
+    let tally = recomputed(painter, &plan, language)?;
+    println!("{} on {backend}: {tally}", preset.name);
+    Ok(())
+}
+
+/// Sampled fragments of those objects that share a material with the first.
+fn recomputed(painter: &dyn Painter, plan: &Plan, language: Language) -> Result<Tally, String> {
+    let small = shot(SMALL, 1, language);
+    let mut prepared = prepare(painter, &library().programs, plan, &small).map_err(said)?;
+    // How far between two levels a texture is read, drivers decide as they like.
+    prepared.levels.clear();
+    let own = fragment_buffers(&prepared);
+    let first = own.first().cloned().unwrap_or_default();
+    let mut same = own.iter().map(|buffers| *buffers == first);
+    prepared.items.retain(|_| same.next().unwrap_or(false));
+    let frame = watched(painter, &prepared, SMALL)?;
+    let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
+    let mut buffers = prepared.buffers.clone();
+    buffers.extend(prepared.eye_view([0.0; 2], SMALL));
+    buffers.extend(first);
+    let resources = fragments::resources(buffers, &prepared.fixtures, &prepared.levels);
+    let mut tally = Tally::default();
+    let watched = Watched { size: SMALL, targets: &frame };
+    let step = watched.whole_quads().div_ceil(QUADS).max(1);
+    fragments::recompute(stage, resources, &watched, step, &mut tally)?;
+    match tally {
+        Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
+        Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => Err(format!("{open} of {tried} fragments are open")),
+        tally => Ok(tally),
+    }
+}
+
+/// What the fragment stage reads of each object.
+fn fragment_buffers(prepared: &Prepared) -> Vec<Buffers> {
+    let bindings = prepared.stages.fragment.iter().flat_map(|stage| &stage.reflection.bindings);
+    let used: Vec<_> = bindings.map(|binding| (binding.group, binding.binding)).collect();
+    let of = |buffers: &Buffers| buffers.iter().filter(|(place, _)| used.contains(place)).map(|(p, b)| (*p, b.clone())).collect();
+    prepared.items.iter().map(|(_, buffers)| of(buffers)).collect()
+}
+
+/// The targets of one frame: colours, and what each fragment was given.
+pub fn watched(painter: &dyn Painter, prepared: &Prepared, size: [u32; 2]) -> Result<Vec<Vec<u32>>, String> {
+    let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
+    let watched = watch::watched(&stage.validated.module, stage.entry).ok_or("no colour")?;
+    let views = [prepared.eye_view([0.0; 2], size)];
+    let fragment = Stage { module: &watched.module, entry: stage.entry };
+    let frames = prepared.draw(painter, &views, size, Some((fragment, watched.targets))).map_err(said)?;
+    Ok(frames.into_iter().next().ok_or("no frame")?.targets)
+}
+
+/// The reviewed picture of a preset.
+pub fn reviewed_path(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(GALLERY).join(format!("{name}.png"))
+}
+
+/// Reads a picture.
+pub fn read(path: &std::path::Path) -> Result<Picture, String> {
+    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Picture::from_png(&bytes).map_err(|error| format!("{}: {error}", path.display()))
+}

@@ -1,0 +1,130 @@
+//! Light without shadows, against its formulas.
+
+use glam::DVec3;
+use lamplight::scene::irradiance_sh9;
+
+use super::frames::{Bench, Fragment, close};
+use super::{library, plan};
+
+/// What is asked of the frames of one painter.
+pub type Form = fn(&Bench<'_>) -> Result<(), String>;
+
+pub const FORMS: &[(&str, Form)] = &[("spot_edge", spot_edge), ("attenuation", attenuation), ("hemisphere", hemisphere), ("sh9", sh9)];
+
+/// Pixels across and down.
+const SIZE: u32 = 128;
+
+/// A cone of a hard edge straight down: a disk on the floor, as wide as its angle says.
+fn spot_edge(bench: &Bench<'_>) -> Result<(), String> {
+    let (height, angle) = (4.0, 0.5_f64);
+    let light = DVec3::new(0.3, height, 0.2);
+    let numbers: super::frames::Numbers<'_> = &[
+        ("light", "position", &light.to_array()),
+        ("light", "axis", &[0.0, -1.0, 0.0]),
+        ("light", "cutoff", &[angle.cos()]),
+        ("light", "color", &[1.0; 3]),
+    ];
+    let plan = bench.plan("ambient=none,attenuation=none,cone=hard,lights=spot,max_lights=1,specular=none", "floor", numbers)?;
+    let fragments = bench.fragments(&plan, SIZE)?;
+    let (mut lit, mut widest) = (0, 0.0_f64);
+    for fragment in &fragments {
+        let cosine = (light - fragment.position).normalize().y;
+        if (cosine - angle.cos()).abs() < 1e-5 {
+            continue;
+        }
+        let inside = cosine > angle.cos();
+        close("light", fragment.light(), if inside { cosine } else { 0.0 }, 1e-4)?;
+        if inside {
+            lit += 1;
+            widest = widest.max((fragment.position - light).with_y(0.0).length());
+        }
+    }
+    // A pixel is a tenth of a unit wide.
+    let radius = height * angle.tan();
+    if lit < 1000 || fragments.len() - lit < 1000 || widest > radius || widest < radius - 0.1 {
+        return Err(format!("{lit} of {} fragments in a disk of radius {widest}, which should be {radius}", fragments.len()));
+    }
+    Ok(())
+}
+
+/// Each falloff over the whole floor, and falling along a line.
+fn attenuation(bench: &Bench<'_>) -> Result<(), String> {
+    type Falloff = fn(f64) -> f64;
+    const RANGE: f64 = 9.0;
+    const FALLOFFS: [(&str, Falloff); 4] = [
+        ("none", |_| 1.0),
+        ("polynomial", |d| 1.0 / (1.0 + 0.3 * d + 0.1 * d * d)),
+        ("linear_radius", |d| 1.0 - (d / RANGE).min(1.0)),
+        ("inverse_square_window", |d| (1.0 - (d / RANGE).powi(4)).max(0.0).powi(2) / (d * d)),
+    ];
+    let light = DVec3::new(0.0, 1.5, 0.0);
+    for (name, falloff) in FALLOFFS {
+        let key = format!("ambient=none,attenuation={name},lights=point,max_lights=1,specular=none");
+        let numbers: super::frames::Numbers<'_> = &[
+            ("light", "position", &light.to_array()),
+            ("light", "attenuation", &[1.0, 0.3, 0.1]),
+            ("light", "range", &[RANGE]),
+            ("light", "color", &[1.0; 3]),
+        ];
+        let fragments = bench.fragments(&bench.plan(&key, "floor", numbers)?, SIZE)?;
+        for fragment in &fragments {
+            let offset = light - fragment.position;
+            close(name, fragment.light(), falloff(offset.length()) * offset.normalize().y, 1e-4)?;
+        }
+        let mut line: Vec<&Fragment> = fragments.iter().filter(|f| f.position.z.abs() < 0.1 && f.position.x > 0.0).collect();
+        line.sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
+        let falls = line.windows(2).all(|pair| pair[1].light() <= pair[0].light() + 2e-3);
+        if line.len() < 20 || !falls {
+            return Err(format!("{name} does not fall along a line of {} fragments", line.len()));
+        }
+    }
+    Ok(())
+}
+
+/// The share of the sky by the normal: .95 at 26 degrees from the pole, one half at the horizon, one quarter below it.
+fn hemisphere(bench: &Bench<'_>) -> Result<(), String> {
+    let (sky, ground) = (DVec3::new(0.2, 0.5, 1.0), DVec3::new(0.4, 0.3, 0.1));
+    let numbers: super::frames::Numbers<'_> = &[("surroundings", "sky", &sky.to_array()), ("surroundings", "ground", &ground.to_array())];
+    let fragments = bench.fragments(&bench.plan("ambient=hemisphere,lights=none", "spheres", numbers)?, SIZE)?;
+    for fragment in &fragments {
+        let wanted = fragment.base * ground.lerp(sky, 0.5 + 0.5 * fragment.normal.y);
+        close("light", fragment.colour.distance(wanted), 0.0, 1e-4)?;
+    }
+    for (height, share) in [(0.9, 0.95), (0.0, 0.5), (-0.5, 0.25)] {
+        let nearest = fragments.iter().min_by(|a, b| (a.normal.y - height).abs().total_cmp(&(b.normal.y - height).abs()));
+        let found = nearest.ok_or("nothing was drawn")?;
+        let weight = (found.colour / found.base - ground).dot(sky - ground) / (sky - ground).length_squared();
+        close(&format!("the sky's share where the normal is {height} high"), weight, share, 0.01)?;
+    }
+    Ok(())
+}
+
+/// The book's example: irradiance by the normal, and the values of its six axes.
+fn sh9(bench: &Bench<'_>) -> Result<(), String> {
+    const AXES: [(DVec3, DVec3); 5] = [
+        (DVec3::X, DVec3::new(0.705119, 0.669402, 0.628144)),
+        (DVec3::NEG_X, DVec3::new(0.714593, 0.729672, 0.726441)),
+        (DVec3::Y, DVec3::new(1.027822, 1.115161, 1.185534)),
+        (DVec3::NEG_Y, DVec3::new(0.669539, 0.613045, 0.545154)),
+        (DVec3::Z, DVec3::new(0.793449, 0.800246, 0.793947)),
+    ];
+    let preset = library().presets.iter().find(|preset| preset.name == "oglpg_7_14").ok_or("no preset")?;
+    let plan = plan(preset)?;
+    let coefficients = plan.probe.ok_or("no light probe")?.map(DVec3::from_array);
+    let fragments = bench.fragments(&plan, SIZE)?;
+    for fragment in &fragments {
+        let wanted = fragment.base * irradiance_sh9(fragment.normal, &coefficients);
+        close("light", fragment.colour.distance(wanted), 0.0, 1e-3)?;
+    }
+    for (axis, wanted) in AXES {
+        let nearest = fragments.iter().max_by(|a, b| a.normal.dot(axis).total_cmp(&b.normal.dot(axis)));
+        let found = nearest.ok_or("nothing was drawn")?;
+        // As much as the light changes over the angle that is missing.
+        let missing = found.normal.dot(axis).clamp(-1.0, 1.0).acos();
+        close(&format!("{axis}"), (found.colour / found.base).distance(wanted), 0.0, 1e-3 + missing)?;
+        if missing > 0.4 {
+            return Err(format!("no fragment looks along {axis}"));
+        }
+    }
+    Ok(())
+}
