@@ -83,7 +83,7 @@ pub fn on_device(name: &str, run: impl FnOnce(&dyn Painter) -> Result<(), String
 }
 
 pub fn shot(size: [u32; 2], samples: u32, language: Language) -> Shot {
-    Shot { size, samples, exposure: 0.0, language, surroundings: Surroundings::Formula(environment("studio").unwrap()) }
+    Shot { size, samples, exposure: 0.0, cascades: 1, language, surroundings: Surroundings::Formula(environment("studio").unwrap()) }
 }
 
 pub fn said(problems: Diagnostics) -> String {

@@ -1,7 +1,5 @@
 //! One entry point with only what it needs.
 
-use std::fmt::Write;
-
 use naga::compact::{KeepUnused, compact};
 use naga::valid::{ValidationFlags, Validator};
 
@@ -17,18 +15,6 @@ pub fn isolate(validated: &Validated, entry: &str) -> Result<Validated, Diagnost
     on_large_stack(|| guard("", || keep(validated, index))).and_then(|result| result).map_err(|error| vec![error])
 }
 
-/// 128 bits over the whole module, equal for modules that every writer treats alike; spans and
-/// file names do not enter it.
-pub fn fingerprint(validated: &Validated) -> [u8; 16] {
-    let mut hasher = Hashed(blake3::Hasher::new());
-    // The module's debug form shows every field but the spans, in the order of its arenas.
-    // Writing to a hasher does not fail.
-    let _ = write!(hasher, "{:?}", validated.module);
-    let mut short = [0; 16];
-    short.copy_from_slice(&hasher.0.finalize().as_bytes()[..16]);
-    short
-}
-
 fn keep(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
     let mut module = validated.module.clone();
     module.entry_points = vec![module.entry_points.swap_remove(index)];
@@ -38,13 +24,4 @@ fn keep(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
         .validate(&module)
         .map_err(|error| Diagnostic::error(codes::NAGA_INTERNAL, format!("a compacted module is not valid: {error}")))?;
     Ok(Validated { language: validated.language, module, info })
-}
-
-struct Hashed(blake3::Hasher);
-
-impl Write for Hashed {
-    fn write_str(&mut self, text: &str) -> std::fmt::Result {
-        self.0.update(text.as_bytes());
-        Ok(())
-    }
 }

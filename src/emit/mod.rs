@@ -16,7 +16,7 @@ mod reflect;
 mod slots;
 mod specialise;
 
-pub use isolate::{fingerprint, isolate};
+pub use isolate::isolate;
 pub use reflect::reflect;
 pub use specialise::check;
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lamplight::catalogue::preset::Number;
 use lamplight::compose::Language;
 use lamplight::harness::frame::Painter;
-use lamplight::harness::render::{Plan, Prepared, prepare};
+use lamplight::harness::render::{Linear, Plan, Prepared, Shot, prepare};
 use lamplight::permute::{Quoted, key};
 use lamplight::source::SourceSet;
 
@@ -64,6 +64,16 @@ impl Bench<'_> {
 
     pub fn prepared(&self, plan: &Plan, size: u32) -> Result<Prepared, String> {
         prepare(self.painter, &library().programs, plan, &shot([size; 2], 1, self.language)).map_err(said)
+    }
+
+    /// With a shadow map for each of so many parts of the depth.
+    pub fn cascaded(&self, plan: &Plan, size: u32, cascades: u32) -> Result<Prepared, String> {
+        let shot = Shot { cascades, ..shot([size; 2], 1, self.language) };
+        prepare(self.painter, &library().programs, plan, &shot).map_err(said)
+    }
+
+    pub fn photograph(&self, prepared: &Prepared, size: u32) -> Result<Linear, String> {
+        prepared.photograph(self.painter, &shot([size; 2], 1, self.language)).map_err(said)
     }
 
     pub fn fragments_of(&self, prepared: &Prepared, size: u32) -> Result<Vec<Fragment>, String> {

@@ -1,13 +1,14 @@
 //! Shadows of whole frames, against rays.
 
 use glam::{DMat4, DVec3};
+use lamplight::harness::render::Prepared;
 use lamplight::scene::sets::{self, Scene};
 
 use super::closed_forms::Form;
 use super::frames::{Bench, Fragment, Numbers, uniform};
 
 pub const FORMS: &[(&str, Form)] =
-    &[("shadow_octants", octants), ("shadow_border", border), ("shadow_acne", acne), ("shadow_penumbra", penumbra)];
+    &[("shadow_octants", octants), ("shadow_border", border), ("shadow_acne", acne), ("shadow_penumbra", penumbra), ("cascades", cascades)];
 
 /// Pixels across and down.
 const SIZE: u32 = 128;
@@ -257,4 +258,51 @@ fn penumbra(bench: &Bench<'_>) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// Each part of the viewer's depth has a map of its own, finer than one of the whole scene, in
+/// which every fragment is lit or not as its ray says; together they are the picture.
+fn cascades(bench: &Bench<'_>) -> Result<(), String> {
+    let (casters, towards) = (casters()?, TOWARDS.normalize());
+    let axis = (-towards).to_array();
+    let numbers: Numbers<'_> = &[("light", "axis", &axis), ("light", "color", &[1.0; 3])];
+    let plan = bench.plan(&format!("{DIRECTIONAL},shadow=hard"), "casters", numbers)?;
+    let single = bench.prepared(&plan, SIZE)?;
+    let texel = |prepared| uniform(prepared, "caster", "texel").ok_or("no texel");
+    let nearest = bench.cascaded(&plan, SIZE, 3)?;
+    let slices: Vec<&Prepared> = std::iter::once(&nearest).chain(&nearest.farther).collect();
+    let mut fragments = 0;
+    for slice in &slices {
+        let margin = 3.0 * texel(slice)?;
+        let seen = bench.fragments_of(slice, SIZE)?;
+        fragments += seen.len();
+        let facing = seen.iter().filter(|fragment| fragment.normal.dot(towards) > 0.25);
+        let (mut counts, mut wrong) = ([0, 0], 0);
+        for fragment in facing {
+            let wanted = match casters.way(fragment, towards, margin) {
+                Way::Unclear => continue,
+                Way::Clear => 1,
+                Way::Blocked => 0,
+            };
+            counts[wanted] += 1;
+            wrong += usize::from((visibility(fragment, towards) - wanted as f64).abs() > 0.01);
+        }
+        if wrong > 0 || counts[1] < 100 {
+            return Err(format!("of {counts:?} dark and lit fragments of a slice {wrong} are wrong"));
+        }
+    }
+    let (fine, coarse, whole) = (texel(&nearest)?, texel(&single)?, bench.fragments_of(&single, SIZE)?.len());
+    if slices.len() != 3 || fine > 0.8 * coarse || fragments < whole {
+        return Err(format!("{} slices, texels of {fine} and {coarse}, {fragments} of {whole} fragments", slices.len()));
+    }
+    let (parts, one) = (bench.photograph(&nearest, SIZE)?, bench.photograph(&single, SIZE)?);
+    let pixels = (0..SIZE * SIZE).map(|index| (parts.drawn(index % SIZE, index / SIZE), one.drawn(index % SIZE, index / SIZE)));
+    let (mut drawn, mut apart) = (0, 0);
+    for (part, one) in pixels {
+        drawn += usize::from(one.is_some());
+        let is_alike = part.zip(one).map_or(part.is_none() && one.is_none(), |(part, one)| part.distance(one) < 0.01);
+        apart += usize::from(!is_alike);
+    }
+    // The borders of shadows are elsewhere within a texel.
+    if 25 * apart > drawn { Err(format!("{apart} of {drawn} pixels differ from those with one map")) } else { Ok(()) }
 }

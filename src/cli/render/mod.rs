@@ -40,7 +40,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
     /// Draw every preset, with pages that show them.
-    #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene"])]
+    #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene", "cascades"])]
     all: bool,
     /// Where the picture goes [default: the name of the preset, or `render.png`]; with `--all`, a
     /// folder [default: `gallery`].
@@ -55,6 +55,9 @@ pub struct Arguments {
     /// Factor on all light, in powers of two.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
     exposure: f64,
+    /// Shadow maps of a directional light, each of a part of the viewer's depth.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
+    cascades: u32,
     /// What draws: `vulkan`, `gl`, `swiftshader` or `eval`, which needs no driver.
     #[arg(long, value_name = "E", default_value = "vulkan")]
     executor: String,
@@ -206,6 +209,7 @@ fn shot(arguments: &Arguments) -> Result<Shot, Failure> {
     Ok(Shot {
         size: arguments.size,
         samples: arguments.samples,
+        cascades: arguments.cascades,
         exposure: arguments.exposure.clamp(-32.0, 32.0),
         language: Language::from(arguments.lang),
         surroundings: surroundings(&arguments.environment)?,

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 
 use super::plan::Pass;
 use crate::scene::sets::{Lamp, LampKind, Scene};
-use crate::scene::{Bounds, Clip, Depth, cube_projection, cube_view, depth_range, fit, look_along, orthographic, perspective};
+use crate::scene::{Bounds, Clip, Depth, corners, cube_projection, cube_view, depth_range, fit, look_along, orthographic, perspective};
 
 /// What a shadow map is drawn with.
 #[derive(Debug, Clone)]
@@ -18,6 +18,9 @@ pub struct LightView {
     /// Size of a texel: everywhere for directional lights, at distance 1 for others.
     pub texel: f64,
 }
+
+/// A box for a scene without points.
+const UNIT: Bounds = Bounds { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: -1.0, far: 1.0 };
 
 /// Planes nearer than this share of the far one waste what precision there is.
 const NEAREST: f64 = 0.02;
@@ -48,8 +51,28 @@ impl LightView {
 
     fn directional(lamp: &Lamp, points: &[DVec3], size: u32) -> Self {
         let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
-        let unit = Bounds { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: -1.0, far: 1.0 };
-        let tight = fit(view, points).unwrap_or(unit);
+        Self::around(view, fit(view, points).unwrap_or(UNIT), size)
+    }
+
+    /// The view of a directional light on what lies in a part of the viewer's depth, which may be
+    /// shaded by all that is before it.
+    pub fn cascade(scene: &Scene, lamp: &Lamp, clip_from_world: DMat4, size: u32) -> Self {
+        let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
+        let whole = fit(view, &scene.points()).unwrap_or(UNIT);
+        let part = fit(view, &corners(clip_from_world, Clip::Wgpu, Depth::Normal)).unwrap_or(whole);
+        let bounds = Bounds {
+            left: part.left.max(whole.left),
+            right: part.right.min(whole.right),
+            bottom: part.bottom.max(whole.bottom),
+            top: part.top.min(whole.top),
+            ..whole
+        };
+        // A part with nothing of the scene in it is drawn with any map.
+        let is_seen = bounds.left < bounds.right && bounds.bottom < bounds.top;
+        Self::around(view, if is_seen { bounds } else { whole }, size)
+    }
+
+    fn around(view: DMat4, tight: Bounds, size: u32) -> Self {
         // A margin on all sides: of the map for filters, of the depth against rounding.
         let margin = 0.02 * (tight.right - tight.left).max(tight.top - tight.bottom) + 1e-3;
         let bounds = Bounds {

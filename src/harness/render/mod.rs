@@ -40,6 +40,9 @@ pub struct Shot {
     pub samples: u32,
     /// Factor on all light, as a power of two.
     pub exposure: f64,
+    /// Shadow maps of a directional light, one for each part of the viewer's depth; 1 for one map
+    /// of the whole scene.
+    pub cascades: u32,
     pub language: Language,
     /// What is around the scene.
     pub surroundings: Surroundings,

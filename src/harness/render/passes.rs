@@ -17,8 +17,8 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::harness::fixture::{Fixture, Texture, TextureKind};
 use crate::harness::frame::{Buffers, Composed, Drawing, Frame, Item, Mesh, Painter, Programs, Side, Stage, Stages, State, pack, probe};
 use crate::harness::kernel::SENTINEL;
-use crate::scene::sets;
-use crate::scene::{Clip, Depth, perspective};
+use crate::scene::sets::{self, Eye, Scene};
+use crate::scene::{Clip, Depth, cascade_splits, depth_range, perspective};
 
 /// A pass with everything it is drawn with.
 pub struct Prepared {
@@ -33,6 +33,9 @@ pub struct Prepared {
     camera: Option<Binding>,
     eye: Camera,
     background: Background,
+    /// The same for the farther parts of the viewer's depth, nearest first: seen where nothing
+    /// nearer was drawn.
+    pub farther: Vec<Self>,
 }
 
 /// What the passes share.
@@ -59,14 +62,62 @@ pub fn prepare(painter: &dyn Painter, programs: &Programs, plan: &Plan, shot: &S
     plan.place(key);
     let key = *key;
     let size = (2 * shot.size[0].max(shot.size[1])).next_power_of_two().clamp(MAP_SIZES.0, MAP_SIZES.1);
-    let light = LightView::new(&scene, &key, last, size);
-    let values = Values { plan, scene: &scene, last, light: &light, shot };
-    let studio = Studio { painter, programs, values };
-    let mut left = Left::Nothing;
-    for pass in &plan.passes[..plan.passes.len() - 1] {
-        left = studio.draw(pass, &left)?;
+    let slice = |scene: &Scene, light: LightView| {
+        let values = Values { plan, scene, last, light: &light, shot };
+        let studio = Studio { painter, programs, values };
+        let mut left = Left::Nothing;
+        for pass in &plan.passes[..plan.passes.len() - 1] {
+            left = studio.draw(pass, &left)?;
+        }
+        studio.ready(last, &left)
+    };
+    if shot.cascades <= 1 {
+        let light = LightView::new(&scene, &key, last, size);
+        return slice(&scene, light);
     }
-    studio.ready(last, &left)
+    if !last.is("shadow_light", "directional") || last.is("shadow", "none") {
+        let message = format!("`{}` has no cascades: they are of the shadow of a directional light", last.key);
+        return Err(vec![Diagnostic::error(codes::INVALID_KEY, message).note("choose `shadow_light=directional` and a `shadow`")]);
+    }
+    // Each part of the viewer's depth is a frame of its own, clipped by its planes.
+    let whole = scene.eye;
+    let mut slices = Vec::new();
+    for (near, far) in slices_of(&scene, shot.cascades) {
+        scene.eye = Eye { near, far, ..whole.clone() };
+        let light = LightView::cascade(&scene, &key, viewer(&scene.eye, shot).clip_from_world, size);
+        slices.push(slice(&scene, light)?);
+    }
+    let mut slices = slices.into_iter();
+    let nearest = slices.next().ok_or_else(|| vec![no_frame()])?;
+    Ok(Prepared { farther: slices.collect(), ..nearest })
+}
+
+/// How much of the splits is logarithmic.
+const SPLIT: f64 = 0.7;
+
+/// The viewer's depth in parts that share their planes: splits where the scene is, ends where the
+/// viewer's are.
+fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
+    let eye = &scene.eye;
+    let (nearest, farthest) = depth_range(eye.view(), &scene.points()).unwrap_or((eye.near, eye.far));
+    let (near, far) = (nearest.clamp(eye.near, eye.far), farthest.clamp(eye.near, eye.far));
+    let mut ends = cascade_splits(near, far.max(1.001 * near), count as usize, SPLIT);
+    if let Some(last) = ends.last_mut() {
+        *last = eye.far;
+    }
+    let starts = std::iter::once(eye.near).chain(ends.clone());
+    starts.zip(ends).collect()
+}
+
+/// What the viewer sees through.
+fn viewer(eye: &Eye, shot: &Shot) -> Camera {
+    let [width, height] = shot.size;
+    let aspect = f64::from(width) / f64::from(height.max(1));
+    // What a square shows stays in a picture that is higher than wide.
+    let fov = if aspect < 1.0 { 2.0 * ((0.5 * eye.fov_y).tan() / aspect).atan() } else { eye.fov_y };
+    let view = eye.view();
+    let projection = perspective(fov, aspect, eye.near, eye.far, Clip::Wgpu, Depth::Normal);
+    Camera { clip_from_world: projection * view, world_from_view: view.inverse() }
 }
 
 impl Studio<'_> {
@@ -122,21 +173,10 @@ impl Studio<'_> {
         let plain = PLAIN.iter().filter_map(|name| bindings.iter().find(|binding| binding.name == *name));
         let plain = plain.map(|binding| (binding.group, binding.binding)).collect();
         let items = self.items(pass, &stages, &bindings);
-        let eye = self.eye();
+        let eye = viewer(&self.values.scene.eye, self.values.shot);
         let background = Background::new(&self.values, eye);
         let state = self.state(pass, camera.is_some());
-        Ok(Prepared { stages, items, buffers, fixtures, levels, state, plain, camera, eye, background })
-    }
-
-    fn eye(&self) -> Camera {
-        let eye = &self.values.scene.eye;
-        let [width, height] = self.values.shot.size;
-        let aspect = f64::from(width) / f64::from(height.max(1));
-        // What a square shows stays in a picture that is higher than wide.
-        let fov = if aspect < 1.0 { 2.0 * ((0.5 * eye.fov_y).tan() / aspect).atan() } else { eye.fov_y };
-        let view = eye.view();
-        let projection = perspective(fov, aspect, eye.near, eye.far, Clip::Wgpu, Depth::Normal);
-        Camera { clip_from_world: projection * view, world_from_view: view.inverse() }
+        Ok(Prepared { stages, items, buffers, fixtures, levels, state, plain, camera, eye, background, farther: Vec::new() })
     }
 
     fn state(&self, pass: &Pass, has_camera: bool) -> State {
@@ -253,12 +293,25 @@ impl Prepared {
         let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize;
         let at_once = (AT_ONCE / bytes.max(1)).max(1);
         for (views, shifts) in views.chunks(at_once).zip(shifts.chunks(at_once)) {
-            for (frame, shift) in self.draw_colors(painter, views, shot.size)?.iter().zip(shifts) {
-                let target = frame.targets.first().map_or(&[][..], Vec::as_slice);
-                picture.add(target.chunks(4).map(colour), *shift, &self.background, shot.exposure);
+            let nearest = self.colours(painter, views, shot.size)?;
+            let mut farther = Vec::new();
+            for slice in &self.farther {
+                let views: Vec<Buffers> = shifts.iter().map(|shift| slice.eye_view(*shift, shot.size)).collect();
+                farther.push(slice.colours(painter, &views, shot.size)?);
+            }
+            for (index, (colours, shift)) in nearest.iter().zip(shifts).enumerate() {
+                let behind = |pixel: usize| farther.iter().find_map(|slice| slice[index][pixel]);
+                let seen = colours.iter().enumerate().map(|(pixel, colour)| colour.or_else(|| behind(pixel)));
+                picture.add(seen, *shift, &self.background, shot.exposure);
             }
         }
         Ok(picture)
+    }
+
+    /// The colours of each view; `None` where nothing was drawn.
+    fn colours(&self, painter: &dyn Painter, views: &[Buffers], size: [u32; 2]) -> Result<Vec<Vec<Option<[f32; 4]>>>, Diagnostics> {
+        let colours = |frame: Frame| frame.targets.first().map_or(&[][..], Vec::as_slice).chunks(4).map(colour).collect();
+        Ok(self.draw_colors(painter, views, size)?.into_iter().map(colours).collect())
     }
 }
 
