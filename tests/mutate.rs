@@ -11,9 +11,10 @@ use libtest_mimic::{Failed, Trial};
 use toml::Table;
 
 type Outcome = Result<(), Failed>;
+type Case = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 6] = [
+    let cases: [(&str, Case); 6] = [
         ("library_kills", library_kills),
         ("list_is_sound", list_is_sound),
         ("hidden_by_tolerance", hidden_by_tolerance),

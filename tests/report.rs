@@ -9,9 +9,10 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 type Outcome = Result<(), Failed>;
+type Case = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 6] = [
+    let cases: [(&str, Case); 6] = [
         ("forms_list_the_failure", forms_list_the_failure),
         ("pasted_case_fails_alike", pasted_case_fails_alike),
         ("off_before_rounding", off_before_rounding),

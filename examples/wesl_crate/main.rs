@@ -7,6 +7,8 @@
 //! The library is read from its folder here. Its published form, the crate `lamplight_wgsl`, takes
 //! one line in place of the router: `compiler.add_package(&lamplight_wgsl::lamplight::PACKAGE)`.
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 use std::path::Path;
 

@@ -83,7 +83,7 @@ pub fn prepare(painter: &dyn Painter, programs: &Programs, plan: &Plan, shot: &S
     let whole = scene.eye;
     let mut slices = Vec::new();
     for (near, far) in slices_of(&scene, shot.cascades) {
-        scene.eye = Eye { near, far, ..whole.clone() };
+        scene.eye = Eye { near, far, ..whole };
         let light = LightView::cascade(&scene, &key, viewer(&scene.eye, shot).clip_from_world, size);
         slices.push(slice(&scene, light)?);
     }
