@@ -25,6 +25,9 @@ use crate::permute::{Assignment, Quoted, Setting, key};
 use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
 use crate::source::SourceSet;
 
+/// Places in each pixel, where no other number is asked for and a device draws.
+const SAMPLES: u32 = 4;
+
 /// Draw a scene with one permutation.
 #[derive(Args)]
 pub struct Arguments {
@@ -49,9 +52,9 @@ pub struct Arguments {
     /// Pixels across and down.
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
     size: [u32; 2],
-    /// Places in each pixel that are averaged.
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64))]
-    samples: u32,
+    /// Places in each pixel that are averaged [default: 4, or 1 on `eval`].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    samples: Option<u32>,
     /// Factor on all light, in powers of two.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
     exposure: f64,
@@ -208,7 +211,7 @@ fn point(programs: &Programs, arguments: &Arguments, program: &Program, over: Op
 fn shot(arguments: &Arguments) -> Result<Shot, Failure> {
     Ok(Shot {
         size: arguments.size,
-        samples: arguments.samples,
+        samples: arguments.samples.unwrap_or(if arguments.executor == render::RASTERIZER { 1 } else { SAMPLES }),
         cascades: arguments.cascades,
         exposure: arguments.exposure.clamp(-32.0, 32.0),
         language: Language::from(arguments.lang),

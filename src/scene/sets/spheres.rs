@@ -13,7 +13,7 @@ pub fn scene() -> Scene {
     let object = |(index, color): (usize, &DVec3)| {
         // Away from the viewer and upwards, from the left to the right.
         let step = index as f64 - 2.0;
-        let place = placed(1.5 * step, 0.62 * step, -1.1 * step, 0.0);
+        let place = placed(1.38 * step, 0.57 * step, -1.1 * step, 0.0);
         let material = Material::default().glossy(0.55).shiny(16.0 * 2.2_f64.powi(index as i32));
         Object::new(ball.clone(), place, *color).of(material, index as u32)
     };
