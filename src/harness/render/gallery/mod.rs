@@ -69,10 +69,10 @@ impl Card {
         all.map(|(program, key)| format!("{program}: {}", key.replace(',', ", "))).collect()
     }
 
-    /// Paths of the composed texts beside the page.
+    /// Paths of the composed texts beside the page: to read, not to compile, so `.txt`.
     fn files(&self) -> impl Iterator<Item = String> {
         let extensions: &[&str] = if self.texts.len() == 1 { &["wgsl"] } else { &["vert.glsl", "frag.glsl"] };
-        extensions.iter().map(|extension| format!("composed/{}.{extension}", self.preset.name))
+        extensions.iter().map(|extension| format!("composed/{}.{extension}.txt", self.preset.name))
     }
 
     /// The command that draws it.
