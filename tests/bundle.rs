@@ -50,15 +50,7 @@ fn axes() -> Vec<Axis> {
 }
 
 fn unit(text: &str, targets: &[Target]) -> Unit {
-    let reflection = Reflection {
-        stage: Stage::Fragment,
-        workgroup_size: None,
-        inputs: Vec::new(),
-        outputs: Vec::new(),
-        bindings: Vec::new(),
-        pairs: Vec::new(),
-        overrides: Vec::new(),
-    };
+    let reflection = Reflection::of(Stage::Fragment);
     let native = Arc::new(Native { entry_name: "main".into(), ..Native::default() });
     let artifact = |target: &Target| {
         let bytes = format!("{}{target}: {text}", "the same text in every shader\n".repeat(40)).into_bytes().into();

@@ -77,15 +77,7 @@ fn contents() -> Result<(Contents, Vec<String>), Box<dyn std::error::Error>> {
 
 /// As large as a shader of the library is: some 8 kB in each of two targets.
 fn unit(index: usize) -> Unit {
-    let reflection = Reflection {
-        stage: Stage::Fragment,
-        workgroup_size: None,
-        inputs: Vec::new(),
-        outputs: Vec::new(),
-        bindings: Vec::new(),
-        pairs: Vec::new(),
-        overrides: Vec::new(),
-    };
+    let reflection = Reflection::of(Stage::Fragment);
     let native = Arc::new(Native { entry_name: "main".into(), ..Native::default() });
     let artifact = |target: Target| {
         let lines = (0..200).map(|line| format!("{target}: line {line} of {}, much like others\n", index * 31 % (line + 7)));

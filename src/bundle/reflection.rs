@@ -36,6 +36,21 @@ pub struct Reflection {
     pub overrides: Vec<Override>,
 }
 
+impl Reflection {
+    /// Of an entry point that uses nothing.
+    pub fn of(stage: Stage) -> Self {
+        Self {
+            stage,
+            workgroup_size: None,
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            bindings: Vec::new(),
+            pairs: Vec::new(),
+            overrides: Vec::new(),
+        }
+    }
+}
+
 /// A value that enters or leaves the stage.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Varying {

@@ -19,7 +19,7 @@ pub use module::{
     Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import, Item, ItemKind, Module, Operand, Origin,
     Path, Reference,
 };
-pub use name::{Name, Names};
+pub use name::{Name, Names, is_keyword};
 
 use std::sync::Arc;
 

@@ -45,6 +45,11 @@ const WORDS: &[&str] = &[
     "constants",
 ];
 
+/// Whether WGSL has the word as a keyword; WESL's own words come after those.
+pub fn is_keyword(word: &str) -> bool {
+    WORDS[Name::ALIAS.0 as usize..=Name::WHILE.0 as usize].contains(&word)
+}
+
 macro_rules! words {
     ($($constant:ident = $text:literal),* $(,)?) => {
         impl Name { $(#[doc = concat!("`", $text, "`.")] pub const $constant: Name = Name(position($text));)* }

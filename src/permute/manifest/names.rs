@@ -3,41 +3,15 @@
 use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, codes};
+use crate::parse::wesl::is_keyword;
 use crate::permute::axis::{Axis, Kind};
 use crate::source::Span;
 
-/// WGSL's keywords, and `in`, which the language of constraints has. WGSL's reserved words are
-/// no obstacle: an axis or a value never becomes a declaration under its bare name, except by
-/// way of `constants`, which is why axes avoid those too.
-const KEYWORDS: &[&str] = &[
-    "alias",
-    "break",
-    "case",
-    "const",
-    "const_assert",
-    "continue",
-    "continuing",
-    "default",
-    "diagnostic",
-    "discard",
-    "else",
-    "enable",
-    "false",
-    "fn",
-    "for",
-    "if",
-    "in",
-    "let",
-    "loop",
-    "override",
-    "requires",
-    "return",
-    "struct",
-    "switch",
-    "true",
-    "var",
-    "while",
-];
+/// The word of the language of constraints that is not one of WGSL's keywords.
+///
+/// WGSL's reserved words are no obstacle: an axis or a value never becomes a declaration under
+/// its bare name, except by way of `constants`, which is why axes avoid those too.
+const IN: &str = "in";
 
 /// Macros that GLSL compilers or the library define.
 const MACROS: &[&str] = &["VULKAN", "LAMPLIGHT_COMBINED_SAMPLERS"];
@@ -86,7 +60,7 @@ fn collision(name: &str, second: (&str, Span), first: (&str, Span)) -> Diagnosti
 }
 
 fn problem(name: &str) -> Option<String> {
-    if KEYWORDS.contains(&name) {
+    if is_keyword(name) || name == IN {
         return Some("it is a keyword".to_owned());
     }
     let fits = |(index, c): (usize, char)| c == '_' || c.is_ascii_alphabetic() || (index > 0 && c.is_ascii_digit());
