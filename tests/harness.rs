@@ -57,6 +57,10 @@ fn library() -> Result<(), Failed> {
         if std::env::var_os("LAMPLIGHT_TABLE").is_some() {
             println!("{}", check::table(&report));
         }
+        // A filter that names no file must not pass.
+        if report.outcomes.is_empty() {
+            return Err(format!("no case file's path has `{only}` in it").into());
+        }
         if report.passed() { Ok(()) } else { Err(check::failures(&report).into()) }
     })
 }
