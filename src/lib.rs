@@ -27,6 +27,8 @@ pub mod generate;
 #[cfg(feature = "compile")]
 pub mod keys;
 #[cfg(feature = "compile")]
+pub mod link;
+#[cfg(feature = "compile")]
 pub mod output;
 #[cfg(feature = "compile")]
 pub mod parse;

@@ -1,19 +1,24 @@
 //! Whole programs: permutations of `forward` drawn on each driver, and every sampled fragment
-//! computed again by the evaluator.
+//! computed again by the evaluator. `shipped` draws the WGSL of a bundle, put together from functions of
+//! many permutations, and computes from the composed text.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lamplight::bundle::{Kind as BindingKind, Reflection};
-use lamplight::compose::Language;
+use lamplight::bundle::{Bundle, Kind as BindingKind, Language as BundleLanguage, Reflection, Target, pack as pack_bundle};
+use lamplight::compose::{Language, SourceMap};
 use lamplight::diagnostic::render::{Form, render};
+use lamplight::generate::{Request, in_memory};
 use lamplight::harness::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use lamplight::harness::frame::{
     Attribute, Buffers, Composed, Drawing, Item, Mesh, Painter, Programs, Renderer, Stage, Stages, State, pack, probe,
 };
 use lamplight::harness::on_thread;
 use lamplight::permute::axis::ValueSet;
-use lamplight::permute::{Assignment, Space};
+use lamplight::permute::space::{Lists, Slice};
+use lamplight::permute::{Assignment, Space, cover};
+use lamplight::project;
+use lamplight::validate::{Validated, validate};
 use libtest_mimic::{Failed, Trial};
 
 use crate::fragments::{self, Tally, Watched};
@@ -29,7 +34,8 @@ const LEAST: usize = 200;
 const OPEN: f64 = 0.01;
 
 const BACKENDS: [&str; 2] = ["vulkan", "gl"];
-const LANGUAGES: [(&str, Language); 2] = [("wesl", Language::Wesl), ("glsl", Language::Glsl)];
+const LANGUAGES: [(&str, Language); 3] = [("wesl", Language::Wesl), ("glsl", Language::Glsl), (SHIPPED, Language::Wesl)];
+const SHIPPED: &str = "shipped";
 
 type Place = (u32, u32);
 
@@ -43,8 +49,11 @@ pub fn trials() -> Vec<Trial> {
 fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(), Failed> {
     let outcome = on_thread(|| {
         let renderer = Renderer::open(backend)?;
-        let sources = Sources::load(*language)?;
+        let mut sources = Sources::load(*language)?;
         let points = covering(&sources.space);
+        if *name == SHIPPED {
+            sources.bundle = Some(bundle(&sources, &points)?);
+        }
         let (mut total, mut failures) = (Tally::default(), Vec::new());
         for point in &points {
             match sources.scene(point).and_then(|scene| agrees(&renderer, &scene)) {
@@ -84,12 +93,16 @@ struct Sources {
     programs: Programs,
     language: Language,
     space: Space,
+    /// What is drawn, where that is not the composed text.
+    bundle: Option<Bundle>,
 }
 
 /// A permutation with everything it is drawn with.
 struct Scene {
     vertex: Composed,
     fragment: Composed,
+    /// Both stages as drawn.
+    drawn: [Arc<Validated>; 2],
     mesh: Mesh,
     buffers: Buffers,
     fixtures: BTreeMap<Place, Arc<Fixture>>,
@@ -99,7 +112,7 @@ impl Sources {
     fn load(language: Language) -> Result<Self, String> {
         let programs = Programs::load().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
         let space = programs.manifest().program("forward").ok_or("no forward")?.space.clone();
-        Ok(Self { programs, language, space })
+        Ok(Self { programs, language, space, bundle: None })
     }
 
     fn scene(&self, point: &Assignment) -> Result<Scene, String> {
@@ -115,8 +128,54 @@ impl Sources {
                 _ => drop(fixtures.insert(place, Arc::new(fixture(binding.kind, &binding.name, &binding.ty)))),
             }
         }
-        Ok(Scene { mesh: mesh(&vertex.reflection), vertex, fragment, buffers, fixtures })
+        let drawn = match &self.bundle {
+            None => [vertex.validated.clone(), fragment.validated.clone()],
+            Some(bundle) => {
+                let key = self.space.key(point).to_string();
+                [shipped(bundle, vertex.entry, &key)?, shipped(bundle, fragment.entry, &key)?]
+            }
+        };
+        Ok(Scene { mesh: mesh(&vertex.reflection), vertex, fragment, drawn, buffers, fixtures })
     }
+}
+
+/// The WGSL of the points and of all pairs of values, in one bundle.
+fn bundle(sources: &Sources, points: &[Assignment]) -> Result<Bundle, String> {
+    let mut manifest = sources.programs.manifest().clone();
+    let program = manifest.programs.iter_mut().find(|program| program.name == "forward").ok_or("no forward")?;
+    program.targets = vec![Target::WGSL];
+    program.glsl = None;
+    let mut include = cover::pairwise(&sources.space).points;
+    include.extend(points.iter().filter(|point| !include.contains(point)).cloned().collect::<Vec<_>>());
+    let all = sources.space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect();
+    let exclude = vec![Slice { values: all, span: program.span }];
+    let lists = Lists { only: Vec::new(), exclude, include };
+    program.space = Space::new(sources.space.axes().to_vec(), sources.space.constraints().to_vec(), lists).map_err(|_| "no space")?;
+    let request = Request { program: Some("forward".to_owned()), ..Request::default() };
+    let made = in_memory(&mut sources.programs.texts(), &project::library(), &manifest, &request, &|_| ());
+    let made = made.map_err(|problems| render(&sources.programs.texts(), &problems, Form::Human))?;
+    println!("{} texts, {} of them linked", made.summary.texts(), made.summary.linked);
+    if made.summary.linked == 0 {
+        return Err("nothing was linked".to_owned());
+    }
+    Bundle::from_bytes(pack_bundle(&made.contents).map_err(|error| error.to_string())?).map_err(|error| error.to_string())
+}
+
+/// One stage as it was shipped.
+fn shipped(bundle: &Bundle, entry: &str, key: &str) -> Result<Arc<Validated>, String> {
+    let found = || bundle.program("forward")?.entry(BundleLanguage::Wesl, entry)?.get(key, Target::WGSL);
+    let found = found().map_err(|error: lamplight::bundle::Error| error.to_string())?;
+    let text = String::from_utf8(found.bytes.to_vec()).map_err(|error| error.to_string())?;
+    let composed = lamplight::compose::Composed {
+        language: Language::Wesl,
+        stage: None,
+        text,
+        map: SourceMap::default(),
+        reads: Vec::new(),
+        warnings: Vec::new(),
+        decisions: Vec::new(),
+    };
+    validate(&composed).map(Arc::new).map_err(|problems| format!("{problems:?}"))
 }
 
 /// A number for every uniform, sensible where it matters.
@@ -221,10 +280,10 @@ fn mesh(vertex: &Reflection) -> Mesh {
 }
 
 fn agrees(renderer: &Renderer, scene: &Scene) -> Result<Tally, String> {
-    let Scene { vertex, fragment, mesh, buffers, .. } = scene;
-    let watched = probe::watched(&fragment.validated.module, fragment.entry).ok_or("no colour")?;
+    let Scene { vertex, fragment, drawn: [drawn_vertex, drawn_fragment], mesh, buffers, .. } = scene;
+    let watched = probe::watched(&drawn_fragment.module, fragment.entry).ok_or("no colour")?;
     let drawing = Drawing {
-        vertex: Stage { module: &vertex.validated.module, entry: vertex.entry },
+        vertex: Stage { module: &drawn_vertex.module, entry: vertex.entry },
         fragment: Some(Stage { module: &watched.module, entry: fragment.entry }),
         targets: watched.targets,
         items: &[Item { mesh, buffers }],

@@ -20,6 +20,7 @@ mod generate;
 mod harness;
 mod keys;
 mod library;
+mod link;
 mod mutate;
 mod packages;
 mod permute;
@@ -57,6 +58,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     harness::trials,
     keys::trials,
     library::trials,
+    link::trials,
     mutate::trials,
     packages::trials,
     permute::trials,

@@ -56,6 +56,16 @@ layout(std140, set = 0, binding = 3) uniform Haze {
     float start;
     float end;
 } haze;
+
+/// The colour of a point, faded with its distance from the viewer.
+vec3 hazy(vec3 color, vec3 position) {
+    float reach = distance(position, camera.world_from_view[3].xyz);
+#if FOG == FOG_LINEAR
+    return mix(haze.color, color, fog_linear(reach, haze.start, haze.end));
+#else
+    return mix(haze.color, color, fog_exp2(reach, haze.density));
+#endif
+}
 #endif
 
 #if LIGHTMAP
@@ -172,12 +182,7 @@ void main() {
     vec3 shaded = base.rgb;
 #endif
 #if FOG != FOG_NONE
-    float reach = distance(in_position, camera.world_from_view[3].xyz);
-#if FOG == FOG_LINEAR
-    shaded = mix(haze.color, shaded, fog_linear(reach, haze.start, haze.end));
-#else
-    shaded = mix(haze.color, shaded, fog_exp2(reach, haze.density));
-#endif
+    shaded = hazy(shaded, in_position);
 #endif
 #if SATURATE
     shaded = saturate_color(shaded);

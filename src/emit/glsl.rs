@@ -13,9 +13,10 @@ pub fn write(source: &Source<'_>, version: Version, numbering: Numbering) -> Res
     let options = options(source, version, numbering)?;
     let pipeline = PipelineOptions { shader_stage: source.stage, entry_point: source.entry.to_owned(), multiview: None };
     let mut text = String::new();
-    let info = Writer::new(&mut text, source.module, source.info, &options, &pipeline, BoundsCheckPolicies::default())
+    let mut info = Writer::new(&mut text, source.module, source.info, &options, &pipeline, BoundsCheckPolicies::default())
         .and_then(|mut writer| writer.write())
         .map_err(|error| error.to_string())?;
+    name_blocks(source, &mut text, &mut info);
     Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &info, numbering) })
 }
 
@@ -33,6 +34,20 @@ fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Resul
         }
     }
     Ok(options)
+}
+
+/// naga numbers blocks in the order of the text; group and binding are the block's own, whatever
+/// else a permutation has.
+fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo) {
+    for (handle, name) in &mut info.uniforms {
+        let numbered =
+            name.rsplit_once("_block_").map(|(ty, number)| (ty, number.trim_start_matches(|digit: char| digit.is_ascii_digit())));
+        if let (Some((ty, stage)), Some([group, binding])) = (numbered, place(source.module, *handle)) {
+            let own = format!("{ty}_block_{group}_{binding}{stage}");
+            *text = text.replacen(&format!(" {name} {{"), &format!(" {own} {{"), 1);
+            *name = own;
+        }
+    }
 }
 
 /// Samplers vanish into the textures they are used with: only combined names have units.

@@ -17,6 +17,7 @@ mod slots;
 mod specialise;
 
 pub use isolate::isolate;
+pub use names::type_name;
 pub use reflect::reflect;
 pub use specialise::check;
 

@@ -28,59 +28,82 @@ const BREAKS: [char; 7] = ['\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{2028}', '
 /// block comments nest.
 pub fn wgsl(text: &str) -> String {
     let mut lean = String::with_capacity(text.len());
-    let mut rest = text;
-    loop {
-        let (token, after) = rest.split_at(token(rest));
-        lean.push_str(token);
-        let gap = gap(after);
-        rest = &after[gap..];
-        if rest.is_empty() {
-            return lean;
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        let gap = gap(rest);
+        if gap > 0 && gap < rest.len() {
+            part(&mut lean, &rest[gap..]);
         }
-        if gap > 0 {
-            part(&mut lean, rest);
-        }
+        let token = token(&rest[gap..]);
+        lean.push_str(&rest[gap..gap + token]);
+        at += gap + token;
     }
+    lean
 }
 
 /// Writes a blank where what comes next could become one token with what is there.
 fn part(lean: &mut String, next: &str) {
-    let alone = |found: Option<char>| found.is_none_or(stands_alone);
-    if !alone(lean.chars().next_back()) && !alone(next.chars().next()) {
+    let alone = |found: Option<&u8>| found.is_none_or(|byte| stands_alone(*byte));
+    if !alone(lean.as_bytes().last()) && !alone(next.as_bytes().first()) {
         lean.push(' ');
     }
 }
 
 /// Bytes before the first blank or comment.
 fn token(text: &str) -> usize {
-    let ends = |(at, found): &(usize, char)| BLANKS.contains(found) || *found == '/' && comment(&text[*at..]).is_some();
-    text.char_indices().find(ends).map_or(text.len(), |(at, _)| at)
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while let Some(&byte) = bytes.get(at) {
+        at += match byte {
+            b'/' if comment(&text[at..]).is_some() => return at,
+            b'!'..=b'~' => 1,
+            _ => match text[at..].chars().next() {
+                Some(found) if !BLANKS.contains(&found) => found.len_utf8(),
+                _ => return at,
+            },
+        };
+    }
+    at
 }
 
 /// Bytes of the blanks and comments that the text begins with.
 fn gap(text: &str) -> usize {
-    let mut rest = text;
-    loop {
-        rest = rest.trim_start_matches(BLANKS);
-        match comment(rest) {
-            Some(length) => rest = &rest[length..],
-            None => return text.len() - rest.len(),
-        }
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while let Some(&byte) = bytes.get(at) {
+        at += match byte {
+            // Nearly all blanks are of these two.
+            b' ' | b'\n' => 1,
+            b'!'..=b'.' | b'0'..=b'~' => return at,
+            _ => match (comment(&text[at..]), text[at..].chars().next()) {
+                (Some(length), _) => length,
+                (None, Some(found)) if BLANKS.contains(&found) => found.len_utf8(),
+                _ => return at,
+            },
+        };
     }
+    at
 }
 
 /// Whether nothing next to the character can become one token with it.
-fn stands_alone(found: char) -> bool {
-    matches!(found, '\n' | '(' | ')' | '[' | ']' | '{' | '}' | ',' | ';')
+fn stands_alone(found: u8) -> bool {
+    matches!(found, b'\n' | b'(' | b')' | b'[' | b']' | b'{' | b'}' | b',' | b';')
 }
 
 /// Bytes of the comment that the text begins with.
 fn comment(text: &str) -> Option<usize> {
     match text.as_bytes() {
-        [b'/', b'/', ..] => Some(text.find(BREAKS).unwrap_or(text.len())),
+        [b'/', b'/', ..] => Some(line(text)),
         [b'/', b'*', ..] => Some(block(text)),
         _ => None,
     }
+}
+
+fn line(text: &str) -> usize {
+    // Looked for byte by byte as long as these are characters.
+    let first = text.bytes().position(|byte| matches!(byte, b'\n'..=b'\r') || !byte.is_ascii()).unwrap_or(text.len());
+    text[first..].find(BREAKS).map_or(text.len(), |more| first + more)
 }
 
 fn block(text: &str) -> usize {

@@ -26,6 +26,7 @@ use std::time::Instant;
 use crate::bundle::{Axis, Contents, Digest, EntryContents, ProgramContents, Target};
 use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::link::Linker;
 use crate::permute::{Assignment, Manifest, Program, Quoted, key};
 use crate::resolve::Packages;
 use crate::source::SourceSet;
@@ -104,8 +105,8 @@ pub fn generate(
         let mut targets = if request.targets.is_empty() { program.targets.clone() } else { request.targets.clone() };
         targets.sort();
         targets.dedup();
-        let compiler = Compiler { targets: &targets, sink: tools.sink, cache: tools.cache };
-        let make = |text: &Text, entry: &Entry| compiler.make(text, entry);
+        let compiler = Compiler { targets: &targets, sink: tools.sink, cache: tools.cache, linker: Linker::new(&targets) };
+        let make = |batch: &[(&Text, &Entry)]| compiler.make(batch);
         let woven = on_large_stack(|| weave::weave(&entries, &program.space, points, &make, tools.progress))?;
         // One permutation says nothing about the others, and a part of them not enough.
         if request.only.is_none() && request.shard.is_none() {
@@ -113,6 +114,7 @@ pub fn generate(
             lints.see_woven(sources, program, &entries, &woven);
         }
         outputs.add(&targets, &woven);
+        generated.summary.linked += compiler.linker.linked();
         generated.summary.programs.push(summary::program(&program.name, points.len(), &woven));
         generated.warnings.extend(woven.iter().flat_map(|woven| woven.warnings.iter().cloned()));
         generated.contents.programs.insert(program.name.clone(), contents(program, points, &woven));
@@ -155,7 +157,8 @@ pub fn survey(
 ) -> Result<ProgramSummary, Diagnostics> {
     let points = points(program, &Request::default())?;
     let entries = entry::entries(sources, packages, program, points.first())?;
-    let nothing = |_: &Text, _: &Entry| Ok(Compiled { digest: Digest { unit: [0; 16], blobs: Box::default() }, warnings: Vec::new() });
+    let one = || Ok(Compiled { digest: Digest { unit: [0; 16], blobs: Box::default() }, warnings: Vec::new() });
+    let nothing = |batch: &[(&Text, &Entry)]| batch.iter().map(|_| one()).collect();
     let woven = on_large_stack(|| weave::weave(&entries, &program.space, &points, &nothing, progress))?;
     Ok(summary::program(&program.name, points.len(), &woven))
 }

@@ -15,6 +15,9 @@ pub struct Summary {
     pub targets: Vec<TargetSummary>,
     /// Texts whose results came from the cache; all others were compiled.
     pub cached: usize,
+    /// Texts put together from functions of others; naga did not see them.
+    #[serde(default)]
+    pub linked: usize,
     /// Whether nothing was done, since neither the inputs nor the bundle changed since they were made.
     pub up_to_date: bool,
     pub seconds: f64,
@@ -112,7 +115,7 @@ impl fmt::Display for Summary {
         if self.up_to_date {
             return writeln!(f, "{} permutations up to date, checked in {:.2} s", self.permutations(), self.seconds);
         }
-        writeln!(f, "{} texts, {} of them from the cache", self.texts(), self.cached)?;
+        writeln!(f, "{} texts: {} from the cache, {} linked from functions of others", self.texts(), self.cached, self.linked)?;
         let rate = self.permutations() as f64 / self.seconds.max(1e-9);
         writeln!(f, "{} permutations in {:.2} s, {rate:.0} a second", self.permutations(), self.seconds)
     }

@@ -15,7 +15,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Assignment, Key, ReadTree, Space};
 
 /// Permutations composed before their new texts are compiled: bounds the memory that texts take.
-const BATCH: usize = 512;
+const BATCH: usize = 1024;
 
 /// An entry point, compiled for every permutation.
 pub struct Woven {
@@ -35,8 +35,8 @@ pub struct Woven {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Makes something of a text that is new.
-pub type Make<'a> = dyn Fn(&Text, &Entry) -> Result<Compiled, Diagnostics> + Sync + 'a;
+/// Makes something of each text of a batch; all are new.
+pub type Make<'a> = dyn Fn(&[(&Text, &Entry)]) -> Vec<Result<Compiled, Diagnostics>> + 'a;
 
 /// Composes every entry point for every permutation, and makes something of each text, a batch of permutations at a time.
 pub fn weave(
@@ -53,7 +53,8 @@ pub fn weave(
     for start in (0..points.len()).step_by(BATCH) {
         let batch = start..points.len().min(start + BATCH);
         let jobs = compose_batch(&mut looms, space, &points[batch.clone()])?;
-        let made = jobs.into_par_iter().map(|job| job.run(entries, space, &points[batch.clone()], make));
+        let texts: Vec<_> = jobs.iter().map(|job| (&*job.text, &entries[job.entry])).collect();
+        let made = make(&texts).into_iter().zip(&jobs).map(|(made, job)| job.named(made, entries, space, &points[batch.clone()]));
         for (entry, Compiled { digest, warnings }) in collect(made.collect())? {
             looms[entry].woven.made.push(digest);
             looms[entry].woven.warnings.extend(warnings);
@@ -78,11 +79,17 @@ pub struct Text {
 }
 
 impl Job {
-    /// Errors and warnings name the permutation.
-    fn run(self, entries: &[Entry], space: &Space, batch: &[Assignment], make: &Make<'_>) -> Result<(usize, Compiled), Diagnostics> {
+    /// What was made of the text; errors and warnings name the permutation.
+    fn named(
+        &self,
+        made: Result<Compiled, Diagnostics>,
+        entries: &[Entry],
+        space: &Space,
+        batch: &[Assignment],
+    ) -> Result<(usize, Compiled), Diagnostics> {
         let entry = &entries[self.entry];
         let named = |diagnostics| of_permutation(diagnostics, entry, &space.key(&batch[self.point]));
-        let Compiled { digest, warnings } = make(&self.text, entry).map_err(|errors| named(entry.graph.traced(errors)))?;
+        let Compiled { digest, warnings } = made.map_err(|errors| named(entry.graph.traced(errors)))?;
         Ok((self.entry, Compiled { digest, warnings: named(entry.graph.own(warnings)) }))
     }
 }

@@ -10,7 +10,7 @@ mod uniformity;
 
 pub use guard::{guard, on_large_stack};
 pub use limits::{LIMITS, Limits};
-pub use uniformity::lint;
+pub use uniformity::{has_lints, lint};
 
 use naga::front::{glsl, wgsl};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};

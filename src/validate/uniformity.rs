@@ -18,16 +18,20 @@ const ROUNDS: usize = 8;
 
 /// Warnings about the fragment entry points of a module, in the order of its text.
 pub fn lint(composed: &Composed, validated: &Validated) -> Diagnostics {
+    findings(validated).iter().filter_map(|(range, finding)| warning(composed, range.0..range.1, finding)).collect()
+}
+
+/// Whether there is something to warn of, wherever the text came from.
+pub fn has_lints(validated: &Validated) -> bool {
+    !findings(validated).is_empty()
+}
+
+fn findings(validated: &Validated) -> BTreeMap<(usize, usize), Finding> {
     let mut flow = Flow::new(&validated.module);
-    if flow.functions.iter().all(|function| !function.is_entry) {
-        return Vec::new();
+    if flow.functions.iter().any(|function| function.is_entry) {
+        let _ = (0..ROUNDS).find(|_| !flow.round());
     }
-    for _ in 0..ROUNDS {
-        if !flow.round() {
-            break;
-        }
-    }
-    flow.found.iter().filter_map(|(range, finding)| warning(composed, range.0..range.1, finding)).collect()
+    flow.found
 }
 
 fn warning(composed: &Composed, range: std::ops::Range<usize>, finding: &Finding) -> Option<Diagnostic> {

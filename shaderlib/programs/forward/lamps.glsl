@@ -88,17 +88,16 @@ vec3 ggx(Surface surface, vec3 l) {
 }
 #endif
 
-/// The sums with the light of one lamp.
-Accum add_lamp(Accum sum, Surface surface, uint i) {
-    Light light = lamps.lights[i];
+/// What of a lamp arrives at a point.
+LightSample sample_lamp(Light light, vec3 position) {
 #if LIGHTS == LIGHTS_DIRECTIONAL
     LightSample arriving = sample_directional(light);
 #elif LIGHTS == LIGHTS_POINT
-    LightSample arriving = sample_point(light, surface.position);
+    LightSample arriving = sample_point(light, position);
 #elif LIGHTS == LIGHTS_SPOT
-    LightSample arriving = sample_spot(light, surface.position);
+    LightSample arriving = sample_spot(light, position);
 #else
-    LightSample arriving = sample_light(light, surface.position);
+    LightSample arriving = sample_light(light, position);
 #endif
 #if ATTENUATION != ATTENUATION_POLYNOMIAL
     arriving.attenuation = falloff(light, arriving);
@@ -106,37 +105,55 @@ Accum add_lamp(Accum sum, Surface surface, uint i) {
 #if CONE != CONE_EXPONENT
     arriving.spot = cone(light, arriving);
 #endif
+    return arriving;
+}
 
+/// How much of a lamp's ambient colour counts.
+float ambient_share(Light light, LightSample arriving) {
 #if AMBIENT != AMBIENT_CONSTANT
-    float ambient = 0.0;
+    return 0.0;
 #elif AMBIENT_ATTENUATED
-    float ambient = arriving.attenuation * arriving.spot;
+    return arriving.attenuation * arriving.spot;
 #elif LIGHTS == LIGHTS_MIXED
-    float ambient = light.kind == LIGHT_OFF ? 0.0 : 1.0;
+    return light.kind == LIGHT_OFF ? 0.0 : 1.0;
 #else
-    float ambient = 1.0;
+    return 1.0;
 #endif
+}
 
+/// How much light from the direction `l` the surface scatters.
+float diffuse_share(Surface surface, vec3 l) {
 #if DIFFUSE == DIFFUSE_LAMBERT
-    float diffuse = lambert(surface.normal, arriving.l);
+    return lambert(surface.normal, l);
 #elif DIFFUSE == DIFFUSE_HALF_LAMBERT
-    float diffuse = half_lambert(surface.normal, arriving.l);
+    return half_lambert(surface.normal, l);
 #elif DIFFUSE == DIFFUSE_WRAP
-    float diffuse = wrap(surface.normal, arriving.l, surface.material.wrap);
+    return wrap(surface.normal, l, surface.material.wrap);
 #else
-    float diffuse = oren_nayar(surface.normal, arriving.l, surface.view, surface.material.sigma);
+    return oren_nayar(surface.normal, l, surface.view, surface.material.sigma);
 #endif
+}
 
+/// How much light from the direction `l` the surface reflects towards the viewer.
+float specular_share(Surface surface, vec3 l) {
 #if SPECULAR == SPECULAR_PHONG
-    float specular = phong(surface.normal, arriving.l, surface.view, surface.material.shininess);
+    return phong(surface.normal, l, surface.view, surface.material.shininess);
 #elif SPECULAR == SPECULAR_BLINN_PHONG
-    float specular = blinn_phong(surface.normal, arriving.l, surface.view, surface.material.shininess);
+    return blinn_phong(surface.normal, l, surface.view, surface.material.shininess);
 #elif SPECULAR == SPECULAR_BLINN_PHONG_NORMALIZED
-    float specular = blinn_phong_normalized(surface.normal, arriving.l, surface.view, surface.material.shininess);
+    return blinn_phong_normalized(surface.normal, l, surface.view, surface.material.shininess);
 #else
-    float specular = 0.0;
+    return 0.0;
 #endif
+}
 
+/// The sums with the light of one lamp.
+Accum add_lamp(Accum sum, Surface surface, uint i) {
+    Light light = lamps.lights[i];
+    LightSample arriving = sample_lamp(light, surface.position);
+    float ambient = ambient_share(light, arriving);
+    float diffuse = diffuse_share(surface, arriving.l);
+    float specular = specular_share(surface, arriving.l);
 #if SHADOW == SHADOW_NONE
     float visibility = 1.0;
 #else

@@ -1,0 +1,163 @@
+//! Takes SPIR-V modules apart by function, and puts pieces of different modules together.
+//!
+//! A piece holds nothing that depends on the rest of its module: its own ids count from nought, and what
+//! it needs from outside is named by content or, for the author's functions, by name. So a module made of
+//! its own pieces has the same bytes as one made of equal pieces found elsewhere. For the same reason a piece
+//! loses what the writer adds to it on account of its neighbours: the names of constants, and loads for the
+//! functions that it calls.
+
+mod assemble;
+mod capabilities;
+mod module;
+mod operands;
+mod split;
+
+pub use assemble::assemble;
+pub use split::split;
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+/// Magic number, version 1.3 and the generator number: other writers lay their modules out otherwise.
+const HEADER: [u32; 3] = [0x0723_0203, 0x0001_0300, 28];
+/// Logical addressing with the GLSL memory model, as one instruction.
+const MEMORY_MODEL: [u32; 3] = [3 << 16 | 14, 0, 1];
+/// Bounds the recursion through calls and nested types, so that bad content cannot fill the stack of a small thread.
+const DEPTH: u32 = 96;
+
+/// What a piece needs from outside.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Ref {
+    /// A declaration, by its number in the pool.
+    Pool(u32),
+    /// One of the author's functions.
+    User(String),
+}
+
+/// Instructions whose ids are still open.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Text {
+    words: Vec<u32>,
+    /// The places of the piece's own ids, which the words hold as they count from nought.
+    locals: Vec<u32>,
+    /// The places of ids from outside, with the number of the reference.
+    links: Vec<(u32, u32)>,
+}
+
+impl Text {
+    /// Copies the words and fills the ids in.
+    fn write(&self, base: u32, links: &[u32], out: &mut Vec<u32>) {
+        let start = out.len();
+        out.extend_from_slice(&self.words);
+        let tail = out.get_mut(start..).unwrap_or_default();
+        for &at in &self.locals {
+            if let Some(word) = tail.get_mut(at as usize) {
+                *word = word.wrapping_add(base);
+            }
+        }
+        for &(at, link) in &self.links {
+            if let (Some(word), Some(&id)) = (tail.get_mut(at as usize), links.get(link as usize)) {
+                *word = id;
+            }
+        }
+    }
+}
+
+/// A function with everything it needs from outside by reference into the pool, or by name.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Piece {
+    /// The entry point instruction; empty for all but entry points.
+    entry: Text,
+    modes: Text,
+    names: Text,
+    notes: Text,
+    body: Text,
+    /// What is needed from outside, each once, in order of appearance.
+    refs: Vec<Ref>,
+    /// The capabilities that the text itself needs, in order.
+    needs: Vec<u32>,
+    /// How many ids are the piece's own.
+    ids: u32,
+}
+
+/// Where a piece goes in a module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shelf {
+    Import,
+    Global,
+    Function,
+}
+const SHELVES: [Shelf; 3] = [Shelf::Import, Shelf::Global, Shelf::Function];
+
+/// Something that functions share.
+#[derive(Debug)]
+struct Declaration {
+    shelf: Shelf,
+    piece: Piece,
+}
+
+/// Hashes words faster than the default, which guards against attacks that a pool need not fear.
+#[derive(Default)]
+struct Mixer(u64);
+
+impl Mixer {
+    fn mix(&mut self, value: u64) {
+        self.0 = (self.0.rotate_left(5) ^ value).wrapping_mul(0x517c_c1b7_2722_0a95);
+    }
+}
+
+impl Hasher for Mixer {
+    fn write(&mut self, bytes: &[u8]) {
+        let (chunks, rest) = bytes.as_chunks();
+        chunks.iter().for_each(|&chunk| self.mix(u64::from_le_bytes(chunk)));
+        rest.iter().for_each(|&byte| self.mix(byte.into()));
+    }
+
+    fn write_u32(&mut self, value: u32) {
+        self.mix(value.into());
+    }
+
+    fn write_usize(&mut self, value: usize) {
+        self.mix(value as u64);
+    }
+
+    /// The map takes the low bits, and multiplication mixes the high ones best.
+    fn finish(&self) -> u64 {
+        self.0.rotate_left(26)
+    }
+}
+
+/// Declarations (types, constants, module variables, imports, helper functions), each once, by content.
+#[derive(Debug, Default)]
+pub struct Pool {
+    declarations: Vec<Declaration>,
+    /// The numbers of the declarations, by flat content.
+    numbers: HashMap<Box<[u32]>, u32, BuildHasherDefault<Mixer>>,
+}
+
+impl Pool {
+    /// The number of a known declaration.
+    fn number(&self, key: &[u32]) -> Option<u32> {
+        self.numbers.get(key).copied()
+    }
+
+    /// The number of a declaration, new or known.
+    fn intern(&mut self, key: &[u32], declaration: Declaration) -> Result<u32, String> {
+        if let Some(number) = self.number(key) {
+            return Ok(number);
+        }
+        let number = u32::try_from(self.declarations.len()).map_err(|_| "the pool is full")?;
+        self.declarations.push(declaration);
+        self.numbers.insert(key.into(), number);
+        Ok(number)
+    }
+}
+
+/// The pieces of one module that were wanted.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// The author's functions with their names, in the order of the module.
+    pub functions: Vec<(String, Piece)>,
+    /// The entry point.
+    pub entry: Option<Piece>,
+}

@@ -1,0 +1,212 @@
+//! Reads a module just as far as its functions and the heads of its instructions.
+
+use super::capabilities::{self, SHADER, STORAGE_IMAGE_WRITE_WITHOUT_FORMAT, extensions};
+use super::operands::Place::{Body, Either, Global};
+use super::operands::{Inst, op};
+use super::{HEADER, MEMORY_MODEL};
+use std::collections::{BTreeSet, HashSet};
+use std::ops::Range;
+
+/// Vertex and fragment: the other stages have instructions of their own, which the table lacks.
+const STAGES: [u32; 2] = [0, 4];
+
+/// What the module says of an id.
+#[derive(Clone, Copy, Default)]
+struct Id {
+    /// The instruction that defines it.
+    defined: Option<usize>,
+    /// The last name or decoration, as a place in the list of those.
+    about: Option<usize>,
+}
+
+/// A module as it is read. Instructions go by their numbers.
+pub struct Module<'a> {
+    pub insts: Vec<Inst<'a>>,
+    ids: Vec<Id>,
+    /// Names and decorations, each with the place of the one before it that is about the same id.
+    about: Vec<(usize, Option<usize>)>,
+}
+
+impl<'a> Module<'a> {
+    /// Reads all instructions, and checks that each id is defined once.
+    pub fn read(words: &'a [u32]) -> Result<Self, String> {
+        let (header, mut rest) = words.split_at_checked(5).ok_or("the header is cut off")?;
+        if !header.starts_with(&HEADER) || header.last() != Some(&0) {
+            return Err("the header is not of a known kind".into());
+        }
+        // Bad content must not make the lists large.
+        let bound = header.get(3).map(|&bound| bound as usize).filter(|&bound| bound <= words.len() * 4 + 1024);
+        let ids = vec![Id::default(); bound.ok_or("the bound is too high")?];
+        let mut module = Self { insts: Vec::with_capacity(words.len() / 3), ids, about: vec![] };
+        while let Some(&first) = rest.first() {
+            let (words, tail) = rest.split_at_checked((first >> 16) as usize).ok_or("an instruction is cut off")?;
+            module.push(Inst::new(words)?)?;
+            rest = tail;
+        }
+        Ok(module)
+    }
+
+    fn push(&mut self, inst: Inst<'a>) -> Result<(), String> {
+        let at = self.insts.len();
+        if let Some(id) = inst.result()
+            && self.id(id)?.defined.replace(at).is_some()
+        {
+            return Err(format!("id {id} is defined twice"));
+        }
+        if let op::NAME | op::MEMBER_NAME | op::DECORATE | op::MEMBER_DECORATE = inst.op {
+            let last = self.about.len();
+            let earlier = self.id(inst.word(1)?)?.about.replace(last);
+            self.about.push((at, earlier));
+        }
+        self.insts.push(inst);
+        Ok(())
+    }
+
+    fn id(&mut self, id: u32) -> Result<&mut Id, String> {
+        self.ids.get_mut(id as usize).ok_or_else(|| format!("id {id} is out of bounds"))
+    }
+
+    /// One more than the highest id.
+    pub fn bound(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// The number of the instruction that defines an id.
+    pub fn defined(&self, id: u32) -> Option<usize> {
+        self.ids.get(id as usize)?.defined
+    }
+
+    /// The names and decorations of an id, the last first.
+    pub fn about(&self, id: u32) -> impl Iterator<Item = &Inst<'a>> {
+        let mut next = self.ids.get(id as usize).and_then(|id| id.about);
+        std::iter::from_fn(move || {
+            let &(at, earlier) = self.about.get(next?)?;
+            next = earlier;
+            self.insts.get(at)
+        })
+    }
+
+    /// What a piece tells of an id that is its own: names and decorations, sorted and each once.
+    ///
+    /// Constants and most types lose their names: the writer gives `0u` the name of whichever constant of
+    /// the module has that value, so it would tell the module that the piece came from.
+    pub fn description(&self, id: u32) -> Vec<&Inst<'a>> {
+        let defined = self.defined(id).and_then(|at| self.insts.get(at));
+        let nameless = defined.is_some_and(|inst| inst.place == Global && inst.op != op::TYPE_STRUCT);
+        let is_told = |inst: &&Inst| !nameless || matches!(inst.op, op::DECORATE | op::MEMBER_DECORATE);
+        let mut about: Vec<&Inst> = self.about(id).filter(is_told).collect();
+        about.sort_by_key(|inst| (inst.words.get(1..), inst.op));
+        about.dedup_by_key(|inst| inst.words);
+        about
+    }
+
+    /// The name of an id, if it has one.
+    pub fn name(&self, id: u32) -> Result<Option<String>, String> {
+        self.about(id).filter(|inst| inst.op == op::NAME).last().map(|inst| inst.string(2)).transpose()
+    }
+
+    /// All instructions of an opcode.
+    pub fn of(&self, op: u16) -> impl Iterator<Item = &Inst<'a>> {
+        self.insts.iter().filter(move |inst| inst.op == op)
+    }
+
+    /// The single entry point, of a stage and a memory model that are known.
+    pub fn entry_point(&self) -> Result<&Inst<'a>, String> {
+        let mut points = self.of(op::ENTRY_POINT);
+        let (Some(point), None) = (points.next(), points.next()) else {
+            return Err("there must be one entry point".into());
+        };
+        if !STAGES.contains(&point.word(1)?) {
+            return Err("the stage is not known".into());
+        }
+        if !self.of(op::MEMORY_MODEL).map(|inst| inst.words).eq([&MEMORY_MODEL]) {
+            return Err("the memory model is not known".into());
+        }
+        Ok(point)
+    }
+
+    /// The functions as ranges of instructions. Each instruction must stand where it may.
+    fn spans(&self) -> Result<Vec<Range<usize>>, String> {
+        let mut functions = vec![];
+        let mut start = None;
+        for (at, inst) in self.insts.iter().enumerate() {
+            match (inst.op, start) {
+                (op::FUNCTION, None) => start = Some(at),
+                (op::FUNCTION_END, Some(first)) => {
+                    functions.push(first..at + 1);
+                    start = None;
+                }
+                (op::FUNCTION, Some(_)) => return Err("a function has no end".into()),
+                (op, _) if inst.place != Either && start.is_some() != (inst.place == Body) => {
+                    return Err(format!("opcode {op} is out of place"));
+                }
+                _ => {}
+            }
+        }
+        if start.is_some() { Err("a function has no end".into()) } else { Ok(functions) }
+    }
+
+    /// Notes the capabilities of an instruction.
+    pub fn require(&self, inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
+        if inst.op == op::IMAGE_WRITE && self.lacks_format(inst.word(1)?) {
+            needs.insert(STORAGE_IMAGE_WRITE_WITHOUT_FORMAT);
+        }
+        capabilities::require(inst, needs)
+    }
+
+    /// Whether the type of an image has no format.
+    fn lacks_format(&self, image: u32) -> bool {
+        let definition = |id| self.insts.get(self.defined(id)?);
+        let kind = definition(image).and_then(|inst| definition(inst.word(1).ok()?));
+        kind.is_some_and(|inst| inst.op == op::TYPE_IMAGE && inst.word(8) == Ok(0))
+    }
+
+    /// The derived capabilities and extensions must be those that the module declares, or the tables lack some.
+    pub fn check(&self) -> Result<(), String> {
+        let mut needs = BTreeSet::from([SHADER]);
+        self.insts.iter().try_for_each(|inst| self.require(inst, &mut needs))?;
+        let declared: BTreeSet<u32> = self.of(op::CAPABILITY).filter_map(|inst| inst.word(1).ok()).collect();
+        if declared != needs {
+            return Err(format!("the capabilities are {declared:?}, not {needs:?}"));
+        }
+        let declared = self.of(op::EXTENSION).map(|inst| inst.string(1)).collect::<Result<BTreeSet<_>, _>>()?;
+        if !declared.iter().map(String::as_str).eq(extensions(&needs)) {
+            return Err(format!("the extensions {declared:?} are not those of {needs:?}"));
+        }
+        Ok(())
+    }
+}
+
+/// What a function is to the others.
+pub enum Role {
+    Entry,
+    User(String),
+    Helper,
+}
+
+pub struct Function {
+    pub span: Range<usize>,
+    pub role: Role,
+}
+
+/// The functions in the order of the module, one of them the entry point's.
+pub fn functions(module: &Module, is_user: &dyn Fn(&str) -> bool) -> Result<Vec<Function>, String> {
+    let entry = module.entry_point()?.word(2)?;
+    let (mut functions, mut entries, mut taken) = (vec![], 0, HashSet::new());
+    for span in module.spans()? {
+        let id = module.insts.get(span.start).and_then(Inst::result).ok_or("a function has no id")?;
+        let role = if id == entry {
+            entries += 1;
+            Role::Entry
+        } else if let Some(name) = module.name(id)?.filter(|name| is_user(name)) {
+            if !taken.insert(name.clone()) {
+                return Err(format!("there are two functions {name}"));
+            }
+            Role::User(name)
+        } else {
+            Role::Helper
+        };
+        functions.push(Function { span, role });
+    }
+    if entries == 1 { Ok(functions) } else { Err("the entry point has no function".into()) }
+}

@@ -1,0 +1,333 @@
+//! Takes a module apart.
+
+use super::module::{Function, Module, Role, functions};
+use super::operands::{Inst, op};
+use super::{DEPTH, Declaration, Parts, Piece, Pool, Ref, Shelf, Text};
+use std::collections::{BTreeSet, HashSet};
+use std::ops::Range;
+
+/// Takes a module apart. `is_user` says which named functions are the author's: calls to those stay symbolic
+/// by name. Only those of them that `is_wanted` names become pieces, and so does the entry point by its own
+/// name, which a function may have too: the rest of the module is looked at no further than these need.
+pub fn split(words: &[u32], pool: &mut Pool, is_user: &dyn Fn(&str) -> bool, is_wanted: &dyn Fn(&str) -> bool) -> Result<Parts, String> {
+    let module = Module::read(words)?;
+    let point = module.entry_point()?;
+    let functions = functions(&module, is_user)?;
+    module.check()?;
+    let mut splitter = Splitter::new(&module, pool, &functions);
+    let mut parts = Parts { functions: vec![], entry: None };
+    for function in &functions {
+        match &function.role {
+            Role::User(name) if is_wanted(name) => {
+                let draft = splitter.draft(function.span.clone(), 0)?;
+                parts.functions.push((name.clone(), draft.finish()));
+            }
+            Role::Entry if is_wanted(&point.string(3)?) => {
+                let mut draft = splitter.draft(function.span.clone(), 0)?;
+                splitter.enter(&mut draft, point)?;
+                parts.entry = Some(draft.finish());
+            }
+            _ => {}
+        }
+    }
+    Ok(parts)
+}
+
+/// What the splitter knows of an id.
+#[derive(Clone, Copy, Default)]
+struct Id {
+    /// How often the piece that has the id as its own names it.
+    uses: u32,
+    /// Its number among that piece's own ids.
+    own: Option<u32>,
+    /// Its number in the pool.
+    pool: Option<u32>,
+    /// Its reference in the piece that starts at an instruction, the last such piece.
+    link: Option<(usize, u32)>,
+}
+
+/// What an id is to the piece that uses it.
+enum Target {
+    Local(u32),
+    Link(u32),
+}
+
+/// A piece in the making.
+struct Draft {
+    span: Range<usize>,
+    depth: u32,
+    /// The ids that are the piece's own, in order.
+    own: Vec<u32>,
+    needs: BTreeSet<u32>,
+    piece: Piece,
+}
+
+impl Draft {
+    fn finish(self) -> Piece {
+        Piece { needs: self.needs.into_iter().collect(), ids: self.own.len() as u32, ..self.piece }
+    }
+}
+
+/// Makes the pieces of one module.
+struct Splitter<'m, 'a> {
+    module: &'m Module<'a>,
+    pool: &'m mut Pool,
+    functions: &'m [Function],
+    ids: Vec<Id>,
+    /// The numbers of the variables that are in the pool so far.
+    variables: HashSet<u32>,
+}
+
+impl<'m, 'a> Splitter<'m, 'a> {
+    fn new(module: &'m Module<'a>, pool: &'m mut Pool, functions: &'m [Function]) -> Self {
+        Self { module, pool, functions, ids: vec![Id::default(); module.bound()], variables: HashSet::new() }
+    }
+
+    fn id(&mut self, id: u32) -> Result<&mut Id, String> {
+        self.ids.get_mut(id as usize).ok_or_else(|| format!("id {id} is out of bounds"))
+    }
+
+    /// Makes a piece of a range of instructions, for a function or a single declaration.
+    fn draft(&mut self, span: Range<usize>, depth: u32) -> Result<Draft, String> {
+        if depth == DEPTH {
+            return Err("the declarations are too deep".into());
+        }
+        let module = self.module;
+        let insts = module.insts.get(span.clone()).unwrap_or_default();
+        self.count(insts)?;
+        let mut draft = Draft { span, depth, own: vec![], needs: BTreeSet::new(), piece: Piece::default() };
+        for inst in insts {
+            if !self.is_idle(inst)? {
+                self.add(&mut draft, |piece| &mut piece.body, inst)?;
+            }
+        }
+        if draft.own.first().copied() != insts.first().and_then(Inst::result) {
+            return Err("a piece does not start with its own id".into());
+        }
+        self.describe(&mut draft)?;
+        Ok(draft)
+    }
+
+    /// Counts how often ids are named, but by loads and access chains that nothing uses.
+    ///
+    /// The writer starts a function with one for each module variable that the function or its callees use, so
+    /// those of the callees alone would tell which callees the module had.
+    fn count(&mut self, insts: &[Inst]) -> Result<(), String> {
+        for inst in insts {
+            inst.ids(|_, id| self.id(id).map(|id| id.uses += 1))?;
+        }
+        // An access chain may be there for an idle load only, so the last come first.
+        for inst in insts.iter().rev().filter(|inst| matches!(inst.op, op::LOAD | op::ACCESS_CHAIN)) {
+            if inst.result().is_some_and(|id| self.id(id).is_ok_and(|id| id.uses == 1)) {
+                inst.ids(|_, id| self.id(id).map(|id| id.uses = id.uses.saturating_sub(1)))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether an instruction is a load or an access chain that was not counted.
+    fn is_idle(&mut self, inst: &Inst) -> Result<bool, String> {
+        Ok(matches!(inst.op, op::LOAD | op::ACCESS_CHAIN) && self.id(inst.word(2)?)?.uses == 0)
+    }
+
+    /// Appends an instruction to one of the texts.
+    fn add(&mut self, draft: &mut Draft, text: fn(&mut Piece) -> &mut Text, inst: &Inst) -> Result<(), String> {
+        self.module.require(inst, &mut draft.needs)?;
+        let start = text(&mut draft.piece).words.len();
+        text(&mut draft.piece).words.extend_from_slice(inst.words);
+        inst.ids(|at, id| {
+            let target = self.target(draft, id)?;
+            let text = text(&mut draft.piece);
+            let place = (start + at) as u32;
+            // No id of the module may stay behind, not even where it is overwritten: pieces are compared.
+            let number = match target {
+                Target::Link(link) => {
+                    text.links.push((place, link));
+                    0
+                }
+                Target::Local(_) if inst.op == op::FUNCTION_CALL && at == 3 => return Err("a function calls itself".into()),
+                Target::Local(number) => {
+                    text.locals.push(place);
+                    number
+                }
+            };
+            if let Some(word) = text.words.get_mut(start + at) {
+                *word = number;
+            }
+            Ok(())
+        })
+    }
+
+    /// Finds out whether an id is the piece's own, and numbers it at its first appearance.
+    fn target(&mut self, draft: &mut Draft, id: u32) -> Result<Target, String> {
+        let known = *self.id(id)?;
+        if self.module.defined(id).is_some_and(|at| draft.span.contains(&at)) {
+            let number = known.own.unwrap_or(draft.own.len() as u32);
+            if known.own.is_none() {
+                draft.own.push(id);
+                self.id(id)?.own = Some(number);
+            }
+            return Ok(Target::Local(number));
+        }
+        if let Some((_, link)) = known.link.filter(|link| link.0 == draft.span.start) {
+            return Ok(Target::Link(link));
+        }
+        let outside = self.outside(id, draft.span.start, draft.depth + 1)?;
+        let at = draft.piece.refs.iter().position(|known| *known == outside);
+        let link = at.unwrap_or(draft.piece.refs.len());
+        if at.is_none() {
+            draft.piece.refs.push(outside);
+        }
+        self.id(id)?.link = Some((draft.span.start, link as u32));
+        Ok(Target::Link(link as u32))
+    }
+
+    /// What an id stands for outside its module. The instruction `user` refers to it and must come later.
+    fn outside(&mut self, id: u32, user: usize, depth: u32) -> Result<Ref, String> {
+        let defined = self.module.defined(id).filter(|&at| at < user).ok_or_else(|| format!("id {id} is not known"))?;
+        if let Some(number) = self.id(id)?.pool {
+            return Ok(Ref::Pool(number));
+        }
+        let at = self.functions.partition_point(|function| function.span.end <= defined);
+        let number = match self.functions.get(at) {
+            Some(function) if function.span.start == defined => match &function.role {
+                Role::Entry => return Err("the entry point is called".into()),
+                Role::User(name) => return Ok(Ref::User(name.clone())),
+                Role::Helper => self.helper(function.span.clone(), depth)?,
+            },
+            Some(function) if at == 0 && defined < function.span.start => self.declaration(defined, depth)?,
+            _ => return Err(format!("id {id} is not known here")),
+        };
+        self.id(id)?.pool = Some(number);
+        Ok(Ref::Pool(number))
+    }
+
+    /// Moves a function that is not the author's to the pool.
+    fn helper(&mut self, span: Range<usize>, depth: u32) -> Result<u32, String> {
+        let piece = self.draft(span, depth)?.finish();
+        let key = key_of_helper(&piece).ok_or("a helper calls a function of the author's")?;
+        self.pool.intern(&key, Declaration { shelf: Shelf::Function, piece })
+    }
+
+    /// Moves a type, a constant, a variable or an import to the pool. Only what the pool lacks is made into a
+    /// piece: most modules have the same declarations.
+    fn declaration(&mut self, at: usize, depth: u32) -> Result<u32, String> {
+        let inst = self.module.insts.get(at).ok_or("a declaration is missing")?;
+        if depth == DEPTH {
+            return Err("the declarations are too deep".into());
+        }
+        if inst.op == op::VARIABLE {
+            self.declare_twins(at, depth)?;
+        }
+        let mut key = self.key(at, inst, depth)?;
+        loop {
+            if let Some(number) = self.pool.number(&key) {
+                if inst.op != op::VARIABLE || self.variables.insert(number) {
+                    return Ok(number);
+                }
+                key.first_mut().into_iter().for_each(|ordinal| *ordinal += 1);
+                continue;
+            }
+            let shelf = if inst.op == op::IMPORT { Shelf::Import } else { Shelf::Global };
+            let piece = self.draft(at..at + 1, depth)?.finish();
+            self.pool.intern(&key, Declaration { shelf, piece })?;
+        }
+    }
+
+    /// The content of a declaration: an ordinal, which keeps equal variables of one module apart, and the
+    /// words of the declaration, its names and its decorations, with pool numbers for ids and nought for its own.
+    fn key(&mut self, user: usize, inst: &Inst, depth: u32) -> Result<Vec<u32>, String> {
+        let module = self.module;
+        let own = inst.result().ok_or("a declaration has no id")?;
+        let mut key = vec![0];
+        key.extend(inst.words);
+        let mut result = Some(own);
+        inst.ids(|at, id| {
+            let own = result.take_if(|own| *own == id).map(|_| 0);
+            let number = own.map_or_else(|| self.number(id, user, depth), Ok)?;
+            key.get_mut(at + 1).into_iter().for_each(|word| *word = number);
+            Ok(())
+        })?;
+        for inst in module.description(own) {
+            key.extend(inst.words.first());
+            key.push(0);
+            key.extend(inst.words.get(2..).unwrap_or_default());
+        }
+        Ok(key)
+    }
+
+    /// The pool's number of what a declaration refers to.
+    fn number(&mut self, id: u32, user: usize, depth: u32) -> Result<u32, String> {
+        match self.outside(id, user, depth + 1)? {
+            Ref::Pool(number) => Ok(number),
+            Ref::User(name) => Err(format!("a declaration refers to the function {name}")),
+        }
+    }
+
+    /// Moves the variables that come before one and may equal it to the pool, so that its ordinal does not
+    /// depend on what is wanted.
+    fn declare_twins(&mut self, at: usize, depth: u32) -> Result<(), String> {
+        let module = self.module;
+        let Some((variable, before)) = module.insts.get(..=at).and_then(<[_]>::split_last) else { return Ok(()) };
+        for inst in before.iter().filter(|inst| inst.op == op::VARIABLE) {
+            if let Some(id) = inst.result().filter(|_| are_alike(module, inst, variable)) {
+                self.outside(id, at, depth + 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the names and decorations of the piece's own ids.
+    fn describe(&mut self, draft: &mut Draft) -> Result<(), String> {
+        let module = self.module;
+        for id in draft.own.clone() {
+            for inst in module.description(id) {
+                match inst.op {
+                    op::DECORATE | op::MEMBER_DECORATE => self.add(draft, |piece| &mut piece.notes, inst)?,
+                    _ => self.add(draft, |piece| &mut piece.names, inst)?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the entry point instruction and its execution modes, sorted.
+    fn enter(&mut self, draft: &mut Draft, point: &Inst) -> Result<(), String> {
+        self.add(draft, |piece| &mut piece.entry, point)?;
+        let mut modes: Vec<&Inst> = self.module.of(op::EXECUTION_MODE).collect();
+        modes.sort_by_key(|inst| inst.words);
+        for inst in modes {
+            if inst.word(1)? != point.word(2)? {
+                return Err("an execution mode is not the entry point's".into());
+            }
+            self.add(draft, |piece| &mut piece.modes, inst)?;
+        }
+        Ok(())
+    }
+}
+
+/// The content of a helper, flat, with a start that no declaration has. None if it depends on its module.
+fn key_of_helper(piece: &Piece) -> Option<Vec<u32>> {
+    let mut key = vec![u32::MAX];
+    for text in [&piece.body, &piece.names, &piece.notes] {
+        key.extend([&text.words, &text.locals].map(|list| list.len() as u32));
+        key.push(text.links.len() as u32);
+        key.extend(text.words.iter().chain(&text.locals));
+        key.extend(text.links.iter().flat_map(|&(at, link)| [at, link]));
+    }
+    for outside in &piece.refs {
+        match outside {
+            Ref::Pool(number) => key.push(*number),
+            Ref::User(_) => return None,
+        }
+    }
+    Some(key)
+}
+
+/// Whether two variables may be equal: their storage classes are, and the names and decorations of one are
+/// among the other's.
+fn are_alike(module: &Module, one: &Inst, other: &Inst) -> bool {
+    let (Ok(id), Ok(twin)) = (one.word(2), other.word(2)) else { return false };
+    let same = |one: &Inst, other: &Inst| one.op == other.op && one.words.get(2..) == other.words.get(2..);
+    one.word(3) == other.word(3) && module.about(id).all(|inst| module.about(twin).any(|twin| same(inst, twin)))
+}

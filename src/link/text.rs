@@ -1,0 +1,120 @@
+//! A text that naga wrote, by its declarations.
+
+use super::words::{begins_word, end, words};
+
+/// What a declaration of an output is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    Type,
+    Constant,
+    Function,
+    /// What is bound, or enters and leaves the stage.
+    Global,
+}
+
+/// One declaration, as written.
+#[derive(Debug)]
+pub struct Declared<'a> {
+    pub kind: Kind,
+    pub name: &'a str,
+    pub text: &'a str,
+}
+
+/// What comes before all declarations, and the declarations.
+///
+/// # Errors
+/// Where something is not understood.
+pub fn split(text: &str) -> Result<(&str, Vec<Declared<'_>>), String> {
+    let header = header(text);
+    let (mut rest, mut declared) = (text[header..].trim_start(), Vec::new());
+    while !rest.is_empty() {
+        let length = length(rest).ok_or("a declaration has no end")?;
+        let (first, after) = rest.split_at(length);
+        declared.push(declaration(first.trim_end())?);
+        rest = after.trim_start();
+    }
+    Ok((text[..header].trim_end(), declared))
+}
+
+/// Bytes of the lines that begin a text of its language.
+fn header(text: &str) -> usize {
+    let starts = ["#", "//", "precision ", "using ", "enable ", "requires "];
+    let is_header = |line: &&str| line.trim().is_empty() || starts.iter().any(|start| line.starts_with(start));
+    text.split_inclusive('\n').take_while(is_header).map(str::len).sum()
+}
+
+/// Bytes of the declaration that a text begins with, the semicolon after its brackets too.
+fn length(text: &str) -> Option<usize> {
+    let mut depth = 0_usize;
+    for (at, byte) in text.bytes().enumerate() {
+        match byte {
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth = depth.checked_sub(1)?,
+            _ => {}
+        }
+        if depth == 0 && byte == b';' {
+            return Some(at + 1);
+        }
+        if depth == 0 && byte == b'}' {
+            let after = &text[at + 1..];
+            let blanks = after.len() - after.trim_start().len();
+            return Some(if after.trim_start().starts_with(';') { at + blanks + 2 } else { at + 1 });
+        }
+    }
+    None
+}
+
+fn declaration(text: &str) -> Result<Declared<'_>, String> {
+    let head = head(text);
+    let has = |word: &str| head.words.contains(&word);
+    let last = || head.words.last().copied();
+    let (kind, name) = match head.stop {
+        _ if has("struct") || has("cbuffer") => {
+            let kind = if has("struct") { Kind::Type } else { Kind::Global };
+            (kind, head.words.iter().skip_while(|word| !matches!(**word, "struct" | "cbuffer")).nth(1).copied())
+        }
+        _ if has("typedef") || has("alias") => (Kind::Type, last()),
+        b'(' => (Kind::Function, last()),
+        // A block of uniforms is called by the name of its instance.
+        b'{' if has("uniform") || has("buffer") => (Kind::Global, words(text).last().map(|word| word.text)),
+        b'{' | b' ' => (Kind::Global, None),
+        _ if has("const") && !head.words.iter().any(|word| word.starts_with("Sampler")) => (Kind::Constant, last()),
+        _ if has("constant") => (Kind::Constant, last()),
+        _ => (Kind::Global, last()),
+    };
+    let name = name.ok_or_else(|| format!("a declaration without a name: {}", text.chars().take(60).collect::<String>()))?;
+    Ok(Declared { kind, name, text })
+}
+
+/// The words before a declaration's value, its arguments or its content.
+struct Head<'a> {
+    words: Vec<&'a str>,
+    /// The character that ended them.
+    stop: u8,
+}
+
+fn head(text: &str) -> Head<'_> {
+    let bytes = text.as_bytes();
+    let (mut at, mut words, mut is_attribute) = (0, Vec::new(), false);
+    while let Some(&byte) = bytes.get(at) {
+        let start = at;
+        at = end(bytes, at);
+        match byte {
+            b'(' if is_attribute => at += text[at..].find(')').map_or(0, |found| found + 1),
+            b'<' => at += text[at..].find('>').map_or(0, |found| found + 1),
+            b':' if bytes.get(at) == Some(&b':') => at += 1,
+            b'(' | b'{' | b'=' | b'[' | b';' | b':' => return Head { words, stop: byte },
+            // Attributes of WGSL, and layouts of GLSL, have arguments of their own.
+            b'@' => {
+                at += text[at..].find(|character: char| !character.is_ascii_alphanumeric() && character != '_').unwrap_or(0);
+                is_attribute = true;
+                continue;
+            }
+            _ if begins_word(byte) => words.push(&text[start..at]),
+            _ if byte.is_ascii_whitespace() => continue,
+            _ => {}
+        }
+        is_attribute = words.last() == Some(&"layout");
+    }
+    Head { words, stop: b' ' }
+}

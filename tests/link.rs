@@ -1,0 +1,288 @@
+//! Separate compilation: a text has the same bytes whether its functions are its own or were
+//! taken from others, and whatever may not be taken apart is left whole.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use lamplight::bundle::{Unit, write_directory};
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::generate::{Generated, Request, in_memory};
+use lamplight::link::{Outline, Scans};
+use lamplight::permute::{Manifest, Quoted};
+use lamplight::project;
+use lamplight::resolve::Packages;
+use lamplight::source::SourceSet;
+use libtest_mimic::{Failed, Trial};
+
+use crate::external::{self, Job};
+
+type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
+
+/// One permutation of `forward` in so many is also compiled by itself.
+const STEP: usize = 23;
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [Case; 5] = [
+        ("forward_alone_and_together", forward),
+        ("traps_alone_and_together", traps),
+        ("what_stays_whole", whole),
+        ("what_a_caller_can_notice", noticed),
+        ("warnings_are_not_lost", warnings),
+    ];
+    cases.into_iter().map(|(name, case)| Trial::test(format!("link::{name}"), case)).collect()
+}
+
+/// Makes a manifest's permutations, or one of them.
+fn made(sources: &mut SourceSet, packages: &Packages, manifest: &Manifest, key: Option<&str>) -> Result<Generated, Failed> {
+    let only = key.map(|key| {
+        let id = sources.add("key", key);
+        Quoted::whole(sources, id)
+    });
+    let request = Request { only, ..Request::default() };
+    let made = in_memory(sources, packages, manifest, &request, &|_| ());
+    Ok(made.map_err(|problems| render(sources, &problems, Form::Human))?)
+}
+
+/// Units by entry point and key.
+fn units(generated: &Generated) -> BTreeMap<(String, String), &Unit> {
+    let entries = generated.contents.programs.values().flat_map(|program| program.languages.values().flatten());
+    let units =
+        entries.flat_map(|(name, entry)| entry.keys.iter().map(move |(key, unit)| ((name.clone(), key.clone()), &entry.units[unit])));
+    units.collect()
+}
+
+/// Each text by itself has the bytes, the names and the reflection that it has among all others.
+fn agree(sources: &mut SourceSet, packages: &Packages, manifest: &Manifest, step: usize) -> Result<Generated, Failed> {
+    let together = made(sources, packages, manifest, None)?;
+    let all = units(&together);
+    let mut keys: Vec<&String> = all.keys().map(|(_, key)| key).collect();
+    keys.sort();
+    keys.dedup();
+    for key in keys.into_iter().step_by(step) {
+        let alone = made(sources, packages, manifest, Some(key))?;
+        for ((entry, key), unit) in units(&alone) {
+            differ(unit, all[&(entry.clone(), key.clone())]).map_or(Ok(()), |what| Err(format!("[{key}] {entry}: {what}")))?;
+        }
+    }
+    Ok(together)
+}
+
+fn differ(alone: &Unit, together: &Unit) -> Option<String> {
+    if alone.reflection != together.reflection {
+        return Some("another reflection".to_owned());
+    }
+    let differ = |target: &&String| alone.targets[*target] != together.targets[*target];
+    alone.targets.keys().find(differ).map(|target| {
+        let text = |unit: &Unit| String::from_utf8_lossy(&unit.targets[target].bytes).into_owned();
+        format!("{target} differs, alone:\n{}\ntogether:\n{}", text(alone), text(together))
+    })
+}
+
+fn forward() -> Outcome {
+    let (mut sources, mut manifest) =
+        project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    manifest.programs.retain(|program| program.name == "forward");
+    manifest.programs.iter_mut().for_each(|program| program.glsl = None);
+    let together = agree(&mut sources, &project::library(), &manifest, STEP)?;
+    let (texts, linked) = (together.summary.texts(), together.summary.linked);
+    println!("{linked} of {texts} texts linked");
+    if linked * 10 < texts * 7 { Err(format!("only {linked} of {texts} texts are linked").into()) } else { Ok(()) }
+}
+
+/// Names and functions that writers number, rename or add, in as many combinations as there are.
+const TRAPS: &str = "
+struct Material { color: vec3f, kind: i32, spread: array<vec4f, 3> }
+struct Block { items: array<Material, 4>, turn: mat3x2f, counts: vec4i }
+struct Carried { @builtin(position) clip: vec4f, @location(0) normal: vec3f, @location(1) @interpolate(flat) index: u32 }
+@group(0) @binding(0) var<uniform> block: Block;
+@group(0) @binding(1) var<uniform> other: vec4f;
+@group(1) @binding(0) var map: texture_2d<f32>;
+@group(1) @binding(1) var shadow: texture_depth_2d;
+@group(1) @binding(2) var smooth_sampler: sampler;
+@group(1) @binding(3) var compare: sampler_comparison;
+@group(1) @binding(4) var whole: texture_2d<i32>;
+const OFFSETS = array<vec2f, 4>(vec2f(0.1), vec2f(0.2), vec2f(0.3), vec2f(0.4));
+const LIMIT: i32 = 7;
+var<private> seen: i32;
+
+// Keywords of other languages, and names that shadow declarations.
+fn lit(float4: f32, main: f32) -> f32 { let fixed = float4 * main; let tap_3 = fixed + 1.0; return tap_3; }
+fn helper(material: Material, lit: f32) -> vec3f { var at = material.color; { let at = lit; return at * material.color; } return at; }
+// Functions that the writers add: of two kinds where both are used.
+@if(sign == int) fn turned(v: i32, u: vec2i) -> i32 { return -v / (u.x | 1); }
+@if(sign == vec) fn turned(v: i32, u: vec2i) -> i32 { let t = -u % vec2i(v | 1); return t.x + abs(t.y); }
+@if(sign == both) fn turned(v: i32, u: vec2i) -> i32 { let t = -u / vec2i(3); return -v + t.x + i32(f32(v) * 0.5); }
+fn table_4(i: i32) -> vec2f { return OFFSETS[i & 3]; }
+fn loops(count: i32) -> f32 {
+    var sum = 0.0;
+    for (var i = 0; i < count; i++) { for (var j = 0; j < LIMIT; j++) { sum += table_4(i + j).x; } }
+    for (var i = 0; i < 2; i++) { sum += f32(i); }
+    switch count { case LIMIT: { sum += 1.0; } case 2, 3: { sum -= 1.0; } default: {} }
+    return sum;
+}
+fn fresh(kind: i32) -> Material { return Material(vec3f(1.0), kind, array<vec4f, 3>(vec4f(1.0), vec4f(2.0), vec4f(3.0))); }
+fn counted() -> i32 { seen += 1; return seen; }
+@if(lookup == one) fn look(at: vec2f) -> f32 { return textureSampleLevel(map, smooth_sampler, at, 0.0).x; }
+@if(lookup == two) fn look(at: vec2f) -> f32 { return textureSampleCompareLevel(shadow, compare, at, 0.5) + f32(textureDimensions(map).x); }
+@if(lookup == three) fn look(at: vec2f) -> f32 { let size = textureDimensions(whole); return f32(textureLoad(whole, vec2i(at * vec2f(size)), 0).x); }
+fn looked(at: vec2f, scale: f32) -> f32 { return scale * look(at); }
+fn split(x: f32) -> f32 { let parts = modf(x); return parts.fract + frexp(x).fract; }
+
+@vertex fn vs_main(@location(0) place: vec3f, @builtin(vertex_index) number: u32) -> Carried {
+    var out: Carried;
+    out.clip = vec4f(place + block.items[number % 4u].color, 1.0);
+    @if(sign != both) { out.normal = vec3f(f32(turned(i32(number), vec2i(1)))) + other.xyz; }
+    @else { out.normal = fresh(3).color * loops(2); }
+    out.index = number;
+    return out;
+}
+
+@fragment fn fs_main(in: Carried, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let normal = normalize(in.normal);
+    var material = block.items[in.index & 3u];
+    @if(lookup == one) { material = fresh(turned(material.kind, block.counts.xy)); }
+    @if(wide) { material.color *= split(normal.x) * f32(counted()); }
+    let lit = lit(normal.x, looked(normal.xy, loops(material.kind)));
+    if !front { discard; }
+    return vec4f(helper(material, lit) + vec3f((block.turn * normal).xy, other.w), f32(turned(1, vec2i(2))));
+}
+";
+
+const TRAPS_MANIFEST: &str = r#"
+[program.traps]
+wesl = "traps.wesl"
+[program.traps.axis]
+sign = { values = ["int", "vec", "both"] }
+lookup = { values = ["one", "two", "three"] }
+wide = { values = [false, true] }
+"#;
+
+/// A package of one module in a folder.
+fn package(folder: &Path, name: &str, manifest: &str, text: &str) -> Result<(SourceSet, Packages, Manifest), Failed> {
+    std::fs::write(folder.join("lamplight.toml"), manifest)?;
+    std::fs::write(folder.join(format!("{name}.wesl")), text)?;
+    let mut sources = SourceSet::default();
+    let read = (|| {
+        let manifest = project::read_manifest(&folder.join("lamplight.toml"), &mut sources)?;
+        Ok((project::packages(folder, &mut sources)?, manifest))
+    })();
+    let (packages, manifest) = read.map_err(|problems: lamplight::diagnostic::Diagnostics| render(&sources, &problems, Form::Human))?;
+    Ok((sources, packages, manifest))
+}
+
+fn traps() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let (mut sources, packages, manifest) = package(folder.path(), "traps", TRAPS_MANIFEST, TRAPS)?;
+    let mut together = agree(&mut sources, &packages, &manifest, 1)?;
+    println!("{} of {} texts linked", together.summary.linked, together.summary.texts());
+    let contents = std::mem::take(&mut together.contents);
+    let out = folder.path().join("out");
+    write_directory(&contents, &out)?;
+    let files = lamplight::bundle::blob_files(&out)?.into_iter();
+    let jobs: Vec<Job> = files.map(|file| Job { stage: external::stage(file.stage), target: file.target, file: file.path }).collect();
+    let (judged, refusals) = external::validate(jobs, &|_| {})?;
+    if refusals.is_empty() && judged > 0 { Ok(()) } else { Err(refusals.join("\n").into()) }
+}
+
+/// The functions of a fragment shader with one more thing in it.
+fn outline(more: &str, body: &str) -> Option<Vec<(String, [u8; 16])>> {
+    let text = format!(
+        "@group(0)@binding(0)var map:texture_2d<f32>;@group(0)@binding(1)var smp:sampler;@group(0)@binding(2)var<uniform> u:vec4f;{more}\
+         @fragment fn fs_main(@location(0)at:vec2f)->@location(0)vec4f{{{body}return u+textureSampleLevel(map,smp,at,0.0);}}"
+    );
+    let outline = Outline::read(&text, "fs_main", &Scans::default())?;
+    Some(outline.functions().map(|function| (function.name.to_owned(), function.key)).collect())
+}
+
+fn whole() -> Outcome {
+    let calm = [
+        ("", "let d=dpdx(at.x);if(d>0.0){discard;}"),
+        ("fn f(x:f32)->f32{return fwidth(x);}", "let d=f(at.x);"),
+        ("fn f(x:f32)->f32{if(x>0.0){return 1.0;}return 0.0;}", "let d=f(at.x)+textureSample(map,smp,at).x;"),
+        ("fn tap_3(x:f32)->f32{return x;}", "let d=tap_3(at.x);"),
+        ("fn d(x:f32)->f32{return x;}", "let d=d(at.x);"),
+    ];
+    for (more, body) in calm {
+        outline(more, body).ok_or_else(|| format!("left whole: {more} {body}"))?;
+    }
+    let left = [
+        ("", "if(at.x>0.0){let d=dpdx(at.x);}"),
+        ("", "for(var i=0;i<i32(at.x);i++){let d=textureSample(map,smp,at);}"),
+        ("", "let d=at.x>0.0&&textureSample(map,smp,at).x>0.0;"),
+        ("", "if(at.x>0.0){return u;}let d=fwidth(at.x);"),
+        ("", "if(at.x>0.0){}else if(dpdy(at.x)>0.0){}"),
+        ("fn f(x:f32)->f32{return fwidth(x);}", "if(at.x>0.0){let d=f(at.x);}"),
+        ("override o:f32=1.0;", "let d=o;"),
+        ("alias Map=texture_2d<f32>;fn f(m:Map)->f32{return 1.0;}", "let d=f(map);"),
+        ("fn naga_f(x:f32)->f32{return x;}", "let d=naga_f(1.0);"),
+        ("fn a__b(x:f32)->f32{return x;}", "let d=a__b(1.0);"),
+        ("fn at(x:f32)->f32{return x;}", "let d=1.0;"),
+        ("fn unused(x:f32)->f32{return x;}", ""),
+        ("fn f(x:f32)->f32{return f(x);}", "let d=f(1.0);"),
+        ("fn é(x:f32)->f32{return x;}", "let d=é(1.0);"),
+        ("const_assert true;", ""),
+    ];
+    match left.iter().find(|(more, body)| outline(more, body).is_some()) {
+        Some((more, body)) => Err(format!("taken apart: {more} {body}").into()),
+        None => Ok(()),
+    }
+}
+
+/// Whether the entry point's key is the same for both.
+fn alike(one: (&str, &str), other: (&str, &str)) -> Result<bool, Failed> {
+    let key = |(more, body): (&str, &str)| Some(outline(more, body)?.last()?.1);
+    Ok(key(one).ok_or("left whole")? == key(other).ok_or("left whole")?)
+}
+
+fn noticed() -> Outcome {
+    let body = "let d=f(at.x);";
+    let same = [
+        // How a value is computed is the callee's own.
+        ("fn f(x:f32)->f32{return x*2.0;}", "fn f(x:f32)->f32{let y=x+x;return y;}"),
+        ("fn f(x:f32)->f32{return u.x;}", "fn f(x:f32)->f32{return u.y;}"),
+        ("fn f(x:f32)->f32{return x;}", "fn g(x:f32)->f32{return x;}fn f(x:f32)->f32{return g(x);}"),
+    ];
+    let other = [
+        ("fn f(x:f32)->f32{return x;}", "fn f(y:f32)->f32{return y;}"),
+        ("fn f(x:f32)->f32{return x;}", "fn f(x:f32)->f32{return u.x;}"),
+        ("fn f(x:f32)->f32{return x;}", "fn f(x:f32)->f32{if(x>1.0){discard;}return x;}"),
+        ("fn f(x:f32)->f32{return x;}", "fn f(x:f32)->f32{return x+textureLoad(map,vec2i(0),0).x;}"),
+        ("const C=1.0;fn f(x:f32)->vec4f{return vec4f(C);}", "fn f(x:f32)->vec2f{return vec2f(x);}"),
+        (
+            "fn g(m:texture_2d<f32>)->f32{return textureLoad(m,vec2i(0),0).x;}fn f(x:f32)->f32{return g(map);}",
+            "fn g(m:texture_2d<f32>)->f32{return f32(textureDimensions(m).x);}fn f(x:f32)->f32{return g(map);}",
+        ),
+        ("struct S{a:f32}fn f(x:f32)->S{return S(x);}", "struct S{b:f32}fn f(x:f32)->S{return S(x);}"),
+    ];
+    for (expected, pairs) in [(true, same.as_slice()), (false, other.as_slice())] {
+        for (one, two) in pairs {
+            if alike((one, body), (two, body))? != expected {
+                return Err(format!("{one} and {two} are {}", if expected { "told apart" } else { "taken for the same" }).into());
+            }
+        }
+    }
+    // A vertex shader's functions are written for that stage.
+    let stage = |text: &str| Some(Outline::read(text, "main_stage", &Scans::default())?.functions().next()?.key);
+    let vertex = "fn f()->f32{return 1.0;}@vertex fn main_stage()->@builtin(position)vec4f{return vec4f(f());}";
+    let fragment = "fn f()->f32{return 1.0;}@fragment fn main_stage()->@location(0)vec4f{return vec4f(f());}";
+    if stage(vertex).is_none() || stage(vertex) == stage(fragment) { Err("stages are taken for the same".into()) } else { Ok(()) }
+}
+
+/// A derivative where fragments have parted is warned of, for the permutation alone and among others.
+fn warnings() -> Outcome {
+    let text = "
+@group(0) @binding(0) var map: texture_2d<f32>;
+@group(0) @binding(1) var smp: sampler;
+@if(parted) fn far(at: vec2f) -> bool { return at.x > 0.5; }
+@else fn far(at: vec2f) -> bool { return true; }
+fn sampled(at: vec2f) -> vec4f { if far(at) { return textureSample(map, smp, at); } return vec4f(); }
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f { return sampled(at); }
+";
+    let manifest = "[program.small]\nwesl = \"small.wesl\"\naxis.parted = { values = [false, true] }\n";
+    let folder = tempfile::tempdir()?;
+    let (mut sources, packages, manifest) = package(folder.path(), "small", manifest, text)?;
+    let together = made(&mut sources, &packages, &manifest, None)?.warnings.len();
+    let alone = made(&mut sources, &packages, &manifest, Some("parted"))?.warnings.len();
+    if (together, alone) == (1, 1) { Ok(()) } else { Err(format!("{together} warnings together, {alone} alone").into()) }
+}
