@@ -67,7 +67,9 @@ impl Compiler<'_> {
         let plans: Vec<Plan<'_>> = plans.collect();
         let taken: Vec<Option<Taken>> = plans.par_iter().zip(batch).map(|(plan, (text, entry))| self.lead(plan, text, entry)).collect();
         self.linker.keep(taken.into_iter().flatten());
-        plans.into_par_iter().zip(batch).map(|(plan, (text, entry))| self.finish(plan, text, entry)).collect()
+        let made = plans.into_par_iter().zip(batch).map(|(plan, (text, entry))| self.finish(plan, text, entry)).collect();
+        self.linker.forget();
+        made
     }
 
     fn job<'j>(&'j self, text: &'j Text, entry: &'j Entry) -> Job<'j> {

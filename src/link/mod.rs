@@ -24,7 +24,7 @@ pub use outline::{Declaration, Key, Outline, Scans};
 pub use take::{Taken, Whole};
 
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
 use crate::bundle::{Target, Unit};
@@ -32,6 +32,12 @@ use pool::Pool;
 
 /// So many new functions are many.
 const MANY: usize = 16;
+
+/// Bytes of pieces after which all is forgotten.
+const SIZE: usize = 128 << 20;
+
+/// The same where most texts had something new: to keep what is not shared saves nothing.
+const SIZE_UNSHARED: usize = 4 << 20;
 
 /// Functions in all targets of a program.
 pub struct Linker<'a> {
@@ -41,6 +47,8 @@ pub struct Linker<'a> {
     /// Functions that some text is compiled for, whether or not it has been.
     claimed: Mutex<BTreeSet<Key>>,
     pool: RwLock<Pool>,
+    /// Whether most texts of the last batch had something new.
+    unshared: AtomicBool,
     /// Texts of which no function was compiled.
     linked: AtomicUsize,
 }
@@ -49,7 +57,15 @@ impl<'a> Linker<'a> {
     pub fn new(targets: &'a [Target]) -> Self {
         let names = take::Names::new(targets);
         let pool = RwLock::new(Pool::new(&names));
-        Self { targets, names, scans: Scans::default(), claimed: Mutex::default(), pool, linked: AtomicUsize::new(0) }
+        Self {
+            targets,
+            names,
+            scans: Scans::default(),
+            claimed: Mutex::default(),
+            pool,
+            unshared: AtomicBool::new(false),
+            linked: AtomicUsize::new(0),
+        }
     }
 
     /// The functions of a lean text whose one entry point is `entry`; `None` where it is to stay whole.
@@ -73,6 +89,8 @@ impl<'a> Linker<'a> {
                 }
             }
         }
+        let (texts, new) = (batch.iter().flatten().count(), claims.iter().filter(|claim| !claim.is_empty()).count());
+        self.unshared.store(2 * new > texts, Ordering::Relaxed);
         claims
     }
 
@@ -99,6 +117,17 @@ impl<'a> Linker<'a> {
         let unit = self.pool.read().unwrap_or_else(PoisonError::into_inner).link(outline, self.targets)?;
         self.linked.fetch_add(usize::from(claimed.is_empty()), Ordering::Relaxed);
         Some(unit)
+    }
+
+    /// Ends a batch: bounds what is kept. A text's bytes do not depend on it.
+    pub fn forget(&self) {
+        let mut pool = self.pool.write().unwrap_or_else(PoisonError::into_inner);
+        let bound = if self.unshared.load(Ordering::Relaxed) { SIZE_UNSHARED } else { SIZE };
+        if pool.size() > bound {
+            *pool = Pool::new(&self.names);
+            self.claimed.lock().unwrap_or_else(PoisonError::into_inner).clear();
+            self.scans.clear();
+        }
     }
 
     /// Texts that were linked so far and not compiled.

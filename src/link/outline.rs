@@ -6,7 +6,6 @@
 //! written alike in every target, whatever module they are in.
 
 use std::collections::HashMap;
-
 use std::sync::{Arc, PoisonError, RwLock};
 
 use super::scan::{Name, Scan, scan};
@@ -68,6 +67,10 @@ struct Known {
 }
 
 impl Scans {
+    pub fn clear(&self) {
+        self.0.write().unwrap_or_else(PoisonError::into_inner).clear();
+    }
+
     /// `None` for what no text may have that is taken apart.
     fn find(&self, text: &str) -> Option<Arc<Known>> {
         if let Some(known) = self.0.read().unwrap_or_else(PoisonError::into_inner).get(text) {

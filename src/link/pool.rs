@@ -17,6 +17,8 @@ pub struct Pool {
     texts: Vec<Texts>,
     words: Words,
     points: BTreeMap<Key, Point>,
+    /// Bytes of all pieces, roughly.
+    size: usize,
 }
 
 /// What an entry point says of itself.
@@ -57,12 +59,13 @@ impl Pool {
             functions: Vec::new(),
             globals: BTreeMap::new(),
         });
-        Self { numbers: HashMap::new(), texts: texts.collect(), words: Words::default(), points: BTreeMap::new() }
+        Self { numbers: HashMap::new(), texts: texts.collect(), words: Words::default(), points: BTreeMap::new(), size: 0 }
     }
 
     /// Keeps functions, and the entry point that came with them.
     pub fn keep(&mut self, taken: Taken) -> Result<(), String> {
         let Taken { targets, functions, point } = taken;
+        self.size += targets.iter().map(TakenTarget::size).sum::<usize>();
         for key in &functions {
             let next = self.numbers.len();
             self.numbers.entry(*key).or_insert(next);
@@ -76,6 +79,11 @@ impl Pool {
         }
         self.points.extend(point.map(|point| (point.key, Point { reflection: point.reflection, natives: point.natives })));
         Ok(())
+    }
+
+    /// Bytes of all pieces, roughly.
+    pub fn size(&self) -> usize {
+        self.size
     }
 
     /// Puts what is shared in its order. To be called before anything is linked.

@@ -42,6 +42,16 @@ pub enum TakenTarget {
     Words(TakenWords),
 }
 
+impl TakenTarget {
+    /// Bytes, roughly.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Text(text) => text.functions.values().chain(&text.globals).map(|piece| piece.text.len()).sum(),
+            Self::Words(words) => size_of_val(words.words.as_slice()) / words.names.len().max(1),
+        }
+    }
+}
+
 pub struct TakenText {
     /// What functions share, each after what it uses; uses are indices into this list.
     pub shared: Vec<Shared>,
