@@ -23,9 +23,10 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 5] = [
+    let cases: [Case; 6] = [
         ("forward_alone_and_together", forward),
         ("traps_alone_and_together", traps),
+        ("names_alone_and_together", names),
         ("what_stays_whole", whole),
         ("what_a_caller_can_notice", noticed),
         ("warnings_are_not_lost", warnings),
@@ -158,6 +159,45 @@ lookup = { values = ["one", "two", "three"] }
 wide = { values = [false, true] }
 "#;
 
+/// Names that mean something else to a writer, and an order of variables that depends on an axis.
+const NAMES: &str = "
+const MAX: f32 = 4.0;
+const scale: f32 = 2.0;
+@if(first) const TABLE = vec3u(1u, 2u, 3u);
+struct Vertex { @location(0) at: vec2f, @location(1) light: f32 }
+struct Float { value: f32, turn: vec2i }
+@if(first) @group(0) @binding(0) var<uniform> x: vec4f;
+@group(0) @binding(1) var<uniform> y: vec4f;
+@if(!first) @group(0) @binding(0) var<uniform> x: vec4f;
+@group(0) @binding(2) var<uniform> many: array<vec4f, 3>;
+fn bounded(value: f32) -> f32 { return max(value, MAX); }
+fn made(value: f32) -> Float { return Float(value, vec2i(1, 2)); }
+fn threefold(scale: f32) -> f32 { return scale * 3.0; }
+@if(first) fn mixed() -> vec4f { return x - y + f32(TABLE[2]); }
+@else fn mixed() -> vec4f { return x + 2.0 * y; }
+@if(kind != two) fn third(v: f32) -> f32 { return f32(i32(v) / 3); }
+@if(kind != one) fn thirds(v: f32) -> f32 { return f32((vec2u(u32(v)) / vec2u(3u)).x); }
+@if(scaled) fn held(value: f32) -> f32 { return value * scale; }
+@else fn held(value: f32) -> f32 { return value; }
+@vertex fn vs_main(in: Vertex) -> @builtin(position) vec4f { return mixed() + vec4f(in.at, bounded(in.light), many[1].x); }
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    let float = made(at.x);
+    var sum = threefold(held(float.value)) + many[float.turn.x].y;
+    @if(kind != two) { sum += third(sum); }
+    @if(kind != one) { sum += thirds(sum); }
+    return mixed() * sum;
+}
+";
+
+const NAMES_MANIFEST: &str = r#"
+[program.names]
+wesl = "names.wesl"
+[program.names.axis]
+first = { values = [false, true] }
+scaled = { values = [false, true] }
+kind = { values = ["one", "two", "both"] }
+"#;
+
 /// A package of one module in a folder.
 fn package(folder: &Path, name: &str, manifest: &str, text: &str) -> Result<(SourceSet, Packages, Manifest), Failed> {
     std::fs::write(folder.join("lamplight.toml"), manifest)?;
@@ -172,8 +212,16 @@ fn package(folder: &Path, name: &str, manifest: &str, text: &str) -> Result<(Sou
 }
 
 fn traps() -> Outcome {
+    alone_and_together("traps", TRAPS_MANIFEST, TRAPS)
+}
+
+fn names() -> Outcome {
+    alone_and_together("names", NAMES_MANIFEST, NAMES)
+}
+
+fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {
     let folder = tempfile::tempdir()?;
-    let (mut sources, packages, manifest) = package(folder.path(), "traps", TRAPS_MANIFEST, TRAPS)?;
+    let (mut sources, packages, manifest) = package(folder.path(), name, manifest, text)?;
     let mut together = agree(&mut sources, &packages, &manifest, 1)?;
     println!("{} of {} texts linked", together.summary.linked, together.summary.texts());
     let contents = std::mem::take(&mut together.contents);
@@ -215,6 +263,11 @@ fn whole() -> Outcome {
         ("fn f(x:f32)->f32{return fwidth(x);}", "if(at.x>0.0){let d=f(at.x);}"),
         ("override o:f32=1.0;", "let d=o;"),
         ("alias Map=texture_2d<f32>;fn f(m:Map)->f32{return 1.0;}", "let d=f(map);"),
+        ("@group(0)@binding(3)var<storage>s:array<f32>;", "let d=s[0];"),
+        ("struct Light{a:f32,b:f32}fn ConstructLight(x:f32)->Light{return Light(x,x);}", "let d=ConstructLight(1.0);"),
+        ("fn member(x:f32)->f32{return x;}", "let d=member(1.0);"),
+        ("fn fs_mainInput(x:f32)->f32{return x;}", "let d=fs_mainInput(1.0);"),
+        ("const a=1.0;struct S{a:f32}", "let d=S(a);"),
         ("fn naga_f(x:f32)->f32{return x;}", "let d=naga_f(1.0);"),
         ("fn a__b(x:f32)->f32{return x;}", "let d=a__b(1.0);"),
         ("fn at(x:f32)->f32{return x;}", "let d=1.0;"),

@@ -77,10 +77,9 @@ impl<'a> Locals<'a> {
     pub fn read(text: &'a str, modules: &BTreeSet<&str>) -> Self {
         let words: Vec<Word<'a>> = words(text).filter(|word| word.before != b'.').collect();
         let mut bases: HashMap<&str, Option<&str>> = words.iter().map(|word| (word.text, None)).collect();
-        // Results of a type are named after it, in small letters.
-        let types: BTreeSet<String> = bases.keys().filter(|name| modules.contains(*name)).map(|name| name.to_lowercase()).collect();
+        let results = results(text, &words, modules);
         for (name, found) in &mut bases {
-            *found = base(name).or_else(|| (OWN.contains(name) || types.contains(*name)).then_some(*name));
+            *found = base(name).or_else(|| (OWN.contains(name) || results.contains(name)).then_some(*name));
             *found = found.filter(|_| !modules.contains(name));
         }
         Self { text, words, bases }
@@ -121,6 +120,15 @@ impl<'a> Locals<'a> {
 fn free(first: &str, base: &str, taken: &BTreeSet<String>) -> String {
     let mut numbered = (1..).map(|number: usize| format!("{base}_{number}"));
     if taken.contains(first) { numbered.find(|name| !taken.contains(name)).unwrap_or_default() } else { first.to_owned() }
+}
+
+/// Variables that HLSL's writer calls after their type, in small letters.
+fn results<'a>(text: &str, words: &[Word<'a>], modules: &BTreeSet<&str>) -> BTreeSet<&'a str> {
+    let is_one = |[ty, name]: &&[Word<'a>; 2]| {
+        let gap = &text[ty.start + ty.text.len()..name.start];
+        modules.contains(ty.text) && gap.trim().is_empty() && ty.text.to_lowercase() == name.text
+    };
+    words.array_windows().filter(is_one).map(|[_, name]| name.text).collect()
 }
 
 /// A name without its mark or its number, where it has one.

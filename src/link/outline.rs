@@ -97,7 +97,7 @@ impl<'a> Outline<'a> {
         let names: HashMap<&str, usize> = known.iter().enumerate().map(|(index, known)| (&*known.name, index)).collect();
         let mut entries = (0..known.len()).filter(|index| known[*index].kind == Kind::Entry);
         let (root, other) = (entries.next()?, entries.next());
-        if other.is_some() || &*known[root].name != entry || names.len() != known.len() || is_renamed(&known, root, &names) {
+        if other.is_some() || &*known[root].name != entry || names.len() != known.len() || is_ambiguous(&known, root, &names) {
             return None;
         }
         let stage = hash(if texts[root].contains("@vertex") { b"vertex" } else { b"fragment" }, std::iter::empty());
@@ -117,12 +117,16 @@ impl<'a> Outline<'a> {
         whole.then(|| Self { declarations: declared.collect(), functions: order })
     }
 
-    /// The same declarations, functions last: naga then numbers variables in the order of the text,
-    /// whichever functions use them.
+    /// The same declarations, variables first and in an order of their own, functions last: naga
+    /// numbers variables and their types in the order in which it comes to them, and passes them to
+    /// functions in that order.
     pub fn sorted(&self) -> String {
         let is_function = |declaration: &&Declaration<'_>| matches!(declaration.kind, Kind::Function | Kind::Entry);
-        let others = self.declarations.iter().filter(|declaration| !is_function(declaration));
-        others.chain(self.declarations.iter().filter(is_function)).flat_map(|declaration| [declaration.text, "\n"]).collect()
+        let of = |kind: Kind| self.declarations.iter().filter(move |declaration| declaration.kind == kind);
+        let mut variables: Vec<&Declaration<'_>> = of(Kind::Variable).collect();
+        variables.sort_by_key(|variable| variable.text);
+        let functions = self.declarations.iter().filter(is_function);
+        variables.into_iter().chain(of(Kind::Other)).chain(functions).flat_map(|declaration| [declaration.text, "\n"]).collect()
     }
 
     /// The functions, each after those that it calls; the entry point last.
@@ -183,6 +187,10 @@ fn part(text: &str) -> Option<Part<'_>> {
         "struct" | "const" | "alias" => Kind::Other,
         "var" => {
             let (_, after) = rest.split_once("var")?;
+            // Lengths of buffers are passed along by the number of the buffer.
+            if after.contains("<storage") {
+                return None;
+            }
             let after = if after.trim_start().starts_with('<') { after.split_once('>')?.1 } else { after };
             name = self::words(after).next()?.text;
             Kind::Variable
@@ -192,19 +200,44 @@ fn part(text: &str) -> Option<Part<'_>> {
     Some(Part { kind, name })
 }
 
+/// How names begin that naga gives to what it adds to a module.
+const ADDED: &[&str] = &[
+    "_",
+    "array_",
+    "gen_",
+    "naga",
+    "Naga",
+    "gl_",
+    "Construct",
+    "ZeroValue",
+    "GetMat",
+    "SetMat",
+    "ret_",
+    "VertexInput",
+    "VertexOutput",
+    "FragmentInput",
+    "FragmentOutput",
+];
+
 /// Whether naga writes the name as it is, but for an underscore where a language has taken it.
 fn is_plain(name: &str) -> bool {
-    let prefixed = ["_", "array_", "gen_", "naga", "Naga", "gl_"].iter().any(|prefix| name.starts_with(prefix));
-    !prefixed && !name.ends_with('_') && !name.contains("__")
+    let is_added = name == "member" || ADDED.iter().any(|prefix| name.starts_with(prefix));
+    !is_added && !name.ends_with('_') && !name.contains("__")
 }
 
-/// Whether naga would have to number a name at the border of the stage: one of the entry point's
-/// arguments, or a member of their types, is called as a declaration.
-fn is_renamed(known: &[Arc<Known>], root: usize, names: &HashMap<&str, usize>) -> bool {
+/// Whether a name means two things where they could be taken for each other: one of the entry
+/// point's arguments, or a member of their types, is called as a declaration; a member of any
+/// structure as a type or a constant; a declaration as what naga adds for the entry point.
+fn is_ambiguous(known: &[Arc<Known>], root: usize, names: &HashMap<&str, usize>) -> bool {
     let scan = &known[root].scan;
     let types = scan.names[..scan.signature].iter().filter_map(|name| names.get(&*name.text));
-    let members = types.flat_map(|index| &known[*index].scan.members);
-    members.chain(&scan.members).any(|name| names.contains_key(&**name))
+    let border = types.flat_map(|index| &known[*index].scan.members).chain(&scan.members);
+    let is_shared = |name: &str| names.get(name).is_some_and(|index| known[*index].kind == Kind::Other);
+    let members = known.iter().filter(|known| known.kind == Kind::Other).flat_map(|known| &known.scan.members);
+    let is_added = |end: &str| names.contains_key(format!("{}{end}", known[root].name).as_str());
+    border.into_iter().any(|name| names.contains_key(&**name))
+        || members.into_iter().any(|name| is_shared(name))
+        || ["Input", "Output"].into_iter().any(is_added)
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq)]

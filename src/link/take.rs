@@ -197,14 +197,17 @@ impl<'a> Output<'a> {
     ) -> Result<TakenTarget, String> {
         let mut needed = Needed::default();
         let globals = self.declared.iter().filter(|declared| entry && declared.kind == text::Kind::Global);
-        let globals = globals.map(|declared| self.piece(declared.text.to_owned(), &mut needed)).collect::<Result<_, _>>()?;
+        let globals = globals.map(|declared| self.piece(declared.text, declared.text.to_owned(), &mut needed)).collect::<Result<_, _>>()?;
         let mut functions = BTreeMap::new();
         for (index, key) in self.authors.iter().filter(|(_, key)| wanted.contains(*key)) {
-            let piece = self.piece(plain(self.declared[*index].text)?, &mut needed)?;
-            if self.calls_overloads(&piece.text, 0) {
+            let written = self.declared[*index].text;
+            let piece = self.piece(written, plain(written)?, &mut needed)?;
+            if self.calls_overloads(written, 0) {
                 left.insert(*key);
             }
-            functions.insert(*key, piece);
+            if functions.insert(*key, piece).is_some() {
+                return Err("two functions of one name".to_owned());
+            }
         }
         match functions.len() == wanted.len() {
             true => Ok(TakenTarget::Text(TakenText { shared: needed.shared, globals, functions })),
@@ -212,8 +215,9 @@ impl<'a> Output<'a> {
         }
     }
 
-    fn piece(&self, text: String, needed: &mut Needed) -> Result<Piece, String> {
-        let uses = self.uses(&text).into_iter().map(|used| self.share(used, needed, 0)).collect::<Result<_, _>>()?;
+    /// A text with what it uses: as it was written, for a local may be called as something shared.
+    fn piece(&self, written: &str, text: String, needed: &mut Needed) -> Result<Piece, String> {
+        let uses = self.uses(written).into_iter().map(|used| self.share(used, needed, 0)).collect::<Result<_, _>>()?;
         Ok(Piece { text, uses })
     }
 
@@ -226,7 +230,8 @@ impl<'a> Output<'a> {
         if depth > self.declared.len() {
             return Err(format!("`{name}` uses itself"));
         }
-        let used = self.uses(text).into_iter().filter(|used| *used != index);
+        // Functions of one name do not use each other.
+        let used = self.uses(text).into_iter().filter(|used| self.declared[*used].name != name);
         let uses = used.map(|used| self.share(used, needed, depth + 1)).collect::<Result<Vec<u32>, _>>()?;
         let below = || uses.iter().map(|place| &needed.shared[*place as usize]);
         let kind = below().map(|shared| shared.kind).max().map_or(kind, |most| most.max(kind));
