@@ -124,11 +124,11 @@ fn free(first: &str, base: &str, taken: &BTreeSet<String>) -> String {
 
 /// Variables that HLSL's writer calls after their type, in small letters.
 fn results<'a>(text: &str, words: &[Word<'a>], modules: &BTreeSet<&str>) -> BTreeSet<&'a str> {
-    let is_one = |[ty, name]: &&[Word<'a>; 2]| {
+    let is_one = |(ty, name): &(&Word<'a>, &Word<'a>)| {
         let gap = &text[ty.start + ty.text.len()..name.start];
         modules.contains(ty.text) && gap.trim().is_empty() && ty.text.to_lowercase() == name.text
     };
-    words.array_windows().filter(is_one).map(|[_, name]| name.text).collect()
+    words.iter().zip(words.iter().skip(1)).filter(is_one).map(|(_, name)| name.text).collect()
 }
 
 /// A name without its mark or its number, where it has one.

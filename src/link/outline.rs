@@ -79,7 +79,7 @@ impl Scans {
         let read = || {
             let Part { kind, name } = part(text)?;
             let scan = is_plain(name).then(|| scan(text, kind, name))??;
-            let head = hash(text[..scan.head].as_bytes(), std::iter::empty());
+            let head = hash(&text.as_bytes()[..scan.head], std::iter::empty());
             Some(Arc::new(Known { kind, name: name.into(), text: hash(text.as_bytes(), std::iter::empty()), head, scan }))
         };
         let known = read();

@@ -139,7 +139,7 @@ pub fn take(
     if overloads == Overloads::Leave {
         functions.retain(|key| !left.contains(key));
     }
-    let point = functions.contains(&entry).then(|| TakenPoint { key: entry, reflection: whole.reflection, natives });
+    let point = functions.contains(&entry).then_some(TakenPoint { key: entry, reflection: whole.reflection, natives });
     Ok(Taken { targets: taken, functions, point })
 }
 
