@@ -29,6 +29,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     if !arguments.is_empty() {
         return Err(Failure::usage("usage: cargo xtask gen (for other manifests: lamplight gen)"));
     }
+    let start = std::time::Instant::now();
     let path = root().join("shaderlib").join(project::MANIFEST);
     let mut sources = SourceSet::default();
     let input = |sources: &SourceSet, diagnostics: Diagnostics| Failure::input(render(sources, &diagnostics, Form::Human));
@@ -39,7 +40,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     let as_run = || Run { manifest: &path, declared: &declared, request: &request, packages: &packages, out: &out };
     if let Some(Trace { summary, told, .. }) = Trace::find(&cache, as_run()) {
         eprint!("{}", told.text(Form::Human));
-        return finish(&Summary { up_to_date: true, ..summary });
+        return finish(&Summary { up_to_date: true, seconds: start.elapsed().as_secs_f64(), ..summary });
     }
     let writer = DirectoryWriter::create(&out).map_err(environment)?;
     let tools = Tools { sink: &writer, cache: Some(&cache), progress: &show };
