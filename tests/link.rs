@@ -175,16 +175,16 @@ fn made(value: f32) -> Float { return Float(value, vec2i(1, 2)); }
 fn threefold(scale: f32) -> f32 { return scale * 3.0; }
 @if(first) fn mixed() -> vec4f { return x - y + f32(TABLE[2]); }
 @else fn mixed() -> vec4f { return x + 2.0 * y; }
-@if(kind != two) fn third(v: f32) -> f32 { return f32(i32(v) / 3); }
-@if(kind != one) fn thirds(v: f32) -> f32 { return f32((vec2u(u32(v)) / vec2u(3u)).x); }
+@if(kind == one || kind == both) fn third(v: f32) -> f32 { return f32(i32(v) / 3); }
+@if(kind == two || kind == both) fn thirds(v: f32) -> f32 { return f32((vec2u(u32(v)) / vec2u(3u)).x); }
 @if(scaled) fn held(value: f32) -> f32 { return value * scale; }
 @else fn held(value: f32) -> f32 { return value; }
 @vertex fn vs_main(in: Vertex) -> @builtin(position) vec4f { return mixed() + vec4f(in.at, bounded(in.light), many[1].x); }
 @fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
     let float = made(at.x);
     var sum = threefold(held(float.value)) + many[float.turn.x].y;
-    @if(kind != two) { sum += third(sum); }
-    @if(kind != one) { sum += thirds(sum); }
+    @if(kind == one || kind == both) { sum += third(sum); }
+    @if(kind == two || kind == both) { sum += thirds(sum); }
     return mixed() * sum;
 }
 ";
@@ -195,7 +195,7 @@ wesl = "names.wesl"
 [program.names.axis]
 first = { values = [false, true] }
 scaled = { values = [false, true] }
-kind = { values = ["one", "two", "both"] }
+kind = { values = ["none", "one", "two", "both"] }
 "#;
 
 /// A package of one module in a folder.
@@ -224,6 +224,9 @@ fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {
     let (mut sources, packages, manifest) = package(folder.path(), name, manifest, text)?;
     let mut together = agree(&mut sources, &packages, &manifest, 1)?;
     println!("{} of {} texts linked", together.summary.linked, together.summary.texts());
+    if together.summary.linked == 0 {
+        return Err("nothing was linked".into());
+    }
     let contents = std::mem::take(&mut together.contents);
     let out = folder.path().join("out");
     write_directory(&contents, &out)?;
@@ -264,6 +267,7 @@ fn whole() -> Outcome {
         ("override o:f32=1.0;", "let d=o;"),
         ("alias Map=texture_2d<f32>;fn f(m:Map)->f32{return 1.0;}", "let d=f(map);"),
         ("@group(0)@binding(3)var<storage>s:array<f32>;", "let d=s[0];"),
+        ("@group(0)@binding(3)var< storage,read >s:array<f32>;", "let d=s[0];"),
         ("struct Light{a:f32,b:f32}fn ConstructLight(x:f32)->Light{return Light(x,x);}", "let d=ConstructLight(1.0);"),
         ("fn member(x:f32)->f32{return x;}", "let d=member(1.0);"),
         ("fn fs_mainInput(x:f32)->f32{return x;}", "let d=fs_mainInput(1.0);"),

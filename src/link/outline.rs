@@ -187,11 +187,12 @@ fn part(text: &str) -> Option<Part<'_>> {
         "struct" | "const" | "alias" => Kind::Other,
         "var" => {
             let (_, after) = rest.split_once("var")?;
+            let space = after.trim_start().strip_prefix('<');
             // Lengths of buffers are passed along by the number of the buffer.
-            if after.contains("<storage") {
+            if space.and_then(|space| self::words(space).next()).is_some_and(|space| space.text == "storage") {
                 return None;
             }
-            let after = if after.trim_start().starts_with('<') { after.split_once('>')?.1 } else { after };
+            let after = if space.is_some() { after.split_once('>')?.1 } else { after };
             name = self::words(after).next()?.text;
             Kind::Variable
         }
