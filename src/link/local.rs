@@ -58,7 +58,7 @@ fn array_name(module: &Module, found: &Type) -> Option<String> {
 }
 
 /// Names that the writers themselves give to variables of a function; they number them too.
-const OWN: &[&str] = &["loop_init", "loop_bound", "dummy", "oob", "unnamed", "tmp"];
+const OWN: &[&str] = &["loop_init", "loop_bound", "dummy", "oob", "unnamed", "_tmp", "should_continue"];
 
 /// What naga calls a declaration of some name in a target, where it is the first of its name.
 pub type FirstNames = BTreeMap<String, String>;
