@@ -6,12 +6,17 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() -> std::io::Result<()> {
-    let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or(std::io::ErrorKind::NotFound)?);
+    let root =
+        PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or(std::io::ErrorKind::NotFound)?);
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or(std::io::ErrorKind::NotFound)?);
     println!("cargo::rustc-env=LAMPLIGHT_BUILD={}", build_id(&root, &out)?);
     fs::write(out.join("codes.rs"), codes(&root.join("src/diagnostic/codes"))?)?;
     fs::write(out.join("target_names.rs"), target_names(&root.join("src/emit/targets"))?)?;
-    for (folder, entry) in [("emit/targets", "TARGET"), ("harness/executors", "EXECUTOR"), ("harness/references", "REFERENCES")] {
+    for (folder, entry) in [
+        ("emit/targets", "TARGET"),
+        ("execute/executors", "EXECUTOR"),
+        ("proof/references", "REFERENCES"),
+    ] {
         let name = folder.rsplit('/').next().unwrap_or(folder);
         fs::write(out.join(format!("{name}.rs")), modules(&root.join("src").join(folder), entry)?)?;
     }
@@ -31,7 +36,11 @@ fn build_id(root: &Path, out: &Path) -> std::io::Result<String> {
         hash.add(&fs::read(&path)?);
     }
     // The lock file of the workspace that is built, which need not be this crate's.
-    let lock = out.ancestors().chain([root]).map(|folder| folder.join("Cargo.lock")).find(|lock| lock.is_file());
+    let lock = out
+        .ancestors()
+        .chain([root])
+        .map(|folder| folder.join("Cargo.lock"))
+        .find(|lock| lock.is_file());
     if let Some(lock) = lock {
         println!("cargo::rerun-if-changed={}", lock.display());
         hash.add(&fs::read(lock)?);
@@ -54,7 +63,8 @@ impl Default for Fnv {
 impl Fnv {
     fn add(&mut self, bytes: &[u8]) {
         for byte in (bytes.len() as u64).to_le_bytes().iter().chain(bytes) {
-            self.0 = (self.0 ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
+            self.0 = (self.0 ^ u128::from(*byte))
+                .wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
         }
     }
 }
@@ -75,7 +85,9 @@ fn files(folder: &Path, extension: &str) -> std::io::Result<Vec<PathBuf>> {
     if !folder.is_dir() {
         return Ok(Vec::new());
     }
-    let mut found: Vec<PathBuf> = fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path())).collect::<Result<_, _>>()?;
+    let mut found: Vec<PathBuf> = fs::read_dir(folder)?
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<_, _>>()?;
     found.retain(|path| path.extension().is_some_and(|found| found == extension));
     found.sort();
     Ok(found)
@@ -117,10 +129,16 @@ fn target_names(folder: &Path) -> std::io::Result<String> {
     for path in files(folder, "rs")? {
         let name = stem(&path);
         let constant = constant(&name);
-        let _ = writeln!(table, "/// The target `{name}`.\npub const {constant}: Target = Target({name:?});");
+        let _ = writeln!(
+            table,
+            "/// The target `{name}`.\npub const {constant}: Target = Target({name:?});"
+        );
         let _ = write!(names, "Target::{constant}, ");
     }
-    let _ = writeln!(table, "/// Every target, by name.\npub const ALL: &'static [Target] = &[{names}];\n}}");
+    let _ = writeln!(
+        table,
+        "/// Every target, by name.\npub const ALL: &'static [Target] = &[{names}];\n}}"
+    );
     Ok(table)
 }
 
@@ -133,7 +151,10 @@ fn modules(folder: &Path, entry: &str) -> std::io::Result<String> {
         let _ = writeln!(table, "#[path = {:?}]\npub mod {name};", path);
         let _ = write!(entries, "&{name}::{entry}, ");
     }
-    let _ = writeln!(table, "/// One entry for each file of the folder, by name.\npub const ALL: &[&Entry] = &[{entries}];");
+    let _ = writeln!(
+        table,
+        "/// One entry for each file of the folder, by name.\npub const ALL: &[&Entry] = &[{entries}];"
+    );
     Ok(table)
 }
 
@@ -141,9 +162,12 @@ fn modules(folder: &Path, entry: &str) -> std::io::Result<String> {
 fn embedded(folder: &Path) -> std::io::Result<String> {
     let mut found = Vec::new();
     walk(folder, &mut found)?;
-    let mut named: Vec<(String, PathBuf)> = found.into_iter().map(|path| (relative(folder, &path), path)).collect();
+    let mut named: Vec<(String, PathBuf)> =
+        found.into_iter().map(|path| (relative(folder, &path), path)).collect();
     named.sort();
-    let mut table = String::from("/// Path below `shaderlib/` and text of every file, by path.\npub const FILES: &[(&str, &str)] = &[\n");
+    let mut table = String::from(
+        "/// Path below `shaderlib/` and text of every file, by path.\npub const FILES: &[(&str, &str)] = &[\n",
+    );
     for (name, path) in named {
         let _ = writeln!(table, "({name:?}, include_str!({path:?})),");
     }
@@ -162,7 +186,9 @@ fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
         let path = entry?.path();
         if path.is_dir() {
             walk(&path, found)?;
-        } else if path.extension().is_some_and(|found| ["wesl", "wgsl", "glsl", "toml"].contains(&found.to_str().unwrap_or_default())) {
+        } else if path.extension().is_some_and(|found| {
+            ["wesl", "wgsl", "glsl", "toml"].contains(&found.to_str().unwrap_or_default())
+        }) {
             found.push(path);
         }
     }

@@ -20,7 +20,8 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 const KEY: &str = "ambient=none,lights=none";
 
 /// Position, normal and colour of a corner, as `forward` reads them.
-const CORNER: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
+const CORNER: [wgpu::VertexAttribute; 3] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
 
 pub fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: load_bundle BUNDLE")?;
@@ -47,7 +48,11 @@ pub fn draw(path: &str) -> Result<[u8; 4], Box<dyn Error>> {
             module: &module(&vertex.bytes)?,
             entry_point: Some(&vertex.native.entry_name),
             compilation_options: Default::default(),
-            buffers: &[Some(wgpu::VertexBufferLayout { array_stride: 40, step_mode: wgpu::VertexStepMode::Vertex, attributes: &CORNER })],
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: 40,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &CORNER,
+            })],
         },
         primitive: Default::default(),
         depth_stencil: None,
@@ -74,7 +79,8 @@ pub fn draw(path: &str) -> Result<[u8; 4], Box<dyn Error>> {
         buffer
     };
     let camera = buffer(&[identity(), identity()].concat(), wgpu::BufferUsages::UNIFORM);
-    let object = buffer(&[&identity()[..], &identity(), &[1.0; 4]].concat(), wgpu::BufferUsages::UNIFORM);
+    let object =
+        buffer(&[&identity()[..], &identity(), &[1.0; 4]].concat(), wgpu::BufferUsages::UNIFORM);
     let corners = buffer(&corners(), wgpu::BufferUsages::VERTEX);
     let bound = |group: u32, buffer: &wgpu::Buffer| {
         let entries = [wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }];
@@ -102,10 +108,15 @@ pub fn draw(path: &str) -> Result<[u8; 4], Box<dyn Error>> {
             view: &view,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
         };
-        let mut pass =
-            encoder.begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: &[Some(attachment)], ..Default::default() });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(attachment)],
+            ..Default::default()
+        });
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &bound(0, &camera), &[]);
         pass.set_bind_group(2, &bound(2, &object), &[]);
@@ -138,8 +149,16 @@ fn read(
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE * 4), rows_per_image: None };
-    encoder.copy_texture_to_buffer(picture.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer: &staging, layout }, picture.size());
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(SIZE * 4),
+        rows_per_image: None,
+    };
+    encoder.copy_texture_to_buffer(
+        picture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &staging, layout },
+        picture.size(),
+    );
     queue.submit([encoder.finish()]);
     let (sender, receiver) = mpsc::channel();
     staging.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));

@@ -5,6 +5,8 @@
 //! `source -> parse -> resolve -> permute -> compose -> validate -> emit -> bundle`
 
 pub mod bundle;
+pub mod input;
+pub mod output;
 #[cfg(feature = "single-file")]
 #[path = "packing/zstd.rs"]
 mod packing;
@@ -28,8 +30,8 @@ pub mod generate;
 pub mod keys;
 #[cfg(feature = "compile")]
 pub mod link;
-#[cfg(feature = "compile")]
-pub mod output;
+#[cfg(feature = "eval")]
+pub mod metal;
 #[cfg(feature = "compile")]
 pub mod parse;
 #[cfg(feature = "compile")]
@@ -46,12 +48,18 @@ pub mod store;
 #[path = "store/absent.rs"]
 pub mod store;
 #[cfg(feature = "compile")]
+pub mod tools;
+#[cfg(feature = "compile")]
 pub mod validate;
 
 #[cfg(feature = "harness")]
 pub mod catalogue;
 #[cfg(feature = "harness")]
-pub mod harness;
+pub mod execute;
+#[cfg(feature = "harness")]
+pub mod picture;
+#[cfg(feature = "harness")]
+pub mod proof;
 #[cfg(feature = "harness")]
 pub mod report;
 #[cfg(feature = "harness")]

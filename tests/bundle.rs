@@ -5,8 +5,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use lamplight::bundle::{
-    Artifact, Axis, Bundle, Contents, EntryContents, Error, Language, Native, ProgramContents, Reflection, SCHEMA, Stage, Target, Unit,
-    Usage, canonical, diff, pack, write_directory, write_file,
+    Artifact, Axis, Bundle, Contents, EntryContents, Error, Language, Native, ProgramContents,
+    Reflection, SCHEMA, Stage, Target, Unit, Usage, canonical, diff, pack, write_directory,
+    write_file,
 };
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
@@ -30,12 +31,16 @@ pub fn trials() -> Vec<Trial> {
         ("shards_merge", merging),
         ("manifests_follow_their_schema", schema),
     ];
-    let mut trials: Vec<Trial> = cases.into_iter().map(|(name, case)| Trial::test(format!("bundle::{name}"), case)).collect();
+    let mut trials: Vec<Trial> = cases
+        .into_iter()
+        .map(|(name, case)| Trial::test(format!("bundle::{name}"), case))
+        .collect();
     trials.push(Trial::test("bundle::one_hundred_thousand_keys", large));
     trials
 }
 
-const VALUES: [&[&str]; 4] = [&["none", "hard", "pcf_3x3"], &["false", "true"], &["1", "4", "10"], &["5", "9", "16"]];
+const VALUES: [&[&str]; 4] =
+    [&["none", "hard", "pcf_3x3"], &["false", "true"], &["1", "4", "10"], &["5", "9", "16"]];
 const NAMES: [&str; 4] = ["shadow", "two_sided", "max_lights", "taps"];
 const DEFAULTS: [&str; 4] = ["none", "false", "4", "9"];
 
@@ -53,8 +58,13 @@ fn unit(text: &str, targets: &[Target]) -> Unit {
     let reflection = Reflection::of(Stage::Fragment);
     let native = Arc::new(Native { entry_name: "main".into(), ..Native::default() });
     let artifact = |target: &Target| {
-        let bytes = format!("{}{target}: {text}", "the same text in every shader\n".repeat(40)).into_bytes().into();
-        (target.name().to_owned(), Artifact { bytes, extension: "txt".into(), native: native.clone() })
+        let bytes = format!("{}{target}: {text}", "the same text in every shader\n".repeat(40))
+            .into_bytes()
+            .into();
+        (
+            target.name().to_owned(),
+            Artifact { bytes, extension: "txt".into(), native: native.clone() },
+        )
     };
     Unit { reflection: Arc::new(reflection), targets: targets.iter().map(artifact).collect() }
 }
@@ -65,20 +75,35 @@ fn small() -> Contents {
     for (shadow, two_sided, lights, taps) in product() {
         let key = format!("shadow={shadow},two_sided={two_sided},max_lights={lights},taps={taps}");
         if taps != "16" {
-            let hash = entry.add(unit(&format!("{shadow} {lights} {taps}"), &[Target::SPIRV, Target::WGSL])).unwrap();
+            let hash = entry
+                .add(unit(&format!("{shadow} {lights} {taps}"), &[Target::SPIRV, Target::WGSL]))
+                .unwrap();
             entry.keys.insert(canonical(&axes(), &key).unwrap(), hash);
         }
     }
     let mut languages = BTreeMap::new();
-    languages.insert(Language::Wesl, BTreeMap::from([("fs_main".to_owned(), entry.clone()), ("vs_main".to_owned(), entry.clone())]));
+    languages.insert(
+        Language::Wesl,
+        BTreeMap::from([
+            ("fs_main".to_owned(), entry.clone()),
+            ("vs_main".to_owned(), entry.clone()),
+        ]),
+    );
     languages.insert(Language::Glsl, BTreeMap::from([("fragment".to_owned(), entry)]));
     let program = ProgramContents { axes: axes(), languages };
-    Contents { programs: BTreeMap::from([("depth".to_owned(), program.clone()), ("forward".to_owned(), program)]) }
+    Contents {
+        programs: BTreeMap::from([
+            ("depth".to_owned(), program.clone()),
+            ("forward".to_owned(), program),
+        ]),
+    }
 }
 
 fn product() -> impl Iterator<Item = (&'static str, &'static str, &'static str, &'static str)> {
     VALUES[0].iter().flat_map(|a| {
-        VALUES[1].iter().flat_map(move |b| VALUES[2].iter().flat_map(move |c| VALUES[3].iter().map(move |d| (*a, *b, *c, *d))))
+        VALUES[1].iter().flat_map(move |b| {
+            VALUES[2].iter().flat_map(move |c| VALUES[3].iter().map(move |d| (*a, *b, *c, *d)))
+        })
     })
 }
 
@@ -98,23 +123,37 @@ fn round_trips() -> Outcome {
     check(packed == pack(&contents)?, "packing twice gives other bytes")?;
     let file = folder.path().join("shaders.lamplight");
     write_file(&contents, &file)?;
-    for bundle in [Bundle::open(folder.path())?, Bundle::open(&file)?, Bundle::from_bytes(packed)?] {
+    for bundle in [Bundle::open(folder.path())?, Bundle::open(&file)?, Bundle::from_bytes(packed)?]
+    {
         bundle.verify()?;
         check(bundle.contents()? == contents, "the contents differ")?;
-        let found = bundle.program("forward")?.entry(Language::Glsl, "fragment")?.get("shadow=hard,two_sided", Target::WGSL)?;
+        let found = bundle
+            .program("forward")?
+            .entry(Language::Glsl, "fragment")?
+            .get("shadow=hard,two_sided", Target::WGSL)?;
         check(text(&found.bytes) == "wgsl: hard 4 9", &text(&found.bytes))?;
     }
-    check(pack(&Bundle::open(folder.path())?.contents()?)? == pack(&contents)?, "a directory packs to other bytes")
+    check(
+        pack(&Bundle::open(folder.path())?.contents()?)? == pack(&contents)?,
+        "a directory packs to other bytes",
+    )
 }
 
 fn keys_in_any_order() -> Outcome {
     let bundle = Bundle::from_bytes(pack(&small())?)?;
     let shader = bundle.program("forward")?.shader("fs_main")?;
     let expected = shader.find("shadow=hard,two_sided")?;
-    for key in ["two_sided,shadow=hard", "two_sided=true, shadow=hard", "max_lights=4,shadow=hard,taps=9,two_sided=true"] {
+    for key in [
+        "two_sided,shadow=hard",
+        "two_sided=true, shadow=hard",
+        "max_lights=4,shadow=hard,taps=9,two_sided=true",
+    ] {
         check(shader.find(key)? == expected, key)?;
     }
-    check(shader.find("shadow=hard")? == expected, "permutations that share a unit have its number")?;
+    check(
+        shader.find("shadow=hard")? == expected,
+        "permutations that share a unit have its number",
+    )?;
     check(shader.get("", Target::SPIRV).is_ok(), "the defaults are the empty key")
 }
 
@@ -122,7 +161,11 @@ fn misses() -> Outcome {
     let folder = tempfile::tempdir()?;
     write_directory(&small(), folder.path())?;
     for bundle in [Bundle::open(folder.path())?, Bundle::from_bytes(pack(&small())?)?] {
-        let error = bundle.program("forward")?.shader("fs_main")?.get("two_sided,taps=16,shadow=hard", Target::SPIRV).err();
+        let error = bundle
+            .program("forward")?
+            .shader("fs_main")?
+            .get("two_sided,taps=16,shadow=hard", Target::SPIRV)
+            .err();
         let error = error.ok_or("a permutation that is not there was found")?;
         let miss = error.miss().ok_or_else(|| error.to_string())?;
         check(miss.asked == "shadow=hard,taps=16,two_sided", &miss.asked)?;
@@ -135,7 +178,8 @@ fn misses() -> Outcome {
 fn recording() -> Outcome {
     let mut bundle = Bundle::from_bytes(pack(&small())?)?;
     check(
-        bundle.program("forward")?.shader("fs_main")?.find("shadow=hard").is_ok() && bundle.usage().keys.is_empty(),
+        bundle.program("forward")?.shader("fs_main")?.find("shadow=hard").is_ok()
+            && bundle.usage().keys.is_empty(),
         "nobody asked for a list",
     )?;
     bundle.record();
@@ -143,7 +187,8 @@ fn recording() -> Outcome {
     std::thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| {
-                ["two_sided,shadow=hard", "shadow=hard,two_sided=true", "", "default", "taps=16"].map(|key| shader.find(key).is_ok())
+                ["two_sided,shadow=hard", "shadow=hard,two_sided=true", "", "default", "taps=16"]
+                    .map(|key| shader.find(key).is_ok())
             });
         }
     });
@@ -155,10 +200,14 @@ fn recording() -> Outcome {
     std::fs::write(&path, "# earlier\nblur direction=across\n")?;
     bundle.usage().save(&path)?;
     bundle.usage().save(&path)?;
-    let list = Usage::parse(&std::fs::read_to_string(&path)?).map_err(|line| format!("line {line}"))?;
+    let list =
+        Usage::parse(&std::fs::read_to_string(&path)?).map_err(|line| format!("line {line}"))?;
     check(list.keys.len() == 2 && list.keys["forward"].len() == 3, "the lists did not merge")?;
     std::fs::write(&path, "word\n")?;
-    check(bundle.usage().save(&path).is_err() && std::fs::read_to_string(&path)? == "word\n", "what is no list was overwritten")
+    check(
+        bundle.usage().save(&path).is_err() && std::fs::read_to_string(&path)? == "word\n",
+        "what is no list was overwritten",
+    )
 }
 
 fn unknown_names() -> Outcome {
@@ -166,8 +215,14 @@ fn unknown_names() -> Outcome {
     let program = bundle.program("forward")?;
     let shader = program.shader("fs_main")?;
     let errors = [
-        (bundle.program("froward").err(), "the bundle has no program `froward`; it has: depth, forward"),
-        (program.entry(Language::Wesl, "main").err(), "the bundle has no entry point `main`; it has: fs_main, vs_main"),
+        (
+            bundle.program("froward").err(),
+            "the bundle has no program `froward`; it has: depth, forward",
+        ),
+        (
+            program.entry(Language::Wesl, "main").err(),
+            "the bundle has no entry point `main`; it has: fs_main, vs_main",
+        ),
         (shader.get("", Target::MSL).err(), "the bundle has no target `msl`; it has: spirv, wgsl"),
         (
             shader.get("tap=5", Target::SPIRV).err(),
@@ -177,7 +232,10 @@ fn unknown_names() -> Outcome {
             shader.get("taps=6", Target::SPIRV).err(),
             "`taps=6` is not a key of this program: axis `taps` has no value `6`; there are: 5, 9, 16",
         ),
-        (shader.get("taps=5,taps=9", Target::SPIRV).err(), "`taps=5,taps=9` is not a key of this program: axis `taps` is named twice"),
+        (
+            shader.get("taps=5,taps=9", Target::SPIRV).err(),
+            "`taps=5,taps=9` is not a key of this program: axis `taps` is named twice",
+        ),
     ];
     errors.into_iter().try_for_each(|(error, expected)| {
         let error = error.map(|error| error.to_string()).unwrap_or_default();
@@ -262,39 +320,67 @@ fn damaged_directories() -> Outcome {
 fn versions() -> Outcome {
     let mut packed = pack(&small())?;
     packed[8] = 9;
-    check(matches!(Bundle::from_bytes(packed), Err(Error::Version { found: 9, known: 1 })), "a file of version 9 was read")?;
+    check(
+        matches!(Bundle::from_bytes(packed), Err(Error::Version { found: 9, known: 1 })),
+        "a file of version 9 was read",
+    )?;
     let folder = tempfile::tempdir()?;
-    std::fs::write(folder.path().join("manifest.json"), "{\"version\": 9, \"something\": \"else\"}")?;
-    check(matches!(Bundle::open(folder.path()), Err(Error::Version { found: 9, known: 1 })), "a manifest of version 9 was read")
+    std::fs::write(
+        folder.path().join("manifest.json"),
+        "{\"version\": 9, \"something\": \"else\"}",
+    )?;
+    check(
+        matches!(Bundle::open(folder.path()), Err(Error::Version { found: 9, known: 1 })),
+        "a manifest of version 9 was read",
+    )
 }
 
 fn rewriting() -> Outcome {
     let folder = tempfile::tempdir()?;
     let blobs = folder.path().join("blobs");
     let names = || -> std::io::Result<Vec<_>> {
-        let mut names: Vec<_> = std::fs::read_dir(&blobs)?.map(|entry| entry.map(|entry| entry.file_name())).collect::<Result<_, _>>()?;
+        let mut names: Vec<_> = std::fs::read_dir(&blobs)?
+            .map(|entry| entry.map(|entry| entry.file_name()))
+            .collect::<Result<_, _>>()?;
         names.sort();
         Ok(names)
     };
     write_directory(&small(), folder.path())?;
     let first = (names()?, std::fs::read(folder.path().join("manifest.json"))?);
-    // What a run that was killed before its manifest leaves: the old bundle is whole.
-    std::fs::write(blobs.join("0000000000000000.txt"), "of a newer run")?;
-    std::fs::write(blobs.join(".tmp-1-1"), "half")?;
+    // What a user puts there stays.
+    std::fs::write(blobs.join("0000000000000000.txt"), "a user's")?;
+    let fewer = fewer();
+    let reader = Bundle::open(folder.path())?;
+    write_directory(&fewer, folder.path())?;
     Bundle::open(folder.path())?.verify()?;
+    // A program that has the older bundle open goes on reading it until the run after.
+    reader.verify()?;
+    write_directory(&fewer, folder.path())?;
+    check(reader.verify().is_err(), "blobs of the bundle before are kept for ever")?;
+    check(names()?.len() < first.0.len(), "stale blobs were left")?;
+    check(blobs.join("0000000000000000.txt").exists(), "a user's file is gone")?;
+    std::fs::remove_file(blobs.join("0000000000000000.txt"))?;
+    write_directory(&small(), folder.path())?;
+    check(
+        first == (names()?, std::fs::read(folder.path().join("manifest.json"))?),
+        "the same contents gave another directory",
+    )
+}
+
+/// Without the permutations of hard shadows.
+fn fewer() -> Contents {
     let mut fewer = small();
-    fewer.programs.values_mut().flat_map(|program| program.languages.values_mut()).flat_map(|entries| entries.values_mut()).for_each(
-        |entry| {
+    fewer
+        .programs
+        .values_mut()
+        .flat_map(|program| program.languages.values_mut())
+        .flat_map(|entries| entries.values_mut())
+        .for_each(|entry| {
             entry.keys.retain(|key, _| !key.contains("hard"));
             let used: Vec<_> = entry.keys.values().copied().collect();
             entry.units.retain(|hash, _| used.contains(hash));
-        },
-    );
-    write_directory(&fewer, folder.path())?;
-    Bundle::open(folder.path())?.verify()?;
-    check(names()?.len() < first.0.len(), "stale blobs were left")?;
-    write_directory(&small(), folder.path())?;
-    check(first == (names()?, std::fs::read(folder.path().join("manifest.json"))?), "the same contents gave another directory")
+        });
+    fewer
 }
 
 fn differences() -> Outcome {
@@ -312,7 +398,10 @@ fn differences() -> Outcome {
     entry.keys.insert("shadow=hard".into(), hash);
     entry.keys.remove("default");
     let changes = diff(&old, &new).permutations;
-    let told: Vec<String> = changes.iter().map(|change| format!("{} {} {:?}", change.kind, change.key, change.parts)).collect();
+    let told: Vec<String> = changes
+        .iter()
+        .map(|change| format!("{} {} {:?}", change.kind, change.key, change.parts))
+        .collect();
     check(told == ["removed default []", "changed shadow=hard [\"wgsl\"]"], &format!("{told:?}"))
 }
 
@@ -320,7 +409,11 @@ fn merging() -> Outcome {
     let mut shards = [Contents::default(), Contents::default()];
     for (index, shard) in shards.iter_mut().enumerate() {
         *shard = small();
-        for entry in shard.programs.values_mut().flat_map(|program| program.languages.values_mut()).flat_map(|entries| entries.values_mut())
+        for entry in shard
+            .programs
+            .values_mut()
+            .flat_map(|program| program.languages.values_mut())
+            .flat_map(|entries| entries.values_mut())
         {
             let mut count = 0;
             entry.keys.retain(|_, _| {
@@ -343,14 +436,20 @@ fn schema() -> Outcome {
     let folder = tempfile::tempdir()?;
     write_directory(&small(), folder.path())?;
     let schema: Value = serde_json::from_str(SCHEMA)?;
-    let manifest: Value = serde_json::from_slice(&std::fs::read(folder.path().join("manifest.json"))?)?;
+    let manifest: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("manifest.json"))?)?;
     conforms(&schema, &schema, &manifest, "manifest")
 }
 
 /// The part of JSON Schema that the published schema uses.
 pub fn conforms(root: &Value, schema: &Value, value: &Value, place: &str) -> Outcome {
     if let Some(name) = schema["$ref"].as_str() {
-        return conforms(root, root.pointer(&name[1..]).ok_or("a reference leads nowhere")?, value, place);
+        return conforms(
+            root,
+            root.pointer(&name[1..]).ok_or("a reference leads nowhere")?,
+            value,
+            place,
+        );
     }
     let is_type = match schema["type"].as_str() {
         Some("object") => value.is_object(),
@@ -362,7 +461,10 @@ pub fn conforms(root: &Value, schema: &Value, value: &Value, place: &str) -> Out
     };
     check(is_type, &format!("{place} has the wrong type"))?;
     check(schema.get("const").is_none_or(|only| only == value), place)?;
-    check(schema["enum"].as_array().is_none_or(|known| known.contains(value)), &format!("{place}: {value}"))?;
+    check(
+        schema["enum"].as_array().is_none_or(|known| known.contains(value)),
+        &format!("{place}: {value}"),
+    )?;
     for name in schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str) {
         check(value.get(name).is_some(), &format!("{place} has no {name}"))?;
     }
@@ -371,7 +473,11 @@ pub fn conforms(root: &Value, schema: &Value, value: &Value, place: &str) -> Out
         check(known != &Value::Bool(false), &format!("{place} has an unknown {name}"))?;
         conforms(root, known, member, &format!("{place}.{name}"))?;
     }
-    value.as_array().into_iter().flatten().try_for_each(|item| conforms(root, &schema["items"], item, place))
+    value
+        .as_array()
+        .into_iter()
+        .flatten()
+        .try_for_each(|item| conforms(root, &schema["items"], item, place))
 }
 
 /// Opening, looking up and fetching stay quick; the figures are printed with `--nocapture`.
@@ -382,17 +488,30 @@ fn large() -> Outcome {
         default: "value_0".into(),
         mode: "static".into(),
     };
-    let axes: Vec<Axis> = ["ambient", "attenuation", "specular", "shadow", "lights"].map(|name| axis(name, 10)).into();
+    let axes: Vec<Axis> = ["ambient", "attenuation", "specular", "shadow", "lights"]
+        .map(|name| axis(name, 10))
+        .into();
     let mut entry = EntryContents::default();
-    let hashes: Vec<_> =
-        (0..2_000).map(|index| entry.add(unit(&format!("unit {index}"), &[Target::SPIRV, Target::WGSL])).unwrap()).collect();
+    let hashes: Vec<_> = (0..2_000)
+        .map(|index| {
+            entry.add(unit(&format!("unit {index}"), &[Target::SPIRV, Target::WGSL])).unwrap()
+        })
+        .collect();
     for index in 0..100_000usize {
         let value = |axis: u32| index / 10usize.pow(axis) % 10;
-        let key: Vec<String> = (0..5).map(|axis| format!("{}=value_{}", axes[axis as usize].name, value(axis))).collect();
+        let key: Vec<String> = (0..5)
+            .map(|axis| format!("{}=value_{}", axes[axis as usize].name, value(axis)))
+            .collect();
         entry.keys.insert(canonical(&axes, &key.join(",")).unwrap(), hashes[index % hashes.len()]);
     }
     let keys: Vec<String> = entry.keys.keys().cloned().collect();
-    let program = ProgramContents { axes, languages: BTreeMap::from([(Language::Wesl, BTreeMap::from([("fs_main".to_owned(), entry)]))]) };
+    let program = ProgramContents {
+        axes,
+        languages: BTreeMap::from([(
+            Language::Wesl,
+            BTreeMap::from([("fs_main".to_owned(), entry)]),
+        )]),
+    };
     let contents = Contents { programs: BTreeMap::from([("forward".to_owned(), program)]) };
 
     let folder = tempfile::tempdir()?;
@@ -403,10 +522,13 @@ fn large() -> Outcome {
     let shader = bundle.program("forward")?.shader("fs_main")?;
     let (_, first) = timed(|| shader.find(&keys[0]));
     // Copied in the order of asking: what is timed is the bundle's memory, not the test's.
-    let asked: Vec<String> = (0..keys.len()).map(|index| keys[index * 7919 % keys.len()].clone()).collect();
+    let asked: Vec<String> =
+        (0..keys.len()).map(|index| keys[index * 7919 % keys.len()].clone()).collect();
     let (found, looking) = timed(|| asked.iter().filter(|key| shader.find(key).is_ok()).count());
     check(found == 100_000, "a key was not found")?;
-    let (_, fetching) = timed(|| asked.iter().take(1_000).filter(|key| shader.get(key, Target::SPIRV).is_ok()).count());
+    let (_, fetching) = timed(|| {
+        asked.iter().take(1_000).filter(|key| shader.get(key, Target::SPIRV).is_ok()).count()
+    });
     let (_, verifying) = timed(|| bundle.verify());
     let size = std::fs::metadata(&path)?.len();
     println!(

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use lamplight::catalogue::{self, Kind, preset, probe};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::harness::catalogue::{Files, modules, pages};
 use lamplight::project;
+use lamplight::proof::catalogue::{Files, modules, pages};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
@@ -34,7 +34,11 @@ fn pages_are_up_to_date() -> Result<(), Failed> {
     let found = on_disk("docs/catalogue");
     let expected = made(pages())?;
     let stale: Vec<&String> = found.iter().filter(|path| !expected.contains_key(*path)).collect();
-    if stale.is_empty() { Ok(()) } else { Err(format!("docs/catalogue has files that nothing makes: {stale:?}; delete them").into()) }
+    if stale.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("docs/catalogue has files that nothing makes: {stale:?}; delete them").into())
+    }
 }
 
 fn modules_are_up_to_date() -> Result<(), Failed> {
@@ -42,16 +46,25 @@ fn modules_are_up_to_date() -> Result<(), Failed> {
 }
 
 fn same_on_disk(folder: &str, files: &Files) -> Result<(), Failed> {
-    let differs = |(path, text): &(&String, &String)| std::fs::read_to_string(root().join(folder).join(path)).ok().as_ref() != Some(*text);
+    let differs = |(path, text): &(&String, &String)| {
+        std::fs::read_to_string(root().join(folder).join(path)).ok().as_ref() != Some(*text)
+    };
     let changed: Vec<&String> = files.iter().filter(differs).map(|(path, _)| path).collect();
-    if changed.is_empty() { Ok(()) } else { Err(format!("{folder} is not up to date: {changed:?}\n{MEND}").into()) }
+    if changed.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("{folder} is not up to date: {changed:?}\n{MEND}").into())
+    }
 }
 
 fn on_disk(folder: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut folders = vec![String::new()];
     while let Some(below) = folders.pop() {
-        for entry in std::fs::read_dir(root().join(folder).join(&below)).expect("the catalogue is there").flatten() {
+        for entry in std::fs::read_dir(root().join(folder).join(&below))
+            .expect("the catalogue is there")
+            .flatten()
+        {
             let path = format!("{below}{}", entry.file_name().to_string_lossy());
             if entry.path().is_dir() { folders.push(path + "/") } else { found.push(path) }
         }
@@ -69,7 +82,8 @@ fn made(files: Result<Files, (SourceSet, Vec<Diagnostic>)>) -> Result<Files, Fai
 
 fn every_item_has_a_twin() -> Result<(), Failed> {
     let items = catalogue::library().into_iter().flat_map(|module| module.items);
-    let alone: Vec<String> = items.filter(|item| item.glsl.is_none()).map(|item| item.path()).collect();
+    let alone: Vec<String> =
+        items.filter(|item| item.glsl.is_none()).map(|item| item.path()).collect();
     if alone.is_empty() { Ok(()) } else { Err(format!("not in GLSL: {alone:?}").into()) }
 }
 
@@ -87,15 +101,28 @@ fn every_member_is_described() -> Result<(), Failed> {
 /// A number from a number: nothing to choose, so nothing excuses the lack of a plot.
 fn every_plain_function_is_plotted() -> Result<(), Failed> {
     let files = made(pages())?;
-    let items = catalogue::library().into_iter().flat_map(|module| module.items).filter(|item| item.kind == Kind::Function);
-    let plain = items.filter(|item| item.result.as_deref() == Some("f32") && item.members.iter().all(|member| member.ty == "f32"));
-    let missing: Vec<String> =
-        plain.map(|item| item.path()).filter(|path| !files.contains_key(&format!("{}.svg", path.replace("::", "/")))).collect();
-    if missing.is_empty() { Ok(()) } else { Err(format!("without a plot in NAME.plot.toml: {missing:?}").into()) }
+    let items = catalogue::library()
+        .into_iter()
+        .flat_map(|module| module.items)
+        .filter(|item| item.kind == Kind::Function);
+    let plain = items.filter(|item| {
+        item.result.as_deref() == Some("f32")
+            && item.members.iter().all(|member| member.ty == "f32")
+    });
+    let missing: Vec<String> = plain
+        .map(|item| item.path())
+        .filter(|path| !files.contains_key(&format!("{}.svg", path.replace("::", "/"))))
+        .collect();
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("without a plot in NAME.plot.toml: {missing:?}").into())
+    }
 }
 
 fn presets() -> Result<Vec<preset::Preset>, Failed> {
-    let (mut sources, manifest) = project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    let (mut sources, manifest) = project::library_manifest()
+        .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
     catalogue::examples(&mut sources, &manifest)
         .map(|(presets, _)| presets)
         .map_err(|problems| render(&sources, &problems, Form::Human).into())
@@ -108,23 +135,37 @@ fn presets_ship() -> Result<(), Failed> {
 }
 
 fn preset_mistakes_are_reported() -> Result<(), Failed> {
-    let (_, manifest) = project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    let (_, manifest) = project::library_manifest()
+        .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
     let head = "[a]\ndoc = \"d\"\nsource = \"s\"\n";
     let cases = [
         ("program = \"forwards\"\nkey = \"default\"\nscene = \"floor\"", "unknown-program"),
         ("program = \"forward\"\nkey = \"shadw=hard\"\nscene = \"floor\"", "unknown-axis"),
-        ("program = \"forward\"\nkey = \"two_sided,frequency=vertex\"\nscene = \"floor\"", "invalid-permutation"),
-        ("program = \"forward\"\nkey = \"saturate,max_lights=1\"\nscene = \"floor\"", "data-syntax"),
+        (
+            "program = \"forward\"\nkey = \"two_sided,frequency=vertex\"\nscene = \"floor\"",
+            "invalid-permutation",
+        ),
+        (
+            "program = \"forward\"\nkey = \"saturate,max_lights=1\"\nscene = \"floor\"",
+            "data-syntax",
+        ),
         ("program = \"forward\"\nkey = \"default\"\nscene = \"flor\"", "data-syntax"),
         ("program = \"forward\"\nkey = \"default\"\nscene = \"floor\"\ncolour = 1", "data-syntax"),
-        ("program = \"forward\"\nkey = \"default\"\nscene = \"floor\"\nprobe = \"x\"", "data-syntax"),
+        (
+            "program = \"forward\"\nkey = \"default\"\nscene = \"floor\"\nprobe = \"x\"",
+            "data-syntax",
+        ),
     ];
     for (text, code) in cases {
         let mut sources = SourceSet::default();
         let id = sources.add("presets.toml", format!("{head}{text}\n"));
         let problems = preset::parse(&sources, id, &manifest, &[]).err().unwrap_or_default();
         if !problems.iter().any(|problem| problem.code.name == code && !problem.labels.is_empty()) {
-            return Err(format!("expected `{code}` for\n{text}\ngot\n{}", render(&sources, &problems, Form::Human)).into());
+            return Err(format!(
+                "expected `{code}` for\n{text}\ngot\n{}",
+                render(&sources, &problems, Form::Human)
+            )
+            .into());
         }
     }
     Ok(())
@@ -136,13 +177,20 @@ fn preset_numbers_name_fields() -> Result<(), Failed> {
         .into_iter()
         .flat_map(|module| module.items)
         .filter(|item| item.kind == Kind::Struct)
-        .map(|item| (item.name.to_lowercase(), item.members.into_iter().map(|member| member.name).collect()))
+        .map(|item| {
+            (item.name.to_lowercase(), item.members.into_iter().map(|member| member.name).collect())
+        })
         .collect();
     let mut wrong = Vec::new();
     for preset in presets()? {
         for (group, fields) in &preset.numbers {
             let Some(known) = structs.get(group) else { continue };
-            wrong.extend(fields.keys().filter(|field| !known.contains(field)).map(|field| format!("{}: {group}.{field}", preset.name)));
+            wrong.extend(
+                fields
+                    .keys()
+                    .filter(|field| !known.contains(field))
+                    .map(|field| format!("{}: {group}.{field}", preset.name)),
+            );
         }
     }
     if wrong.is_empty() { Ok(()) } else { Err(format!("no such fields: {wrong:?}").into()) }
@@ -150,11 +198,18 @@ fn preset_numbers_name_fields() -> Result<(), Failed> {
 
 /// The same probe was published twice, with two digits and with six: they differ by rounding only.
 fn probe_forms_agree() -> Result<(), Failed> {
-    let probes = probe::library(&mut SourceSet::default()).map_err(|problems| format!("{problems:?}"))?;
-    let find = |name: &str| probes.iter().find(|probe| probe.name == name).ok_or_else(|| format!("no probe `{name}`"));
+    let probes =
+        probe::library(&mut SourceSet::default()).map_err(|problems| format!("{problems:?}"))?;
+    let find = |name: &str| {
+        probes.iter().find(|probe| probe.name == name).ok_or_else(|| format!("no probe `{name}`"))
+    };
     let (two, six) = (find("old_town_square")?, find("old_town_square_6_digits")?);
-    let pairs =
-        two.coefficients.iter().flatten().zip(six.coefficients.iter().flatten()).zip(probe::ORDER.iter().flat_map(|name| [name; 3]));
+    let pairs = two
+        .coefficients
+        .iter()
+        .flatten()
+        .zip(six.coefficients.iter().flatten())
+        .zip(probe::ORDER.iter().flat_map(|name| [name; 3]));
     let apart: Vec<String> = pairs
         .filter(|((two, six), _)| (*two - *six).abs() > 0.005 + 1e-9)
         .map(|((two, six), name)| format!("{name}: {two} and {six}"))

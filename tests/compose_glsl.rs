@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use lamplight::compose::{Composed, Keep, Options, Stage, glsl::compose};
+use lamplight::bundle::Stage;
+use lamplight::compose::{Composed, Keep, Options, glsl::compose};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::{Setting, Settings};
@@ -21,15 +22,16 @@ use libtest_mimic::{Failed, Trial};
 
 pub fn trials() -> Vec<Trial> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compose_glsl");
-    let mut cases: Vec<PathBuf> = fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut cases: Vec<PathBuf> =
+        fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).collect();
     cases.sort();
     let files = cases.into_iter().map(|case| {
         let name = case.file_name().unwrap().to_string_lossy().into_owned();
         Trial::test(format!("compose_glsl::{name}"), move || check(&case))
     });
-    let generated = GENERATED
-        .iter()
-        .map(|(name, code, make)| Trial::test(format!("compose_glsl::generated::{name}"), move || check_limit(code, make())));
+    let generated = GENERATED.iter().map(|(name, code, make)| {
+        Trial::test(format!("compose_glsl::generated::{name}"), move || check_limit(code, make()))
+    });
     files.chain(generated).collect()
 }
 
@@ -49,23 +51,34 @@ fn check(folder: &Path) -> Result<(), Failed> {
     let result = load(&mut sources, &packages, &case.root).and_then(|graph| {
         let first = compose(&graph, &case.settings, &case.options);
         let second = compose(&graph, &case.settings, &case.options);
-        assert_eq!(first.as_ref().map(|it| &it.text).ok(), second.as_ref().map(|it| &it.text).ok(), "two runs differ");
+        assert_eq!(
+            first.as_ref().map(|it| &it.text).ok(),
+            second.as_ref().map(|it| &it.text).ok(),
+            "two runs differ"
+        );
         first
     });
     match result {
         Ok(composed) => {
             expect(folder, "expected.glsl", "expected.err", &shown(&sources, &case, &composed))?;
             check_map(&sources, &composed)?;
-            if composed.text.contains("void main") && !case.invalid { validate(&composed) } else { Ok(()) }
+            if composed.text.contains("void main") && !case.invalid {
+                validate(&composed)
+            } else {
+                Ok(())
+            }
         }
-        Err(errors) => expect(folder, "expected.err", "expected.glsl", &render(&sources, &errors, Form::Human)),
+        Err(errors) => {
+            expect(folder, "expected.err", "expected.glsl", &render(&sources, &errors, Form::Human))
+        }
     }
 }
 
 fn read_case(folder: &Path) -> Case {
     let mut case = Case { root: "main.frag.glsl".into(), ..Case::default() };
     for line in fs::read_to_string(folder.join("settings")).unwrap_or_default().lines() {
-        let (key, value) = line.split_once('=').map(|(key, value)| (key.trim(), value.trim())).unwrap();
+        let (key, value) =
+            line.split_once('=').map(|(key, value)| (key.trim(), value.trim())).unwrap();
         let words = || value.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
         match key.split_once(' ').unwrap_or(("", key)) {
             ("enum", axis) => drop(case.settings.enums.insert(axis.into(), words())),
@@ -88,7 +101,9 @@ fn packages(folder: &Path) -> Packages {
     let mut dependencies: BTreeMap<String, Memory> = BTreeMap::new();
     for (path, text) in files {
         match path.strip_prefix("deps/").and_then(|rest| rest.split_once('/')) {
-            Some((name, rest)) => drop(dependencies.entry(name.into()).or_default().0.insert(rest.into(), text)),
+            Some((name, rest)) => {
+                drop(dependencies.entry(name.into()).or_default().0.insert(rest.into(), text))
+            }
             None => drop(root.0.insert(path, text)),
         }
     }
@@ -96,7 +111,10 @@ fn packages(folder: &Path) -> Packages {
         let files = Box::new(Named(name.clone(), files));
         Package { name, files }
     });
-    Packages { root: Package { name: "root".into(), files: Box::new(root) }, dependencies: dependencies.collect() }
+    Packages {
+        root: Package { name: "root".into(), files: Box::new(root) },
+        dependencies: dependencies.collect(),
+    }
 }
 
 fn read_files(folder: &Path, prefix: &str, files: &mut BTreeMap<String, String>) {
@@ -129,10 +147,14 @@ impl Files for Named {
 
 fn shown(sources: &SourceSet, case: &Case, composed: &Composed) -> String {
     let mut text = composed.text.clone();
-    let reads: Vec<String> = composed.reads.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let reads: Vec<String> =
+        composed.reads.iter().map(|(name, value)| format!("{name}={value}")).collect();
     writeln!(text, "// ---- {:?}; reads: {}", composed.stage.unwrap(), reads.join(" ")).unwrap();
     for wanted in &case.locate {
-        let at = composed.text.find(wanted).unwrap_or_else(|| panic!("`{wanted}` is not in the output:\n{text}"));
+        let at = composed
+            .text
+            .find(wanted)
+            .unwrap_or_else(|| panic!("`{wanted}` is not in the output:\n{text}"));
         let span = composed.map.lookup(at..at + wanted.len());
         let place = span.map_or("nowhere".into(), |span| {
             let (line, column) = sources.position(span.source, span.start as usize);
@@ -150,7 +172,11 @@ fn expect(folder: &Path, name: &str, other: &str, found: &str) -> Result<(), Fai
         fs::write(&path, found)?;
     }
     let expected = fs::read_to_string(&path).unwrap_or_default();
-    if expected == found { Ok(()) } else { Err(format!("--- expected\n{expected}\n+++ found\n{found}").into()) }
+    if expected == found {
+        Ok(())
+    } else {
+        Err(format!("--- expected\n{expected}\n+++ found\n{found}").into())
+    }
 }
 
 /// Copies are equal to what they were copied from, and segments are in order.
@@ -162,7 +188,9 @@ fn check_map(sources: &SourceSet, composed: &Composed) -> Result<(), Failed> {
         if let (Some(span), true) = (segment.span, segment.verbatim)
             && !sources.text(span).starts_with(output)
         {
-            return Err(format!("`{output}` is said to be a copy of `{}`", sources.text(span)).into());
+            return Err(
+                format!("`{output}` is said to be a copy of `{}`", sources.text(span)).into()
+            );
         }
     }
     Ok(())
@@ -176,10 +204,15 @@ fn validate(composed: &Composed) -> Result<(), Failed> {
     };
     let module = naga::front::glsl::Frontend::default()
         .parse(&naga::front::glsl::Options::from(stage), &composed.text)
-        .map_err(|errors| format!("naga: {}\n{}", errors.emit_to_string(&composed.text), composed.text))?;
-    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
-        .validate(&module)
-        .map_err(|error| format!("naga: {}", error.emit_to_string(&composed.text)))?;
+        .map_err(|errors| {
+            format!("naga: {}\n{}", errors.emit_to_string(&composed.text), composed.text)
+        })?;
+    naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .map_err(|error| format!("naga: {}", error.emit_to_string(&composed.text)))?;
     glslang(&composed.text, name)
 }
 
@@ -187,7 +220,11 @@ fn validate(composed: &Composed) -> Result<(), Failed> {
 fn glslang(text: &str, stage: &str) -> Result<(), Failed> {
     let file = tempfile::Builder::new().suffix(&format!(".{stage}")).tempfile()?;
     fs::write(file.path(), text)?;
-    let Ok(output) = Command::new("glslangValidator").args(["-V", "-o", "/dev/null"]).arg(file.path()).output() else { return Ok(()) };
+    let Ok(output) =
+        Command::new("glslangValidator").args(["-V", "-o", "/dev/null"]).arg(file.path()).output()
+    else {
+        return Ok(());
+    };
     if output.status.success() {
         Ok(())
     } else {
@@ -201,28 +238,47 @@ type Generated = (&'static str, &'static str, fn() -> Vec<(String, String)>);
 /// Hostile inputs that are too large to keep; the first file is the root.
 const GENERATED: &[Generated] = &[
     ("object_bomb", "expansion-too-large", || {
-        one((0..64).map(|n| format!("#define M{n} M{0} M{0}\n", n + 1)).collect::<String>() + "int x = M0;\n")
+        one((0..64).map(|n| format!("#define M{n} M{0} M{0}\n", n + 1)).collect::<String>()
+            + "int x = M0;\n")
     }),
     ("silent_bomb", "expansion-too-large", || {
-        one((0..63).map(|n| format!("#define M{n} M{0} M{0}\n", n + 1)).collect::<String>() + "#define M63\nint x = M0 1;\n")
+        one((0..63).map(|n| format!("#define M{n} M{0} M{0}\n", n + 1)).collect::<String>()
+            + "#define M63\nint x = M0 1;\n")
     }),
     ("argument_bomb", "expansion-too-large", || {
-        one((0..64).map(|n| format!("#define F{n}(x) F{0}(x x)\n", n + 1)).collect::<String>() + "int x = F0(1);\n")
+        one((0..64).map(|n| format!("#define F{n}(x) F{0}(x x)\n", n + 1)).collect::<String>()
+            + "int x = F0(1);\n")
     }),
-    ("nested_calls", "nesting-too-deep", || one(format!("#define F(x) x\nint x = {}1{};\n", "F(".repeat(100_000), ")".repeat(100_000)))),
-    ("nested_condition", "nesting-too-deep", || one(format!("#if {}1{}\n#endif\n", "(".repeat(100_000), ")".repeat(100_000)))),
+    ("nested_calls", "nesting-too-deep", || {
+        one(format!("#define F(x) x\nint x = {}1{};\n", "F(".repeat(100_000), ")".repeat(100_000)))
+    }),
+    ("nested_condition", "nesting-too-deep", || {
+        one(format!("#if {}1{}\n#endif\n", "(".repeat(100_000), ")".repeat(100_000)))
+    }),
     ("unary_chain", "nesting-too-deep", || one(format!("#if {}1\n#endif\n", "!".repeat(100_000)))),
-    ("nested_ifs", "nesting-too-deep", || one("#if 1\n".repeat(100_000) + &"#endif\n".repeat(100_000))),
-    ("nested_brackets", "nesting-too-deep", || one(format!("int x = {}1{};\n", "(".repeat(100_000), ")".repeat(100_000)))),
-    ("long_elif", "", || one("#if 0\n".to_owned() + &"#elif 0\n".repeat(100_000) + "#endif\nvoid main() {}\n")),
-    ("long_sum", "", || one(format!("#if {}1\n#endif\nvoid main() {{}}\n", "1 + ".repeat(100_000)))),
+    ("nested_ifs", "nesting-too-deep", || {
+        one("#if 1\n".repeat(100_000) + &"#endif\n".repeat(100_000))
+    }),
+    ("nested_brackets", "nesting-too-deep", || {
+        one(format!("int x = {}1{};\n", "(".repeat(100_000), ")".repeat(100_000)))
+    }),
+    ("long_elif", "", || {
+        one("#if 0\n".to_owned() + &"#elif 0\n".repeat(100_000) + "#endif\nvoid main() {}\n")
+    }),
+    ("long_sum", "", || {
+        one(format!("#if {}1\n#endif\nvoid main() {{}}\n", "1 + ".repeat(100_000)))
+    }),
     ("long_chain", "", || {
         one((0..50_000).map(|n| format!("#define M{n} M{}\n", n + 1)).collect::<String>()
             + "const int x = M0;\nvoid main() { int y = x; }\n")
     }),
     ("many_tokens", "too-many-tokens", || one("; ".repeat((1 << 20) + 1))),
-    ("many_lines", "", || one("const int a = __LINE__;\n".repeat(50_000) + "void main() { int b = a; }\n")),
-    ("deep_includes", "include-too-deep", || (0..100).map(|n| (name(n), format!("#include \"{}\"\n", name(n + 1)))).collect()),
+    ("many_lines", "", || {
+        one("const int a = __LINE__;\n".repeat(50_000) + "void main() { int b = a; }\n")
+    }),
+    ("deep_includes", "include-too-deep", || {
+        (0..100).map(|n| (name(n), format!("#include \"{}\"\n", name(n + 1)))).collect()
+    }),
     ("include_bomb", "expansion-too-large", || {
         let twice = |n: usize| format!("#include \"{0}\"\n#include \"{0}\"\n", name(n + 1));
         (0..40).map(|n| (name(n), twice(n))).chain([(name(40), String::new())]).collect()
@@ -244,16 +300,23 @@ fn name(number: usize) -> String {
 /// Ends soon, in that error or in none, on a small stack.
 fn check_limit(code: &str, files: Vec<(String, String)>) -> Result<(), Failed> {
     let root = files[0].0.clone();
-    let packages =
-        Packages { root: Package { name: "root".into(), files: Box::new(Memory(files.into_iter().collect())) }, dependencies: Vec::new() };
+    let packages = Packages {
+        root: Package { name: "root".into(), files: Box::new(Memory(files.into_iter().collect())) },
+        dependencies: Vec::new(),
+    };
     let run = move || {
         let start = std::time::Instant::now();
-        let result =
-            load(&mut SourceSet::default(), &packages, &root).and_then(|graph| compose(&graph, &Settings::default(), &Options::default()));
+        let result = load(&mut SourceSet::default(), &packages, &root)
+            .and_then(|graph| compose(&graph, &Settings::default(), &Options::default()));
         (result.err(), start.elapsed())
     };
-    let (errors, time) = std::thread::Builder::new().stack_size(1 << 20).spawn(run)?.join().map_err(|_| "panicked")?;
-    let codes: Vec<&str> = errors.iter().flatten().map(|error: &Diagnostic| error.code.name).collect();
+    let (errors, time) = std::thread::Builder::new()
+        .stack_size(1 << 20)
+        .spawn(run)?
+        .join()
+        .map_err(|_| "panicked")?;
+    let codes: Vec<&str> =
+        errors.iter().flatten().map(|error: &Diagnostic| error.code.name).collect();
     let expected: &[&str] = if code.is_empty() { &[] } else { &[code] };
     if codes != expected || time.as_secs() > 5 {
         return Err(format!("expected {expected:?}, found {codes:?} after {time:?}").into());

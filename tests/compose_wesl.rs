@@ -21,7 +21,11 @@ use libtest_mimic::{Failed, Trial};
 
 pub fn trials() -> Vec<Trial> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compose_wesl");
-    let mut cases: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()).collect();
+    let mut cases: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_dir())
+        .collect();
     cases.sort();
     let named = |case: PathBuf| {
         let name = case.file_name().unwrap().to_string_lossy().into_owned();
@@ -50,8 +54,11 @@ impl Case {
         let mut case = Self::default();
         for line in fs::read_to_string(folder.join("settings.txt")).unwrap_or_default().lines() {
             let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
-            let (name, value) = rest.split_once('=').map_or((rest.trim(), ""), |(name, value)| (name.trim(), value.trim()));
-            let list = |text: &str| text.split(',').map(|part| part.trim().to_owned()).collect::<Vec<_>>();
+            let (name, value) = rest
+                .split_once('=')
+                .map_or((rest.trim(), ""), |(name, value)| (name.trim(), value.trim()));
+            let list =
+                |text: &str| text.split(',').map(|part| part.trim().to_owned()).collect::<Vec<_>>();
             match word {
                 "set" => drop(case.settings.values.insert(name.to_owned(), Setting::parse(value))),
                 "enum" => drop(case.settings.enums.insert(name.to_owned(), list(value))),
@@ -74,14 +81,28 @@ fn check(folder: &Path) -> Result<(), Failed> {
     let packages = packages(folder);
     let mut sources = SourceSet::default();
     let root = case.root.as_deref().unwrap_or("main.wesl");
-    let outcome = load(&mut sources, &packages, root).and_then(|graph| compose(&graph, &case.settings, &case.options));
+    let outcome = load(&mut sources, &packages, root)
+        .and_then(|graph| compose(&graph, &case.settings, &case.options));
     let human = |diagnostics: &[_]| render(&sources, diagnostics, Form::Human);
-    let mut found = BTreeMap::from([("wgsl", None), ("err", None), ("warnings", None), ("reads", None)]);
+    let mut found =
+        BTreeMap::from([("wgsl", None), ("err", None), ("warnings", None), ("reads", None)]);
     match &outcome {
         Ok(composed) => {
             found.insert("wgsl", Some(composed.text.clone()));
-            found.insert("warnings", Some(human(&composed.warnings)).filter(|text| !text.is_empty()));
-            found.insert("reads", case.reads.then(|| composed.reads.iter().map(|(name, value)| format!("{name} = {value}\n")).collect()));
+            found.insert(
+                "warnings",
+                Some(human(&composed.warnings)).filter(|text| !text.is_empty()),
+            );
+            found.insert(
+                "reads",
+                case.reads.then(|| {
+                    composed
+                        .reads
+                        .iter()
+                        .map(|(name, value)| format!("{name} = {value}\n"))
+                        .collect()
+                }),
+            );
         }
         Err(errors) => drop(found.insert("err", Some(human(errors)))),
     }
@@ -138,11 +159,16 @@ fn packages(folder: &Path) -> Packages {
     let mut dependencies: BTreeMap<String, Memory> = BTreeMap::new();
     for (path, text) in files(folder, "") {
         match path.strip_prefix("deps/").and_then(|rest| rest.split_once('/')) {
-            Some((package, path)) => drop(dependencies.entry(package.to_owned()).or_default().0.insert(path.to_owned(), text)),
+            Some((package, path)) => drop(
+                dependencies.entry(package.to_owned()).or_default().0.insert(path.to_owned(), text),
+            ),
             None => drop(root.0.insert(path, text)),
         }
     }
-    let package = |(name, files): (String, Memory)| Package { name: name.clone(), files: Box::new(Shown { name, files }) };
+    let package = |(name, files): (String, Memory)| Package {
+        name: name.clone(),
+        files: Box::new(Shown { name, files }),
+    };
     Packages {
         root: Package { name: "app".to_owned(), files: Box::new(root) },
         dependencies: dependencies.into_iter().map(package).collect(),
@@ -176,7 +202,10 @@ fn files(folder: &Path, prefix: &str) -> Vec<(String, String)> {
         let name = format!("{prefix}{}", path.file_name().unwrap().to_string_lossy());
         match path.is_dir() {
             true => found.extend(files(&path, &format!("{name}/"))),
-            false if name.ends_with(".wesl") || (name.ends_with(".wgsl") && name != "expected.wgsl") => {
+            false
+                if name.ends_with(".wesl")
+                    || (name.ends_with(".wgsl") && name != "expected.wgsl") =>
+            {
                 found.push((name, fs::read_to_string(&path).unwrap()));
             }
             false => {}
@@ -197,13 +226,20 @@ fn unreadable() -> Result<(), Failed> {
     fs::create_dir(folder.path().join("folder.wesl"))?;
     #[cfg(unix)]
     std::os::unix::fs::symlink(outside.path(), folder.path().join("link.wesl"))?;
-    let root = Package { name: "app".to_owned(), files: Box::new(lamplight::source::Disk::new(folder.path())?) };
+    let root = Package {
+        name: "app".to_owned(),
+        files: Box::new(lamplight::source::Disk::new(folder.path())?),
+    };
     let mut sources = SourceSet::default();
-    let errors = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl").expect_err("three files are wrong");
+    let errors = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
+        .expect_err("three files are wrong");
     let mut found: Vec<&str> = errors.iter().map(|error| error.code.name).collect();
     found.sort_unstable();
-    let expected =
-        if cfg!(unix) { vec!["missing-module", "not-utf8", "outside-root"] } else { vec!["missing-module", "missing-module", "not-utf8"] };
+    let expected = if cfg!(unix) {
+        vec!["missing-module", "not-utf8", "outside-root"]
+    } else {
+        vec!["missing-module", "missing-module", "not-utf8"]
+    };
     if found == expected { Ok(()) } else { Err(render(&sources, &errors, Form::Human).into()) }
 }
 
@@ -230,14 +266,16 @@ fn hard(x: f32) -> f32 { return step(0.5, x); }
 fn soft(x: f32) -> f32 { return lambert(x) * hard(x); }
 ";
 
-const MIST: &str = "fn fade(x: f32) -> f32 { return lambert(x); } fn lambert(x: f32) -> f32 { return x; }";
+const MIST: &str =
+    "fn fade(x: f32) -> f32 { return lambert(x); } fn lambert(x: f32) -> f32 { return x; }";
 
 fn lights() -> (SourceSet, Graph) {
     let texts = [("main.wesl", LIGHTS), ("shade.wesl", SHADE), ("mist.wesl", MIST)];
     let files = texts.map(|(path, text)| (path.to_owned(), text.to_owned()));
     let root = Package { name: "app".to_owned(), files: Box::new(Memory(files.into())) };
     let mut sources = SourceSet::default();
-    let graph = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl").expect("the modules are right");
+    let graph = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
+        .expect("the modules are right");
     (sources, graph)
 }
 
@@ -269,17 +307,25 @@ fn permutations() -> Result<(), Failed> {
         values.rotate_left(choice as usize % 7);
         values.reverse();
         let backward = compose(&again, &settings(&values), &Options::default()).expect("composes");
-        if forward.text != backward.text || forward.reads != backward.reads || forward.map.segments() != backward.map.segments() {
+        if forward.text != backward.text
+            || forward.reads != backward.reads
+            || forward.map.segments() != backward.map.segments()
+        {
             return Err(format!("choice {choice} composes in two ways").into());
         }
-        naga::front::wgsl::parse_str(&forward.text).map_err(|error| error.emit_to_string(&forward.text))?;
+        naga::front::wgsl::parse_str(&forward.text)
+            .map_err(|error| error.emit_to_string(&forward.text))?;
         if by_reads.entry(forward.reads).or_insert_with(|| forward.text.clone()) != &forward.text {
             return Err(format!("choice {choice} reads like another but differs").into());
         }
         count += 1;
     }
     let distinct = by_reads.len();
-    if distinct == 60 { Ok(()) } else { Err(format!("{distinct} distinct of {count}, expected 60").into()) }
+    if distinct == 60 {
+        Ok(())
+    } else {
+        Err(format!("{distinct} distinct of {count}, expected 60").into())
+    }
 }
 
 fn settings(values: &[(&str, Setting)]) -> Settings {
@@ -299,20 +345,37 @@ fn mutilated() -> Result<(), Failed> {
         texts.push(format!("{}{}", &LIGHTS[..at], &LIGHTS[(at + 3).min(LIGHTS.len())..]));
         texts.push(format!("{}@if({}", &LIGHTS[..at], &LIGHTS[at..]));
     }
-    texts.extend(["(", "{", "@if(", "!", "/*", "fn f() {", "@if(a) ", "import a::", "a::"].map(|piece| piece.repeat(100_000)));
+    texts.extend(
+        ["(", "{", "@if(", "!", "/*", "fn f() {", "@if(a) ", "import a::", "a::"]
+            .map(|piece| piece.repeat(100_000)),
+    );
     texts.push(format!("@if({}a) fn f() {{}}", "!".repeat(300_000)));
     texts.push(format!("@if({}a) fn f() {{}}", "a && ".repeat(200_000)));
     texts.push(format!("fn f() {{ {} }}", "if a {} else ".repeat(100_000) + "{}"));
     texts.push(format!("@if(a) const a = 1; {}", "@elif(a) const a = 1; ".repeat(50_000)));
-    texts.push((0..2000).map(|index| format!("import a{}::b as a{index};\n", index + 1)).collect::<String>() + "const c = a0::x;");
+    texts.push(
+        (0..2000)
+            .map(|index| format!("import a{}::b as a{index};\n", index + 1))
+            .collect::<String>()
+            + "const c = a0::x;",
+    );
     for text in texts {
-        let files =
-            [("main.wesl".to_owned(), text), ("shade.wesl".to_owned(), SHADE.to_owned()), ("mist.wesl".to_owned(), MIST.to_owned())];
+        let files = [
+            ("main.wesl".to_owned(), text),
+            ("shade.wesl".to_owned(), SHADE.to_owned()),
+            ("mist.wesl".to_owned(), MIST.to_owned()),
+        ];
         let root = Package { name: "app".to_owned(), files: Box::new(Memory(files.into())) };
         let mut sources = SourceSet::default();
-        let settings = settings(&[("fog", Setting::Bool(true)), ("gloss", Setting::Bool(true)), ("a", Setting::Bool(false))]);
+        let settings = settings(&[
+            ("fog", Setting::Bool(true)),
+            ("gloss", Setting::Bool(true)),
+            ("a", Setting::Bool(false)),
+        ]);
         let outcome = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
-            .and_then(|graph| compose(&graph, &settings, &Options { keep: Keep::All, ..Options::default() }));
+            .and_then(|graph| {
+                compose(&graph, &settings, &Options { keep: Keep::All, ..Options::default() })
+            });
         if let Err(errors) = outcome {
             assert!(!errors.is_empty() && !render(&sources, &errors, Form::Short).is_empty());
         }

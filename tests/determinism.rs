@@ -12,8 +12,14 @@ use tempfile::TempDir;
 const FILES: [(&str, &str); 5] = [
     ("lamplight.toml", MANIFEST),
     ("main.wesl", MAIN),
-    ("light/falloff.wesl", "fn falloff(d: f32) -> f32 { return 1.0 / (1.0 + d); }\n@if(warm) const TINT = vec3f(1.0, 0.9, 0.8);\n"),
-    ("light/cone.wesl", "import super::falloff::falloff;\nfn cone(c: f32) -> f32 { return falloff(c) * c; }\n"),
+    (
+        "light/falloff.wesl",
+        "fn falloff(d: f32) -> f32 { return 1.0 / (1.0 + d); }\n@if(warm) const TINT = vec3f(1.0, 0.9, 0.8);\n",
+    ),
+    (
+        "light/cone.wesl",
+        "import super::falloff::falloff;\nfn cone(c: f32) -> f32 { return falloff(c) * c; }\n",
+    ),
     ("main.frag.glsl", GLSL),
 ];
 const MANIFEST: &str = r#"
@@ -59,13 +65,63 @@ const THREADS: [&str; 3] = ["1", "2", "7"];
 /// Each with the arguments in another order.
 const GENERATE: [&[&str]; 3] = [
     &["gen", "--manifest", "lamplight.toml", "--target", "spirv,wgsl,glsl450,essl300", "-o"],
-    &["gen", "--target", "glsl450,essl300", "--manifest", "lamplight.toml", "--target", "wgsl,spirv", "-o"],
-    &["gen", "--target=essl300", "--target=wgsl", "--target=spirv", "--target=glsl450", "--manifest=lamplight.toml", "-o"],
+    &[
+        "gen",
+        "--target",
+        "glsl450,essl300",
+        "--manifest",
+        "lamplight.toml",
+        "--target",
+        "wgsl,spirv",
+        "-o",
+    ],
+    &[
+        "gen",
+        "--target=essl300",
+        "--target=wgsl",
+        "--target=spirv",
+        "--target=glsl450",
+        "--manifest=lamplight.toml",
+        "-o",
+    ],
 ];
 const COMPOSE: [&[&str]; 3] = [
-    &["compose", "main.wesl", "--root", ".", "--set", "shape=both", "--set", "count=4", "--feature", "warm"],
-    &["compose", "--feature", "warm=true", "--set", "count=4", "--set", "shape=both", "--root", ".", "main.wesl"],
-    &["compose", "--set", "count=4", "--root", ".", "--feature", "warm", "main.wesl", "--set", "shape=both"],
+    &[
+        "compose",
+        "main.wesl",
+        "--root",
+        ".",
+        "--set",
+        "shape=both",
+        "--set",
+        "count=4",
+        "--feature",
+        "warm",
+    ],
+    &[
+        "compose",
+        "--feature",
+        "warm=true",
+        "--set",
+        "count=4",
+        "--set",
+        "shape=both",
+        "--root",
+        ".",
+        "main.wesl",
+    ],
+    &[
+        "compose",
+        "--set",
+        "count=4",
+        "--root",
+        ".",
+        "--feature",
+        "warm",
+        "main.wesl",
+        "--set",
+        "shape=both",
+    ],
 ];
 
 pub fn trials() -> Vec<Trial> {
@@ -79,18 +135,27 @@ pub fn trials() -> Vec<Trial> {
 /// Runs every command with every number of threads, each in a folder of its own.
 fn alike(commands: &[&[&str]], out: &str) -> Result<(), Failed> {
     let mut first: Option<BTreeMap<String, Vec<u8>>> = None;
-    for (run, (threads, command)) in THREADS.iter().flat_map(|threads| commands.iter().map(move |command| (threads, command))).enumerate() {
+    for (run, (threads, command)) in THREADS
+        .iter()
+        .flat_map(|threads| commands.iter().map(move |command| (threads, command)))
+        .enumerate()
+    {
         let folder = written(run)?;
         let outputs = outputs(folder.path(), threads, command, out)?;
         match &first {
             None => first = Some(outputs),
-            Some(first) => same(first, &outputs).map_err(|name| format!("{name} differs with {threads} threads: {}", command.join(" ")))?,
+            Some(first) => same(first, &outputs).map_err(|name| {
+                format!("{name} differs with {threads} threads: {}", command.join(" "))
+            })?,
         }
     }
     Ok(())
 }
 
-fn same(first: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>) -> Result<(), String> {
+fn same(
+    first: &BTreeMap<String, Vec<u8>>,
+    other: &BTreeMap<String, Vec<u8>>,
+) -> Result<(), String> {
     let mut names = first.keys().chain(other.keys());
     names.find(|name| first.get(*name) != other.get(*name)).map_or(Ok(()), |name| Err(name.clone()))
 }
@@ -112,9 +177,18 @@ fn written(run: usize) -> Result<TempDir, Failed> {
 }
 
 /// What is printed, and the files below `out`.
-fn outputs(folder: &Path, threads: &str, command: &[&str], out: &str) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
+fn outputs(
+    folder: &Path,
+    threads: &str,
+    command: &[&str],
+    out: &str,
+) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
     let mut lamplight = Command::new(env!("CARGO_BIN_EXE_lamplight"));
-    lamplight.args(command).args((!out.is_empty()).then_some(out)).current_dir(folder).env("RAYON_NUM_THREADS", threads);
+    lamplight
+        .args(command)
+        .args((!out.is_empty()).then_some(out))
+        .current_dir(folder)
+        .env("RAYON_NUM_THREADS", threads);
     let output = lamplight.output()?;
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());

@@ -32,7 +32,11 @@ struct Tally {
 }
 
 pub fn trials() -> Vec<Trial> {
-    let part = |part: u64| Trial::test(format!("differential::trees_{part}"), move || trees((part..TREES).step_by(TRIALS as usize)));
+    let part = |part: u64| {
+        Trial::test(format!("differential::trees_{part}"), move || {
+            trees((part..TREES).step_by(TRIALS as usize))
+        })
+    };
     (0..TRIALS).map(part).chain(library::trials()).collect()
 }
 
@@ -43,21 +47,36 @@ fn trees(seeds: impl Iterator<Item = u64>) -> Result<(), Failed> {
         let mut peer = Peer::new(&tree.files);
         for flags in &tree.flags {
             for mangle in [Mangle::Collisions, Mangle::Underscore] {
-                if let Some(difference) = difference(&tree.files, tree.root, flags, mangle, &mut peer, &mut tally) {
-                    failures.push(format!("tree {seed}, {mangle:?}, {}\n{difference}\n{}", shown(flags), texts(&tree.files)));
+                if let Some(difference) =
+                    difference(&tree.files, tree.root, flags, mangle, &mut peer, &mut tally)
+                {
+                    failures.push(format!(
+                        "tree {seed}, {mangle:?}, {}\n{difference}\n{}",
+                        shown(flags),
+                        texts(&tree.files)
+                    ));
                 }
             }
         }
     }
     match failures.first() {
         // Trees that both refuse compare nothing.
-        None if tally.composed * 10 < tally.all * 9 => Err(format!("only {} of {} compose", tally.composed, tally.all).into()),
+        None if tally.composed * 10 < tally.all * 9 => {
+            Err(format!("only {} of {} compose", tally.composed, tally.all).into())
+        }
         None => Ok(()),
         Some(first) => Err(format!("{} differences; the first: {first}", failures.len()).into()),
     }
 }
 
-fn difference(files: &Files, root: &str, flags: &Flags, mangle: Mangle, peer: &mut Peer, tally: &mut Tally) -> Option<String> {
+fn difference(
+    files: &Files,
+    root: &str,
+    flags: &Flags,
+    mangle: Mangle,
+    peer: &mut Peer,
+    tally: &mut Tally,
+) -> Option<String> {
     let ours = peer::lamplight(files, root, flags, mangle);
     let theirs = peer.compose(root, flags);
     tally.all += 1;

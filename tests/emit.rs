@@ -6,8 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use lamplight::bundle::Target;
-use lamplight::compose::{Composed, Language, Segment, SourceMap, Stage};
+use lamplight::bundle::{Language, Stage, Target};
+use lamplight::compose::{Composed, Segment, SourceMap};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::emit::{self, Emitted};
 use lamplight::source::{SourceSet, Span};
@@ -37,14 +37,17 @@ fn valid(path: &Path) -> Outcome {
     let validated = validate(&composed).map_err(|errors| render(&sources, &errors, Form::Human))?;
     let mut summary = String::new();
     for point in &validated.module.entry_points {
-        let alone = emit::isolate(&validated, &point.name).map_err(|errors| render(&sources, &errors, Form::Human))?;
+        let alone = emit::isolate(&validated, &point.name)
+            .map_err(|errors| render(&sources, &errors, Form::Human))?;
         let reflection = emit::reflect(&alone, &point.name).map_err(|error| error.message)?;
         summary += &format!("{}: {}\n", point.name, serde_json::to_string_pretty(&reflection)?);
         for target in Target::ALL {
-            let emitted = emit::emit(&alone, &point.name, *target).map_err(|error| render(&sources, &[error], Form::Human))?;
+            let emitted = emit::emit(&alone, &point.name, *target)
+                .map_err(|error| render(&sources, &[error], Form::Human))?;
             same_from_the_whole(&validated, &point.name, *target, &emitted)?;
             judge(&point.name, point.stage, *target, &emitted)?;
-            summary += &format!("{} {target}: {}\n", point.name, serde_json::to_string(&emitted.native)?);
+            summary +=
+                &format!("{} {target}: {}\n", point.name, serde_json::to_string(&emitted.native)?);
         }
     }
     snapshot(path, summary);
@@ -59,15 +62,26 @@ fn invalid(path: &Path) -> Outcome {
 }
 
 /// The full analysis of a fresh validation writes what the cheap one of `isolate` wrote.
-fn same_from_the_whole(validated: &Validated, entry: &str, target: Target, emitted: &Emitted) -> Outcome {
+fn same_from_the_whole(
+    validated: &Validated,
+    entry: &str,
+    target: Target,
+    emitted: &Emitted,
+) -> Outcome {
     let mut again = emit::isolate(validated, entry).map_err(|_| "isolate is not repeatable")?;
     again.info = naga_info(&again);
     let again = emit::emit(&again, entry, target).map_err(|error| error.message)?;
-    if again == *emitted { Ok(()) } else { Err(format!("{target} differs after a full validation").into()) }
+    if again == *emitted {
+        Ok(())
+    } else {
+        Err(format!("{target} differs after a full validation").into())
+    }
 }
 
 fn naga_info(validated: &Validated) -> naga::valid::ModuleInfo {
-    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), validate::CAPABILITIES).validate(&validated.module).unwrap()
+    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), validate::CAPABILITIES)
+        .validate(&validated.module)
+        .unwrap()
 }
 
 fn judge(entry: &str, stage: naga::ShaderStage, target: Target, emitted: &Emitted) -> Outcome {
@@ -80,16 +94,21 @@ fn judge(entry: &str, stage: naga::ShaderStage, target: Target, emitted: &Emitte
         "glsl450" | "glsl330" | "essl300" => run(Command::new("glslangValidator").arg(&file)),
         "wgsl" => {
             let text = String::from_utf8(emitted.bytes.clone())?;
-            naga::front::wgsl::parse_str(&text).map(|_| ()).map_err(|error| error.emit_to_string(&text).into())
+            naga::front::wgsl::parse_str(&text)
+                .map(|_| ())
+                .map_err(|error| error.emit_to_string(&text).into())
         }
-        _ if emitted.native.entry_name.is_empty() => Err(format!("{target} has no name for {entry}").into()),
+        _ if emitted.native.entry_name.is_empty() => {
+            Err(format!("{target} has no name for {entry}").into())
+        }
         _ => Ok(()),
     }
 }
 
 fn run(command: &mut Command) -> Outcome {
     let output = command.output().map_err(|error| format!("{command:?} cannot be run: {error}"))?;
-    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned()
+        + &String::from_utf8_lossy(&output.stderr);
     if output.status.success() { Ok(()) } else { Err(said.into()) }
 }
 
@@ -120,9 +139,12 @@ fn hostile_texts() -> Outcome {
 
 /// The deepest texts within the limits, and long chains of declarations, end with an answer.
 fn accepted_depths() -> Outcome {
-    let chain: String = (0..20_000).map(|index| format!("const a{index} = a{};\n", index + 1)).collect();
-    let calls: String = (0..20_000).map(|index| format!("fn f{index}() {{ f{}(); }}\n", index + 1)).collect();
-    let structs: String = (0..5_000).map(|index| format!("struct S{index} {{ a: S{} }}\n", index + 1)).collect();
+    let chain: String =
+        (0..20_000).map(|index| format!("const a{index} = a{};\n", index + 1)).collect();
+    let calls: String =
+        (0..20_000).map(|index| format!("fn f{index}() {{ f{}(); }}\n", index + 1)).collect();
+    let structs: String =
+        (0..5_000).map(|index| format!("struct S{index} {{ a: S{} }}\n", index + 1)).collect();
     let texts = [
         format!("const a = {}1;", "1 + ".repeat(4_000)),
         format!("fn f(x: f32) -> f32 {{ return {}x; }}", "-".repeat(4_000)),
@@ -152,15 +174,19 @@ fn accepted_depths() -> Outcome {
 }
 
 fn panics() -> Outcome {
-    let result: Result<(), _> = validate::on_large_stack(|| validate::guard("the text", || panic!("on purpose")));
+    let result: Result<(), _> =
+        validate::on_large_stack(|| validate::guard("the text", || panic!("on purpose")));
     let error = result.err().ok_or("a panic was lost")?;
-    let told = error.code.name == "naga-internal" && error.message.contains("on purpose") && error.notes[0].contains("the text");
+    let told = error.code.name == "naga-internal"
+        && error.message.contains("on purpose")
+        && error.notes[0].contains("the text");
     if told { Ok(()) } else { Err(error.message.into()) }
 }
 
 fn cases(folder: &str) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/emit").join(folder);
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     paths
 }
@@ -176,12 +202,17 @@ fn read(path: &Path) -> (SourceSet, Composed) {
 }
 
 /// The text as if composed from one file without a change.
-pub fn wrap(name: &str, text: String, language: Language, stage: Option<Stage>) -> (SourceSet, Composed) {
+pub fn wrap(
+    name: &str,
+    text: String,
+    language: Language,
+    stage: Option<Stage>,
+) -> (SourceSet, Composed) {
     let mut sources = SourceSet::default();
     let id = sources.add(name, text.as_str());
     let mut map = SourceMap::default();
     map.push(Segment { start: 0, span: Some(Span::new(id, 0..text.len())), verbatim: true });
-    (sources, Composed { language, stage, text, map, reads: Vec::new(), warnings: Vec::new(), decisions: Vec::new() })
+    (sources, Composed { map, ..Composed::of_text(language, stage, text) })
 }
 
 fn snapshot(path: &Path, text: String) {

@@ -19,7 +19,8 @@ use libtest_mimic::{Failed, Trial};
 
 pub fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
-    let mut files: Vec<_> = std::fs::read_dir("tests/eval").unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> =
+        std::fs::read_dir("tests/eval").unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|path| path.extension().is_some_and(|extension| extension == "wgsl"));
     files.sort();
     for path in files {
@@ -40,7 +41,8 @@ pub fn trials() -> Vec<Trial> {
 pub fn program(text: &str) -> Result<Program, Failed> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let capabilities = naga::valid::Capabilities::all();
-    let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities).validate(&module);
+    let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+        .validate(&module);
     let info = info.map_err(|error| error.emit_to_string(text))?;
     Ok(Program::new(&module, &info)?)
 }
@@ -50,7 +52,11 @@ fn check(text: &str) -> Result<(), Failed> {
     let mut failures = String::new();
     let mut cases = 0;
     for (number, line) in text.lines().enumerate() {
-        let Some((kind, case)) = line.trim().strip_prefix("// ").and_then(|line| line.split_once(": ")) else { continue };
+        let Some((kind, case)) =
+            line.trim().strip_prefix("// ").and_then(|line| line.split_once(": "))
+        else {
+            continue;
+        };
         let outcome = match kind {
             "expect" => expect(&program, case),
             "error" => error(&program, case),
@@ -60,7 +66,11 @@ fn check(text: &str) -> Result<(), Failed> {
         };
         cases += 1;
         if let Err(failure) = outcome {
-            failures += &format!("line {}: {case}: {}\n", number + 1, failure.message().unwrap_or_default());
+            failures += &format!(
+                "line {}: {case}: {}\n",
+                number + 1,
+                failure.message().unwrap_or_default()
+            );
         }
     }
     match (failures.is_empty(), cases) {
@@ -79,7 +89,8 @@ struct Call<'c> {
 
 fn call<'c>(program: &Program, case: &'c str) -> Result<Call<'c>, Failed> {
     let (call, wanted) = case.split_once(" = ").ok_or("no ` = `")?;
-    let (name, arguments) = call.trim().strip_suffix(')').and_then(|call| call.split_once('(')).ok_or("not a call")?;
+    let (name, arguments) =
+        call.trim().strip_suffix(')').and_then(|call| call.split_once('(')).ok_or("not a call")?;
     let id = program.function(name).ok_or("no such function")?;
     Ok(Call { id, arguments: arguments.split('|').collect(), wanted: wanted.trim() })
 }
@@ -87,7 +98,10 @@ fn call<'c>(program: &Program, case: &'c str) -> Result<Call<'c>, Failed> {
 /// Scalars as slots.
 pub fn slots<N: Number>(text: &str, kinds: &[Kind]) -> Result<Vec<N>, Failed> {
     let scalars = text.split([',', ' ']).filter(|scalar| !scalar.is_empty());
-    scalars.enumerate().map(|(index, scalar)| slot(scalar, *kinds.get(index).ok_or("too many scalars")?)).collect()
+    scalars
+        .enumerate()
+        .map(|(index, scalar)| slot(scalar, *kinds.get(index).ok_or("too many scalars")?))
+        .collect()
 }
 
 fn slot<N: Number>(text: &str, kind: Kind) -> Result<N, Failed> {
@@ -107,7 +121,8 @@ fn expect(program: &Program, case: &str) -> Result<(), Failed> {
     let double = run::<f64>(program, &call)?;
     near(function, &double, &wanted, 1e-6)?;
     let single = run::<f32>(program, &call)?;
-    let widened: Vec<f64> = single.iter().zip(&function.result).map(|(slot, kind)| widen(*slot, *kind)).collect();
+    let widened: Vec<f64> =
+        single.iter().zip(&function.result).map(|(slot, kind)| widen(*slot, *kind)).collect();
     near(function, &widened, &wanted, 1e-4)?;
     within(function, &run::<Bounded>(program, &call)?, &double, &single)
 }
@@ -123,20 +138,38 @@ fn run<N: Number>(program: &Program, call: &Call) -> Result<Vec<N>, Failed> {
     let result = machine.call(call.id, &arguments)?.to_vec();
     // A second call must not see the first.
     let again = machine.call(call.id, &arguments)?;
-    if again.iter().zip(&result).any(|(a, b)| a.value().to_bits() != b.value().to_bits() && !a.value().is_nan()) {
+    if again
+        .iter()
+        .zip(&result)
+        .any(|(a, b)| a.value().to_bits() != b.value().to_bits() && !a.value().is_nan())
+    {
         return Err("a second call gives another result".into());
     }
     Ok(result)
 }
 
 /// Results as wanted: words exactly, numbers within a relative tolerance.
-pub fn near(function: &Function, found: &[f64], wanted: &[f64], tolerance: f64) -> Result<(), Failed> {
+pub fn near(
+    function: &Function,
+    found: &[f64],
+    wanted: &[f64],
+    tolerance: f64,
+) -> Result<(), Failed> {
     let close = |kind: Kind, found: f64, wanted: f64| match kind {
-        Kind::Float => found == wanted || found.is_nan() && wanted.is_nan() || (found - wanted).abs() <= tolerance * wanted.abs().max(1.0),
+        Kind::Float => {
+            found == wanted
+                || found.is_nan() && wanted.is_nan()
+                || (found - wanted).abs() <= tolerance * wanted.abs().max(1.0)
+        }
         _ => found.word() == wanted.word(),
     };
-    let good = found.len() == wanted.len() && function.result.iter().enumerate().all(|(i, kind)| close(*kind, found[i], wanted[i]));
-    if good { Ok(()) } else { Err(format!("got {}, wanted {}", show(function, found), show(function, wanted)).into()) }
+    let good = found.len() == wanted.len()
+        && function.result.iter().enumerate().all(|(i, kind)| close(*kind, found[i], wanted[i]));
+    if good {
+        Ok(())
+    } else {
+        Err(format!("got {}, wanted {}", show(function, found), show(function, wanted)).into())
+    }
 }
 
 fn show(function: &Function, slots: &[f64]) -> String {
@@ -149,18 +182,30 @@ fn show(function: &Function, slots: &[f64]) -> String {
 }
 
 /// Value plus error has the value of f64, and the f32 run inside of its bound.
-fn within(function: &Function, bounded: &[Bounded], double: &[f64], single: &[f32]) -> Result<(), Failed> {
+fn within(
+    function: &Function,
+    bounded: &[Bounded],
+    double: &[f64],
+    single: &[f32],
+) -> Result<(), Failed> {
     for (i, kind) in function.result.iter().enumerate() {
         if *kind != Kind::Float {
-            let same = bounded[i].word() == double[i].word() && single[i].word() == double[i].word();
+            let same =
+                bounded[i].word() == double[i].word() && single[i].word() == double[i].word();
             same.then_some(()).ok_or("words differ between number types")?;
             continue;
         }
         let same = bounded[i].value() == double[i] || double[i].is_nan();
-        same.then_some(()).ok_or_else(|| format!("value {} of value plus error, {} in f64", bounded[i].value(), double[i]))?;
+        same.then_some(()).ok_or_else(|| {
+            format!("value {} of value plus error, {} in f64", bounded[i].value(), double[i])
+        })?;
         let distance = (f64::from(single[i]) - double[i]).abs();
         if distance > bounded[i].error() {
-            return Err(format!("f32 is off by {distance:e}, the bound is {:e}", bounded[i].error()).into());
+            return Err(format!(
+                "f32 is off by {distance:e}, the bound is {:e}",
+                bounded[i].error()
+            )
+            .into());
         }
     }
     Ok(())
@@ -170,7 +215,11 @@ fn error(program: &Program, case: &str) -> Result<(), Failed> {
     let call = call(program, case)?;
     let function = program.signature(call.id).unwrap();
     // The arguments of a function that was not lowered are unknown: none are given.
-    let arguments = if function.error.is_some() { Vec::new() } else { slots::<f64>(call.arguments[0], &function.arguments)? };
+    let arguments = if function.error.is_some() {
+        Vec::new()
+    } else {
+        slots::<f64>(call.arguments[0], &function.arguments)?
+    };
     match Machine::<f64>::new(program)?.call(call.id, &arguments) {
         Ok(result) => Err(format!("no error but {result:?}").into()),
         Err(error) if error.code.name == call.wanted => Ok(()),
@@ -184,7 +233,8 @@ fn finding(program: &Program, case: &str) -> Result<(), Failed> {
     let mut machine = Machine::<Bounded>::new(program)?;
     machine.sanitize(true);
     machine.call(call.id, &slots::<Bounded>(call.arguments[0], &function.arguments)?)?;
-    let found: Vec<String> = machine.findings().iter().map(|finding| format!("{:?}", finding.kind)).collect();
+    let found: Vec<String> =
+        machine.findings().iter().map(|finding| format!("{:?}", finding.kind)).collect();
     let found = if found.is_empty() { "none".to_string() } else { found.join(" ") };
     if found == call.wanted { Ok(()) } else { Err(found.into()) }
 }
@@ -192,7 +242,11 @@ fn finding(program: &Program, case: &str) -> Result<(), Failed> {
 fn quad(program: &Program, case: &str) -> Result<(), Failed> {
     let call = call(program, case)?;
     let function = program.signature(call.id).unwrap();
-    let arguments: Vec<Vec<f64>> = call.arguments.iter().map(|lane| slots(lane, &function.arguments)).collect::<Result<_, _>>()?;
+    let arguments: Vec<Vec<f64>> = call
+        .arguments
+        .iter()
+        .map(|lane| slots(lane, &function.arguments))
+        .collect::<Result<_, _>>()?;
     let lanes = [0, 1, 2, 3].map(|lane| arguments[lane].as_slice());
     let results = Machine::<f64>::new(program)?.quad(call.id, lanes)?;
     for (found, wanted) in results.iter().zip(call.wanted.split('|')) {

@@ -31,7 +31,8 @@ pub fn trials() -> Vec<Trial> {
 fn loads_a_bundle() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("shaders.lamplight");
-    let (mut sources, manifest) = project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;
+    let (mut sources, manifest) =
+        project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;
     let id = sources.add("key", "ambient=none,lights=none");
     let request = Request {
         program: Some("forward".into()),
@@ -39,12 +40,15 @@ fn loads_a_bundle() -> Result<(), Failed> {
         targets: vec![Target::WGSL],
         ..Request::default()
     };
-    let made = in_memory(&mut sources, &project::library(), &manifest, &request, &|_| {}).map_err(|problems| format!("{problems:?}"))?;
+    let made = in_memory(&mut sources, &project::library(), &manifest, &request, &|_| {})
+        .map_err(|problems| format!("{problems:?}"))?;
     bundle::write_file(&made.contents, &path)?;
     let path = path.to_string_lossy().into_owned();
     // Mesa's thread-local state must be gone before the process ends.
-    let pixel =
-        lamplight::harness::on_thread(|| load_bundle::draw(&path).map_err(|error| error.to_string())).ok_or("the example panicked")??;
+    let pixel = lamplight::execute::on_thread(|| {
+        load_bundle::draw(&path).map_err(|error| error.to_string())
+    })
+    .ok_or("the example panicked")??;
     if pixel == [255, 128, 0, 255] || pixel == [255, 127, 0, 255] {
         Ok(())
     } else {
@@ -57,18 +61,27 @@ fn plain_glsl_compiles() -> Result<(), Failed> {
     run(Command::new(env!("CARGO_BIN_EXE_lamplight")).arg("export").arg(folder.path()))?;
     let include = format!("-I{}", folder.path().display());
     let shader = root().join("examples/plain_glsl/spot.frag");
-    run(Command::new("glslangValidator").args(["-V", "-o", "/dev/null", &include]).arg(shader)).map(drop)
+    run(Command::new("glslangValidator").args(["-V", "-o", "/dev/null", &include]).arg(shader))
+        .map(drop)
 }
 
 fn wesl_crate_links() -> Result<(), Failed> {
     let linked = wesl_crate::link().map_err(|error| error.to_string())?;
-    let module = naga::front::wgsl::parse_str(&linked).map_err(|error| error.emit_to_string(&linked))?;
-    if module.entry_points.len() == 1 { Ok(()) } else { Err(format!("no entry point:\n{linked}").into()) }
+    let module =
+        naga::front::wgsl::parse_str(&linked).map_err(|error| error.emit_to_string(&linked))?;
+    if module.entry_points.len() == 1 {
+        Ok(())
+    } else {
+        Err(format!("no entry point:\n{linked}").into())
+    }
 }
 
 /// The build script compiles all permutations; the program finds each of them.
 fn build_script_compiles() -> Result<(), Failed> {
-    let said = cargo(&root(), &["run", "--quiet", "--frozen", "--package", "lamplight-build-script-example"])?;
+    let said = cargo(
+        &root(),
+        &["run", "--quiet", "--frozen", "--package", "lamplight-build-script-example"],
+    )?;
     let keys: Vec<&str> = said.lines().filter_map(|line| Some(line.split_once(": ")?.0)).collect();
     let expected = ["cone=exponent", "cone=exponent,specular", "default", "specular"];
     if keys == expected { Ok(()) } else { Err(format!("{keys:?}, not {expected:?}").into()) }
@@ -82,7 +95,9 @@ pub fn cargo(folder: &Path, arguments: &[&str]) -> Result<String, Failed> {
 
 /// What a command wrote to its standard output, or all it wrote where it failed.
 pub fn run(command: &mut Command) -> Result<String, Failed> {
-    let output = command.output().map_err(|error| format!("{}: {error}", command.get_program().to_string_lossy()))?;
+    let output = command
+        .output()
+        .map_err(|error| format!("{}: {error}", command.get_program().to_string_lossy()))?;
     if output.status.success() {
         return Ok(String::from_utf8(output.stdout)?);
     }

@@ -8,9 +8,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use lamplight::eval::{self, Bounded, Filter, Function, Kind, Machine, Number, Program, Resources};
-use lamplight::harness::fixture::{Fixture, Texture};
-use lamplight::harness::frame::{Buffers, Composed};
-use lamplight::harness::kernel::SENTINEL;
+use lamplight::execute::fixture::{Fixture, Texture};
+use lamplight::execute::frame::Buffers;
+use lamplight::execute::kernel::SENTINEL;
+use lamplight::picture::frame::Composed;
 
 type Place = (u32, u32);
 
@@ -29,13 +30,22 @@ impl Tally {
         self.tried += other.tried;
         self.open += other.open;
         self.share = self.share.max(other.share);
-        other.detours.iter().for_each(|(detour, count)| *self.detours.entry(detour).or_default() += count);
+        other
+            .detours
+            .iter()
+            .for_each(|(detour, count)| *self.detours.entry(detour).or_default() += count);
     }
 }
 
 impl std::fmt::Display for Tally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} fragments, {} open, at most {:.0} % of the bound", self.tried, self.open, 100.0 * self.share)?;
+        write!(
+            f,
+            "{} fragments, {} open, at most {:.0} % of the bound",
+            self.tried,
+            self.open,
+            100.0 * self.share
+        )?;
         self.detours.iter().try_for_each(|(detour, count)| write!(f, "; {count} times {detour}"))
     }
 }
@@ -56,7 +66,9 @@ impl Watched<'_> {
     fn quads(&self) -> impl Iterator<Item = [usize; 4]> + '_ {
         let [width, height] = self.size;
         let quads = (0..height / 2).flat_map(move |y| (0..width / 2).map(move |x| (2 * x, 2 * y)));
-        let pixels = quads.map(move |(x, y)| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * width + x + i) as usize));
+        let pixels = quads.map(move |(x, y)| {
+            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * width + x + i) as usize)
+        });
         pixels.filter(|quad| quad.iter().all(|pixel| self.is_drawn(*pixel)))
     }
 
@@ -79,17 +91,30 @@ fn four(target: &[u32], pixel: usize) -> [u32; 4] {
 }
 
 /// Computes fragments of a frame again, one whole quad in `step`.
-pub fn recompute(stage: &Composed, resources: Resources, watched: &Watched<'_>, step: usize, tally: &mut Tally) -> Result<(), String> {
-    let program = Program::new(&stage.validated.module, &stage.validated.info).map_err(|error| error.to_string())?;
+pub fn recompute(
+    stage: &Composed,
+    resources: Resources,
+    watched: &Watched<'_>,
+    step: usize,
+    tally: &mut Tally,
+) -> Result<(), String> {
+    let program = Program::new(&stage.validated.module, &stage.validated.info)
+        .map_err(|error| error.to_string())?;
     // GLSL has a plain function of that name too; entry points come after functions.
-    let (id, _) = program.functions().filter(|(_, function)| function.name == stage.entry).last().ok_or("no entry point")?;
+    let (id, _) = program
+        .functions()
+        .filter(|(_, function)| function.name == stage.entry)
+        .last()
+        .ok_or("no entry point")?;
     let signature = program.signature(id).ok_or("no entry point")?;
     let mut machine = Machine::<Bounded>::new(&program).map_err(|error| error.to_string())?;
     machine.bind(resources).map_err(|error| error.to_string())?;
     for quad in watched.quads().step_by(step) {
         let arguments = quad.map(|pixel| slots(signature, watched, pixel));
         machine.forget();
-        let wanted = machine.quad(id, [0, 1, 2, 3].map(|lane| arguments[lane].as_slice())).map_err(|error| error.to_string())?;
+        let wanted = machine
+            .quad(id, [0, 1, 2, 3].map(|lane| arguments[lane].as_slice()))
+            .map_err(|error| error.to_string())?;
         let doubt = !machine.findings().is_empty();
         for (pixel, wanted) in quad.into_iter().zip(wanted) {
             judge(watched, pixel, &wanted, doubt, tally)?;
@@ -98,7 +123,13 @@ pub fn recompute(stage: &Composed, resources: Resources, watched: &Watched<'_>, 
     Ok(())
 }
 
-fn judge(watched: &Watched<'_>, pixel: usize, wanted: &[Bounded], doubt: bool, tally: &mut Tally) -> Result<(), String> {
+fn judge(
+    watched: &Watched<'_>,
+    pixel: usize,
+    wanted: &[Bounded],
+    doubt: bool,
+    tally: &mut Tally,
+) -> Result<(), String> {
     let found = watched.colour(pixel);
     let share = |(found, wanted): (f64, &Bounded)| {
         if found == wanted.value() { 0.0 } else { (found - wanted.value()).abs() / wanted.error() }
@@ -114,7 +145,10 @@ fn judge(watched: &Watched<'_>, pixel: usize, wanted: &[Bounded], doubt: bool, t
     } else if let Some(i) = far {
         let (x, y) = (pixel as u32 % watched.size[0], pixel as u32 / watched.size[0]);
         let (value, error) = (wanted[i].value(), wanted[i].error());
-        return Err(format!("pixel ({x}, {y}): found {}, wanted {value} within {error:e}", found[i]));
+        return Err(format!(
+            "pixel ({x}, {y}): found {}, wanted {value} within {error:e}",
+            found[i]
+        ));
     } else {
         tally.share = shares.into_iter().fold(tally.share, f64::max);
     }
@@ -131,14 +165,20 @@ fn slots(signature: &Function, watched: &Watched<'_>, pixel: usize) -> Vec<Bound
 }
 
 /// What the evaluator binds in the place of the device.
-pub fn resources(buffers: Buffers, fixtures: &BTreeMap<Place, Arc<Fixture>>, levels: &BTreeMap<Place, Vec<Texture>>) -> Resources {
+pub fn resources(
+    buffers: Buffers,
+    fixtures: &BTreeMap<Place, Arc<Fixture>>,
+    levels: &BTreeMap<Place, Vec<Texture>>,
+) -> Resources {
     let mut resources = Resources { buffers, ..Resources::default() };
     for (place, fixture) in fixtures {
         match &**fixture {
             Fixture::Texture(texture) => {
                 let mut texture = eval::Texture::from(texture);
                 let smaller = levels.get(place).map_or(&[][..], Vec::as_slice);
-                texture.levels.extend(smaller.iter().flat_map(|level| eval::Texture::from(level).levels));
+                texture
+                    .levels
+                    .extend(smaller.iter().flat_map(|level| eval::Texture::from(level).levels));
                 resources.textures.insert(*place, texture);
             }
             Fixture::Sampler(sampler) => {
@@ -155,8 +195,13 @@ pub fn resources(buffers: Buffers, fixtures: &BTreeMap<Place, Arc<Fixture>>, lev
 
 /// For each component of what is at a location, the index of the fragment's input word.
 pub fn places(stage: &Composed) -> Result<BTreeMap<(u32, usize), usize>, String> {
-    let program = Program::new(&stage.validated.module, &stage.validated.info).map_err(|error| error.to_string())?;
-    let (_, function) = program.functions().filter(|(_, function)| function.name == stage.entry).last().ok_or("no entry point")?;
+    let program = Program::new(&stage.validated.module, &stage.validated.info)
+        .map_err(|error| error.to_string())?;
+    let (_, function) = program
+        .functions()
+        .filter(|(_, function)| function.name == stage.entry)
+        .last()
+        .ok_or("no entry point")?;
     let mut places = BTreeMap::new();
     for (index, binding) in function.inputs.iter().enumerate() {
         if let Some(naga::Binding::Location { location, .. }) = binding {

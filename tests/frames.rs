@@ -5,18 +5,18 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lamplight::bundle::{Bundle, Kind as BindingKind, Language as BundleLanguage, Reflection, Target, pack as pack_bundle};
-use lamplight::compose::{Language, SourceMap};
-use lamplight::diagnostic::render::{Form, render};
-use lamplight::generate::{Request, in_memory};
-use lamplight::harness::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
-use lamplight::harness::frame::{
-    Attribute, Buffers, Composed, Drawing, Item, Mesh, Painter, Programs, Renderer, Stage, Stages, State, pack, probe,
+use lamplight::bundle::{
+    Bundle, Kind as BindingKind, Language, Reflection, Target, pack as pack_bundle,
 };
-use lamplight::harness::on_thread;
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use lamplight::execute::frame::{Attribute, Buffers, Drawing, EntryPoint, Item, Mesh, State};
+use lamplight::execute::{Session, executors, on_thread};
+use lamplight::generate::{Request, in_memory};
 use lamplight::permute::axis::ValueSet;
 use lamplight::permute::space::{Lists, Slice};
 use lamplight::permute::{Assignment, Space, cover};
+use lamplight::picture::frame::{Composed, Programs, Stages, pack, probe};
 use lamplight::project;
 use lamplight::validate::{Validated, validate};
 use libtest_mimic::{Failed, Trial};
@@ -34,29 +34,36 @@ const LEAST: usize = 200;
 const OPEN: f64 = 0.01;
 
 const BACKENDS: [&str; 2] = ["vulkan", "gl"];
-const LANGUAGES: [(&str, Language); 3] = [("wesl", Language::Wesl), ("glsl", Language::Glsl), (SHIPPED, Language::Wesl)];
+const LANGUAGES: [(&str, Language); 3] =
+    [("wesl", Language::Wesl), ("glsl", Language::Glsl), (SHIPPED, Language::Wesl)];
 const SHIPPED: &str = "shipped";
 
 type Place = (u32, u32);
 
 pub fn trials() -> Vec<Trial> {
-    let pairs = LANGUAGES.iter().flat_map(|language| BACKENDS.iter().map(move |backend| (language, *backend)));
+    let pairs = LANGUAGES
+        .iter()
+        .flat_map(|language| BACKENDS.iter().map(move |backend| (language, *backend)));
     pairs
-        .map(|(language, backend)| Trial::test(format!("frames/forward/{}/{backend}", language.0), move || run(language, backend)))
+        .map(|(language, backend)| {
+            Trial::test(format!("frames/forward/{}/{backend}", language.0), move || {
+                run(language, backend)
+            })
+        })
         .collect()
 }
 
 fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(), Failed> {
     let outcome = on_thread(|| {
-        let renderer = Renderer::open(backend)?;
+        let renderer = executors::find(backend).ok_or("no such executor")?.start()?;
         let mut sources = Sources::load(*language)?;
         let points = covering(&sources.space);
         if *name == SHIPPED {
-            sources.bundle = Some(bundle(&sources, &points)?);
+            sources.bundle = Some(bundle(&sources, &points, Target::WGSL)?);
         }
         let (mut total, mut failures) = (Tally::default(), Vec::new());
         for point in &points {
-            match sources.scene(point).and_then(|scene| agrees(&renderer, &scene)) {
+            match sources.scene(point).and_then(|scene| agrees(renderer.as_ref(), &scene)) {
                 Ok(tally) => total.add(&tally),
                 Err(error) => failures.push(format!("[{}] {error}", sources.space.key(point))),
             }
@@ -68,15 +75,21 @@ fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(),
 }
 
 /// The default, then points until every value of every axis was in one.
-fn covering(space: &Space) -> Vec<Assignment> {
+pub fn covering(space: &Space) -> Vec<Assignment> {
     let mut missing = space.valid_values();
     let mut points = Vec::new();
     let mut next = Some(space.default_assignment());
     while let Some(point) = next {
         let seen = |axis: usize| ValueSet::single(point.ordinal(axis));
-        missing.iter_mut().enumerate().for_each(|(axis, values)| *values = values.without(seen(axis)));
+        missing
+            .iter_mut()
+            .enumerate()
+            .for_each(|(axis, values)| *values = values.without(seen(axis)));
         points.push(point);
-        let pin = missing.iter().enumerate().find_map(|(axis, values)| Some((axis, values.iter().next()?)));
+        let pin = missing
+            .iter()
+            .enumerate()
+            .find_map(|(axis, values)| Some((axis, values.iter().next()?)));
         // Elsewhere a value that is missing too, or else each in turn.
         let turn = points.len();
         let choose = |axis: usize, allowed: ValueSet| {
@@ -89,43 +102,51 @@ fn covering(space: &Space) -> Vec<Assignment> {
 }
 
 /// The library's programs in one language.
-struct Sources {
+pub struct Sources {
     programs: Programs,
     language: Language,
-    space: Space,
+    pub space: Space,
     /// What is drawn, where that is not the composed text.
     bundle: Option<Bundle>,
 }
 
 /// A permutation with everything it is drawn with.
-struct Scene {
-    vertex: Composed,
-    fragment: Composed,
+pub struct Scene {
+    pub vertex: Composed,
+    pub fragment: Composed,
     /// Both stages as drawn.
     drawn: [Arc<Validated>; 2],
-    mesh: Mesh,
-    buffers: Buffers,
-    fixtures: BTreeMap<Place, Arc<Fixture>>,
+    pub mesh: Mesh,
+    pub buffers: Buffers,
+    pub fixtures: BTreeMap<Place, Arc<Fixture>>,
 }
 
 impl Sources {
-    fn load(language: Language) -> Result<Self, String> {
-        let programs = Programs::load().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    pub fn load(language: Language) -> Result<Self, String> {
+        let programs = Programs::load()
+            .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
         let space = programs.manifest().program("forward").ok_or("no forward")?.space.clone();
         Ok(Self { programs, language, space, bundle: None })
     }
 
-    fn scene(&self, point: &Assignment) -> Result<Scene, String> {
+    pub fn scene(&self, point: &Assignment) -> Result<Scene, String> {
         let program = self.programs.manifest().program("forward").ok_or("no forward")?;
         let stages = self.programs.stages(program, &self.space.settings(point), self.language);
-        let Stages { vertex, fragment } = stages.map_err(|problems| render(&self.programs.texts(), &problems, Form::Human))?;
+        let Stages { vertex, fragment } =
+            stages.map_err(|problems| render(&self.programs.texts(), &problems, Form::Human))?;
         let fragment = fragment.ok_or("no fragment stage")?;
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in vertex.reflection.bindings.iter().chain(&fragment.reflection.bindings) {
             let place = (binding.group, binding.binding);
             match binding.kind {
-                BindingKind::Uniform => drop(buffers.insert(place, pack(binding, &number))),
-                _ => drop(fixtures.insert(place, Arc::new(fixture(binding.kind, &binding.name, &binding.ty)))),
+                BindingKind::Uniform => {
+                    let bytes = pack(binding, &|path| Some(number(path)));
+                    buffers.insert(place, bytes.map_err(|problem| problem.message)?);
+                }
+                _ => drop(
+                    fixtures
+                        .insert(place, Arc::new(fixture(binding.kind, &binding.name, &binding.ty))),
+                ),
             }
         }
         let drawn = match &self.bundle {
@@ -139,66 +160,84 @@ impl Sources {
     }
 }
 
-/// The WGSL of the points and of all pairs of values, in one bundle.
-fn bundle(sources: &Sources, points: &[Assignment]) -> Result<Bundle, String> {
+/// What a target has of the points and of all pairs of values, in one bundle.
+pub fn bundle(sources: &Sources, points: &[Assignment], target: Target) -> Result<Bundle, String> {
     let mut manifest = sources.programs.manifest().clone();
-    let program = manifest.programs.iter_mut().find(|program| program.name == "forward").ok_or("no forward")?;
-    program.targets = vec![Target::WGSL];
-    program.glsl = None;
+    let program = manifest
+        .programs
+        .iter_mut()
+        .find(|program| program.name == "forward")
+        .ok_or("no forward")?;
+    program.targets = vec![target];
+    match sources.language {
+        Language::Wesl => program.glsl = None,
+        Language::Glsl => program.wesl = None,
+    }
     let mut include = cover::pairwise(&sources.space).points;
-    include.extend(points.iter().filter(|point| !include.contains(point)).cloned().collect::<Vec<_>>());
+    include.extend(
+        points.iter().filter(|point| !include.contains(point)).cloned().collect::<Vec<_>>(),
+    );
     let all = sources.space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect();
     let exclude = vec![Slice { values: all, span: program.span }];
     let lists = Lists { only: Vec::new(), exclude, include };
-    program.space = Space::new(sources.space.axes().to_vec(), sources.space.constraints().to_vec(), lists).map_err(|_| "no space")?;
+    program.space =
+        Space::new(sources.space.axes().to_vec(), sources.space.constraints().to_vec(), lists)
+            .map_err(|_| "no space")?;
     let request = Request { program: Some("forward".to_owned()), ..Request::default() };
-    let made = in_memory(&mut sources.programs.texts(), &project::library(), &manifest, &request, &|_| ());
-    let made = made.map_err(|problems| render(&sources.programs.texts(), &problems, Form::Human))?;
-    println!("{} texts, {} of them linked", made.summary.texts(), made.summary.linked);
-    if made.summary.linked == 0 {
-        return Err("nothing was linked".to_owned());
+    let made =
+        in_memory(&mut sources.programs.texts(), &project::library(), &manifest, &request, &|_| ());
+    let made =
+        made.map_err(|problems| render(&sources.programs.texts(), &problems, Form::Human))?;
+    if let Some(whole) = made.summary.whole.first() {
+        return Err(format!("compiled as a whole: {whole:?}"));
     }
-    Bundle::from_bytes(pack_bundle(&made.contents).map_err(|error| error.to_string())?).map_err(|error| error.to_string())
+    Bundle::from_bytes(pack_bundle(&made.contents).map_err(|error| error.to_string())?)
+        .map_err(|error| error.to_string())
 }
 
 /// One stage as it was shipped.
 fn shipped(bundle: &Bundle, entry: &str, key: &str) -> Result<Arc<Validated>, String> {
-    let found = || bundle.program("forward")?.entry(BundleLanguage::Wesl, entry)?.get(key, Target::WGSL);
+    let found = || bundle.program("forward")?.entry(Language::Wesl, entry)?.get(key, Target::WGSL);
     let found = found().map_err(|error: lamplight::bundle::Error| error.to_string())?;
     let text = String::from_utf8(found.bytes.to_vec()).map_err(|error| error.to_string())?;
-    let composed = lamplight::compose::Composed {
-        language: Language::Wesl,
-        stage: None,
-        text,
-        map: SourceMap::default(),
-        reads: Vec::new(),
-        warnings: Vec::new(),
-        decisions: Vec::new(),
-    };
+    let composed = lamplight::compose::Composed::of_text(Language::Wesl, None, text);
     validate(&composed).map(Arc::new).map_err(|problems| format!("{problems:?}"))
 }
 
 /// A number for every uniform, sensible where it matters.
 fn number(path: &str) -> Vec<f64> {
     let (_, name) = path.rsplit_once('.').unwrap_or(("", path));
-    let index = path.split(['[', ']']).nth(1).and_then(|index| index.parse::<f64>().ok()).unwrap_or(0.0);
+    let index =
+        path.split(['[', ']']).nth(1).and_then(|index| index.parse::<f64>().ok()).unwrap_or(0.0);
     let vary = |low: f64, high: f64, count: usize| -> Vec<f64> {
-        let step = |i: usize| ((i as f64 + 1.0) * 0.618 + index * 0.271 + path.len() as f64 * 0.137).fract();
+        let step = |i: usize| {
+            ((i as f64 + 1.0) * 0.618 + index * 0.271 + path.len() as f64 * 0.137).fract()
+        };
         (0..count).map(|i| low + (high - low) * step(i)).collect()
     };
     match name {
         "world_from_view" => vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0.2, 0.3, 3., 1.],
-        "clip_from_world" if path.starts_with("camera") => vec![0.9, 0., 0., 0., 0., 0.9, 0., 0., 0., 0., 0.2, 0.1, 0., 0., 0.5, 1.],
-        "clip_from_world" => vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.],
-        "world_from_object" => vec![1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.],
-        "normal_from_object" => vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.],
+        "clip_from_world" if path.starts_with("camera") => {
+            vec![0.9, 0., 0., 0., 0., 0.9, 0., 0., 0., 0., 0.2, 0.1, 0., 0., 0.5, 1.]
+        }
+        "clip_from_world" => {
+            vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.]
+        }
+        "world_from_object" => {
+            vec![1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.]
+        }
+        "normal_from_object" => {
+            vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]
+        }
         "count" => vec![3.0],
         "kind" => vec![index + 1.0],
         "light" => vec![0.0],
         "range" | "far" => vec![12.0],
         "near" => vec![0.1],
         "position" => vec![0.7 - index, 0.5, 1.5 + 0.3 * index],
-        "axis" => [vec![-0.36, -0.48, -0.8], vec![0.0, -0.28, -0.96], vec![0.6, 0.0, -0.8]][index as usize % 3].clone(),
+        "axis" => [vec![-0.36, -0.48, -0.8], vec![0.0, -0.28, -0.96], vec![0.6, 0.0, -0.8]]
+            [index as usize % 3]
+            .clone(),
         "exponent" => vec![4.0 + index],
         "shininess" => vec![16.0],
         "cutoff" => vec![0.5],
@@ -219,7 +258,8 @@ fn number(path: &str) -> Vec<f64> {
 
 /// A texture or sampler for a binding: smooth colours, depths with an edge.
 fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
-    let sampler = |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
+    let sampler =
+        |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
     match kind {
         BindingKind::ComparisonSampler => sampler(true, Some(Compare::LessEqual)),
         BindingKind::Sampler => sampler(name != "depth_sampler", None),
@@ -234,11 +274,22 @@ fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
             let is_depth = kind.is_depth() || name == "shadow_depth";
             let value = |index: usize| {
                 let (x, y) = ((index % 8) as f32, (index / 8 % 8) as f32);
-                if is_depth { if x < 4.0 { 0.25 } else { 0.875 } } else { (20.0 + 3.0 * x + 2.0 * y) / 64.0 }
+                if is_depth {
+                    if x < 4.0 { 0.25 } else { 0.875 }
+                } else {
+                    (20.0 + 3.0 * x + 2.0 * y) / 64.0
+                }
             };
             let texels = 8 * 8 * kind.layers() as usize;
-            let channel = |index: usize| (0..kind.channels()).map(move |channel| value(index) + channel as f32 / 16.0);
-            Fixture::Texture(Texture { kind, width: 8, height: 8, texels: (0..texels).flat_map(channel).collect() })
+            let channel = |index: usize| {
+                (0..kind.channels()).map(move |channel| value(index) + channel as f32 / 16.0)
+            };
+            Fixture::Texture(Texture {
+                kind,
+                width: 8,
+                height: 8,
+                texels: (0..texels).flat_map(channel).collect(),
+            })
         }
     }
 }
@@ -263,7 +314,11 @@ fn mesh(vertex: &Reflection) -> Mesh {
         let attribute = |attribute: &Attribute| -> Vec<u32> {
             let values = match attribute.location {
                 0 => vec![px, py, bump],
-                1 => vec![-0.9 * (3.0 * px).cos() * (2.0 * py).cos(), 0.6 * (3.0 * px).sin() * (2.0 * py).sin(), 1.0],
+                1 => vec![
+                    -0.9 * (3.0 * px).cos() * (2.0 * py).cos(),
+                    0.6 * (3.0 * px).sin() * (2.0 * py).sin(),
+                    1.0,
+                ],
                 2 => vec![0.9, 0.5 + 0.4 * u, 0.9 - 0.4 * v, 1.0],
                 5 => vec![1.0, 0.0, 0.9 * (3.0 * px).cos(), 1.0],
                 6 => return vec![x % 3],
@@ -273,18 +328,21 @@ fn mesh(vertex: &Reflection) -> Mesh {
         };
         attributes.iter().flat_map(attribute).collect::<Vec<u32>>()
     };
-    let squares =
-        (0..64).flat_map(|square| [(0, 0), (1, 0), (0, 1), (0, 1), (1, 0), (1, 1)].map(|(x, y)| (square % 8 + x, square / 8 + y)));
+    let squares = (0..64).flat_map(|square| {
+        [(0, 0), (1, 0), (0, 1), (0, 1), (1, 0), (1, 1)]
+            .map(|(x, y)| (square % 8 + x, square / 8 + y))
+    });
     let words = squares.flat_map(|(x, y)| corner(x, y)).collect();
     Mesh { attributes, words, indices: Vec::new() }
 }
 
-fn agrees(renderer: &Renderer, scene: &Scene) -> Result<Tally, String> {
-    let Scene { vertex, fragment, drawn: [drawn_vertex, drawn_fragment], mesh, buffers, .. } = scene;
+fn agrees(renderer: &dyn Session, scene: &Scene) -> Result<Tally, String> {
+    let Scene { vertex, fragment, drawn: [drawn_vertex, drawn_fragment], mesh, buffers, .. } =
+        scene;
     let watched = probe::watched(&drawn_fragment.module, fragment.entry).ok_or("no colour")?;
     let drawing = Drawing {
-        vertex: Stage { module: &drawn_vertex.module, entry: vertex.entry },
-        fragment: Some(Stage { module: &watched.module, entry: fragment.entry }),
+        vertex: EntryPoint { module: &drawn_vertex.module, entry: vertex.entry },
+        fragment: Some(EntryPoint { module: &watched.module, entry: fragment.entry }),
         targets: watched.targets,
         items: &[Item { mesh, buffers }],
         views: &[Buffers::new()],
@@ -295,14 +353,19 @@ fn agrees(renderer: &Renderer, scene: &Scene) -> Result<Tally, String> {
         size: [WIDTH, HEIGHT],
         state: State::default(),
     };
-    let frame = renderer.draw(&drawing).map_err(|problem| problem.message)?.remove(0);
-    let mut tally = Tally { detours: frame.detour.map(|detour| (detour, 1)).into_iter().collect(), ..Tally::default() };
+    let frame = renderer.draw_frames(&drawing).map_err(|problem| problem.message)?.remove(0);
+    let mut tally = Tally {
+        detours: frame.detour.map(|detour| (detour, 1)).into_iter().collect(),
+        ..Tally::default()
+    };
     let resources = fragments::resources(buffers.clone(), &scene.fixtures, &BTreeMap::new());
     let watched = Watched { size: [WIDTH, HEIGHT], targets: &frame.targets };
     fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
     match tally {
         Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
-        Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => Err(format!("{open} of {tried} fragments are open")),
+        Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => {
+            Err(format!("{open} of {tried} fragments are open"))
+        }
         tally => Ok(tally),
     }
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use lamplight::generate::lean;
+use lamplight::compose::lean;
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -106,7 +106,8 @@ fn green(p: vec4<f32>) -> vec4<f32> { return p * vec4<f32>(0.0, 1.0, 0.0, 1.0); 
 fn blue(p: vec4<f32>) -> vec4<f32> { return p * vec4<f32>(0.0, 0.0, 1.0, 1.0); }
 ";
 
-const SHADE: &str = "fn shade(color: vec4<f32>, steps: i32) -> vec4<f32> { return color / f32(steps + 1); }
+const SHADE: &str =
+    "fn shade(color: vec4<f32>, steps: i32) -> vec4<f32> { return color / f32(steps + 1); }
 fn unused() -> f32 { return 1.0; }
 ";
 
@@ -131,9 +132,13 @@ struct Package(TempDir);
 impl Package {
     fn new() -> Result<Self, Failed> {
         let package = Self(tempfile::tempdir()?);
-        for (name, text) in
-            [("lamplight.toml", MANIFEST), ("small.wesl", ROOT), ("tint.wesl", TINT), ("shade.wesl", SHADE), ("small.vert.glsl", VERTEX)]
-        {
+        for (name, text) in [
+            ("lamplight.toml", MANIFEST),
+            ("small.wesl", ROOT),
+            ("tint.wesl", TINT),
+            ("shade.wesl", SHADE),
+            ("small.vert.glsl", VERTEX),
+        ] {
             package.write(name, text)?;
         }
         Ok(package)
@@ -178,7 +183,10 @@ impl Package {
                     folders.push(path);
                 } else {
                     let name = path.strip_prefix(self.path())?.to_string_lossy().into_owned();
-                    found.insert(name.split_once('/').map_or(name.clone(), |(_, rest)| rest.to_owned()), fs::read(&path)?);
+                    found.insert(
+                        name.split_once('/').map_or(name.clone(), |(_, rest)| rest.to_owned()),
+                        fs::read(&path)?,
+                    );
                 }
             }
         }
@@ -195,7 +203,11 @@ fn equal<T: PartialEq + std::fmt::Debug>(found: T, expected: T) -> Outcome {
 }
 
 fn texts(summary: &Value) -> u64 {
-    let entries = summary["programs"].as_array().into_iter().flatten().filter_map(|program| program["entries"].as_array());
+    let entries = summary["programs"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|program| program["entries"].as_array());
     entries.flatten().filter_map(|entry| entry["unique"].as_u64()).sum()
 }
 
@@ -213,7 +225,10 @@ fn nothing_to_do() -> Outcome {
     // It still says what is wrong with the texts that it did not read again.
     let told = |output: Output| String::from_utf8_lossy(&output.stderr).into_owned();
     let again = told(package.run(&["gen", "--cache", "cache"])?);
-    ensure(again.contains("unused-import") && again.contains("small.wesl:2:32"), format!("the warning is gone: {again}"))?;
+    ensure(
+        again.contains("unused-import") && again.contains("small.wesl:2:32"),
+        format!("the warning is gone: {again}"),
+    )?;
     let seconds = second["seconds"].as_f64().unwrap_or(f64::MAX);
     // A hundredth of that in an optimised build on a machine that does nothing else.
     ensure(seconds < 1.0, format!("it took {seconds} s to find that out"))?;
@@ -247,8 +262,14 @@ fn unreached() -> Outcome {
     let second = package.generate(&[])?;
     equal((&second["up_to_date"], compiled(&second)), (&Value::Bool(false), 0))?;
     // Comments and layout of what is reached.
-    package.write("tint.wesl", &TINT.replace("fn red", "/* Of /* all */ colours. */ fn red // the first\n"))?;
-    package.write("small.vert.glsl", &VERTEX.replace("void main() {", "// Where it is.\nvoid main( /* nothing */ ) {\n\n"))?;
+    package.write(
+        "tint.wesl",
+        &TINT.replace("fn red", "/* Of /* all */ colours. */ fn red // the first\n"),
+    )?;
+    package.write(
+        "small.vert.glsl",
+        &VERTEX.replace("void main() {", "// Where it is.\nvoid main( /* nothing */ ) {\n\n"),
+    )?;
     let third = package.generate(&[])?;
     equal((&third["up_to_date"], compiled(&third)), (&Value::Bool(false), 0))?;
     equal(package.files("bundle")?, before)
@@ -258,7 +279,10 @@ fn caching() -> Outcome {
     let package = Package::new()?;
     package.generate(&["-o", "first"])?;
     equal(compiled(&package.generate(&["-o", "second"])?), 0)?;
-    ensure(package.run(&["gen", "--no-cache", "-o", "third"])?.status.success(), "it failed without a cache")?;
+    ensure(
+        package.run(&["gen", "--no-cache", "-o", "third"])?.status.success(),
+        "it failed without a cache",
+    )?;
     equal(package.files("first")?, package.files("second")?)?;
     equal(package.files("first")?, package.files("third")?)
 }
@@ -296,11 +320,15 @@ fn mistakes() -> Outcome {
         let output = package.run(&["--diagnostics", "short", "gen", "--cache", "cache"])?;
         let told = String::from_utf8_lossy(&output.stderr).into_owned();
         equal(output.status.code(), Some(1))?;
-        equal(told.matches(place).count(), 1).map_err(|_| Failed::from(format!("not once at {place}: {told}")))?;
+        equal(told.matches(place).count(), 1)
+            .map_err(|_| Failed::from(format!("not once at {place}: {told}")))?;
         Ok(told)
     };
     let first = run("tint.wesl:3:")?;
-    ensure(package.files("cache")?.keys().any(|name| name.starts_with("errors/")), "mistakes are not kept")?;
+    ensure(
+        package.files("cache")?.keys().any(|name| name.starts_with("errors/")),
+        "mistakes are not kept",
+    )?;
     equal(run("tint.wesl:3:")?, first)?;
     package.write("tint.wesl", &format!("\n// Moved down.\n{wrong}"))?;
     run("tint.wesl:5:")?;
@@ -312,7 +340,8 @@ fn mistakes() -> Outcome {
 fn check() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
-    let run = || Ok::<_, Failed>(package.run(&["gen", "--check", "--cache", "cache"])?.status.code());
+    let run =
+        || Ok::<_, Failed>(package.run(&["gen", "--check", "--cache", "cache"])?.status.code());
     equal(run()?, Some(0))?;
     package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", "0.0, 0.5, 0.0"))?;
     let before = package.files("bundle")?;
@@ -326,16 +355,23 @@ fn shards() -> Outcome {
     let package = Package::new()?;
     package.generate(&["-o", "whole"])?;
     // Each in a process of its own, as under GNU parallel or in an array of jobs.
-    let names: Vec<(String, String)> = (1..=5).map(|index| (format!("{index}/5"), format!("shard-{index}"))).collect();
-    let children =
-        names.iter().map(|(shard, out)| package.command(&["gen", "--no-cache", "--shard", shard, "-o", out]).stdout(Stdio::null()).spawn());
+    let names: Vec<(String, String)> =
+        (1..=5).map(|index| (format!("{index}/5"), format!("shard-{index}"))).collect();
+    let children = names.iter().map(|(shard, out)| {
+        package
+            .command(&["gen", "--no-cache", "--shard", shard, "-o", out])
+            .stdout(Stdio::null())
+            .spawn()
+    });
     for mut child in children.collect::<Result<Vec<_>, _>>()? {
         ensure(child.wait()?.success(), "a shard failed")?;
     }
     for order in [[1, 2, 3, 4, 5], [4, 1, 5, 3, 2]] {
         let shards: Vec<String> = order.iter().map(|index| format!("shard-{index}")).collect();
-        let arguments: Vec<&str> = ["merge", "merged"].into_iter().chain(shards.iter().map(String::as_str)).collect();
-        let output = package.run(&[arguments.as_slice(), &["--manifest", "lamplight.toml"]].concat())?;
+        let arguments: Vec<&str> =
+            ["merge", "merged"].into_iter().chain(shards.iter().map(String::as_str)).collect();
+        let output =
+            package.run(&[arguments.as_slice(), &["--manifest", "lamplight.toml"]].concat())?;
         ensure(output.status.success(), String::from_utf8_lossy(&output.stderr))?;
         equal(package.files("merged")?, package.files("whole")?)?;
     }
@@ -348,13 +384,23 @@ fn parallel() -> Outcome {
     package.generate(&["-o", "whole"])?;
     let run = |line: &str| -> Outcome {
         let mut command = Command::new("sh");
-        command.args(["-c", line]).current_dir(package.path()).env("LAMPLIGHT", env!("CARGO_BIN_EXE_lamplight"));
+        command
+            .args(["-c", line])
+            .current_dir(package.path())
+            .env("LAMPLIGHT", env!("CARGO_BIN_EXE_lamplight"));
         let output = command.env("HOME", package.path()).output()?;
-        ensure(output.status.success(), format!("`{line}`: {}", String::from_utf8_lossy(&output.stderr)))
+        ensure(
+            output.status.success(),
+            format!("`{line}`: {}", String::from_utf8_lossy(&output.stderr)),
+        )
     };
     let found = run("parallel --version | grep -q GNU");
-    found.map_err(|_| "GNU parallel is not installed: `apt-get install parallel`, as `cargo xtask test` does")?;
-    run("parallel --will-cite --jobs 2 --halt now,fail=1 $LAMPLIGHT gen --no-cache --shard {}/4 --out shards/{} ::: $(seq 4)")?;
+    found.map_err(
+        |_| "GNU parallel is not installed: `apt-get install parallel`, as `cargo xtask test` does",
+    )?;
+    run(
+        "parallel --will-cite --jobs 2 --halt now,fail=1 $LAMPLIGHT gen --no-cache --shard {}/4 --out shards/{} ::: $(seq 4)",
+    )?;
     run("$LAMPLIGHT merge merged shards/* --manifest lamplight.toml")?;
     equal(package.files("merged")?, package.files("whole")?)
 }
@@ -364,7 +410,10 @@ fn wrong_shards() -> Outcome {
     for (shard, out) in [("1/2", "one"), ("2/2", "two")] {
         package.generate(&["--shard", shard, "-o", out])?;
     }
-    equal(package.run(&["merge", "merged", "one", "--manifest", "lamplight.toml"])?.status.code(), Some(3))?;
+    equal(
+        package.run(&["merge", "merged", "one", "--manifest", "lamplight.toml"])?.status.code(),
+        Some(3),
+    )?;
     package.write("tint.wesl", &TINT.replace("1.0, 0.0, 0.0", "0.5, 0.0, 0.0"))?;
     package.generate(&["--shard", "1/1", "-o", "other"])?;
     equal(package.run(&["merge", "merged", "one", "other"])?.status.code(), Some(3))?;
@@ -376,7 +425,14 @@ fn wrong_shards() -> Outcome {
 
 fn choices() -> Outcome {
     let package = Package::new()?;
-    let summary = package.generate(&["--program", "small", "--only", "tint=blue,shaded", "--target", "wgsl"])?;
+    let summary = package.generate(&[
+        "--program",
+        "small",
+        "--only",
+        "tint=blue,shaded",
+        "--target",
+        "wgsl",
+    ])?;
     equal(summary["programs"][0]["permutations"].as_u64(), Some(1))?;
     equal(summary["targets"].as_array().map(Vec::len), Some(1))?;
     equal(package.run(&["gen", "--program", "smal"])?.status.code(), Some(1))?;
@@ -387,7 +443,8 @@ fn watch() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
     let arguments = ["watch", "--cache", "cache", "--program", "small", "--key", "tint=green"];
-    let mut child = package.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
+    let mut child =
+        package.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
     let outcome = followed(&package);
     child.kill()?;
     child.wait()?;
@@ -446,9 +503,13 @@ fn shared_server() -> Outcome {
         .arg(folder.path())
         .stdout(Stdio::null())
         .spawn();
-    let mut server = server.map_err(|error| format!("redis-server: {error}; install it with `apt-get install redis-server`"))?;
+    let mut server = server.map_err(|error| {
+        format!("redis-server: {error}; install it with `apt-get install redis-server`")
+    })?;
     let start = Instant::now();
-    while std::net::TcpStream::connect(("127.0.0.1", port)).is_err() && start.elapsed() < Duration::from_secs(10) {
+    while std::net::TcpStream::connect(("127.0.0.1", port)).is_err()
+        && start.elapsed() < Duration::from_secs(10)
+    {
         std::thread::sleep(Duration::from_millis(20));
     }
     let outcome = shared(&address);

@@ -19,10 +19,18 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("keys::c", || in_language(&C)),
         Trial::test("keys::typescript", || in_language(&TYPESCRIPT)),
         Trial::test("keys::awkward_names_in_rust", || {
-            awkward("rust", "keys.rs", &["rustc", "--edition", "2024", "--crate-type", "lib", "--emit", "metadata"])
+            awkward(
+                "rust",
+                "keys.rs",
+                &["rustc", "--edition", "2024", "--crate-type", "lib", "--emit", "metadata"],
+            )
         }),
         Trial::test("keys::awkward_names_in_c", || {
-            awkward("c", "keys.h", &["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only"])
+            awkward(
+                "c",
+                "keys.h",
+                &["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only"],
+            )
         }),
         Trial::test("keys::lock_is_up_to_date", up_to_date),
         Trial::test("keys::growth_changes_no_key", growth),
@@ -46,7 +54,16 @@ const RUST: Harness = Harness {
     file: "keys.rs",
     main: rust_main,
     source: "main.rs",
-    compile: &["rustc", "--edition", "2024", "-Dwarnings", "-Cdebuginfo=0", "-o", "{}/main", "{}/main.rs"],
+    compile: &[
+        "rustc",
+        "--edition",
+        "2024",
+        "-Dwarnings",
+        "-Cdebuginfo=0",
+        "-o",
+        "{}/main",
+        "{}/main.rs",
+    ],
     run: &["{}/main"],
     edit: |text| text,
 };
@@ -56,7 +73,17 @@ const C: Harness = Harness {
     file: "keys.h",
     main: c_main,
     source: "main.c",
-    compile: &["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o", "{}/main", "{}/main.c"],
+    compile: &[
+        "cc",
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-pedantic",
+        "-o",
+        "{}/main",
+        "{}/main.c",
+    ],
     run: &["{}/main"],
     edit: |text| text,
 };
@@ -76,7 +103,10 @@ fn in_language(harness: &Harness) -> Outcome {
     let manifest = library()?;
     let folder = tempfile::tempdir()?;
     let language = keys::find(harness.language).ok_or("no such language")?;
-    std::fs::write(folder.path().join(harness.file), (harness.edit)(keys::write(&manifest, language)))?;
+    std::fs::write(
+        folder.path().join(harness.file),
+        (harness.edit)(keys::write(&manifest, language)),
+    )?;
     std::fs::write(folder.path().join(harness.source), (harness.main)(&manifest))?;
     execute(folder.path(), harness.compile, "")?;
     let (mut asked, mut expected) = (String::new(), String::new());
@@ -93,11 +123,13 @@ fn in_language(harness: &Harness) -> Outcome {
         return Ok(());
     }
     let differing = found.lines().zip(expected.lines()).find(|(found, expected)| found != expected);
-    Err(format!("{differing:?}, {} of {} lines", found.lines().count(), expected.lines().count()).into())
+    Err(format!("{differing:?}, {} of {} lines", found.lines().count(), expected.lines().count())
+        .into())
 }
 
 fn execute(folder: &Path, command: &[&str], input: &str) -> Result<String, Failed> {
-    let words: Vec<String> = command.iter().map(|word| word.replace("{}", &folder.to_string_lossy())).collect();
+    let words: Vec<String> =
+        command.iter().map(|word| word.replace("{}", &folder.to_string_lossy())).collect();
     let mut child = Command::new(&words[0])
         .args(&words[1..])
         .stdin(Stdio::piped())
@@ -113,11 +145,18 @@ fn execute(folder: &Path, command: &[&str], input: &str) -> Result<String, Faile
     if output.status.success() {
         return Ok(String::from_utf8(output.stdout)?);
     }
-    Err(format!("{}: {}{}", words[0], String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr)).into())
+    Err(format!(
+        "{}: {}{}",
+        words[0],
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    )
+    .into())
 }
 
 fn library() -> Result<Manifest, Failed> {
-    let found = project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    let found = project::library_manifest()
+        .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
     Ok(found.1)
 }
 
@@ -137,7 +176,9 @@ fn rust_main(manifest: &Manifest) -> String {
     }
     let start = "include!(\"keys.rs\");\nfn main() {\n    for line in std::io::stdin().lines() {\n        let line = line.unwrap();\n";
     let parse = "        let n: Vec<usize> = line.split_whitespace().map(|n| n.parse().unwrap()).collect();\n        let o = &n[1..];\n        let _ = o;\n";
-    format!("{start}{parse}        println!(\"{{}}\", match n[0] {{\n{arms}            _ => String::new(),\n        }});\n    }}\n}}\n")
+    format!(
+        "{start}{parse}        println!(\"{{}}\", match n[0] {{\n{arms}            _ => String::new(),\n        }});\n    }}\n}}\n"
+    )
 }
 
 fn c_main(manifest: &Manifest) -> String {
@@ -160,7 +201,9 @@ fn c_main(manifest: &Manifest) -> String {
 }
 
 fn typescript_main(manifest: &Manifest) -> String {
-    let mut text = String::from("import * as keys from './keys.mjs';\nimport { readFileSync } from 'node:fs';\nconst programs = [\n");
+    let mut text = String::from(
+        "import * as keys from './keys.mjs';\nimport { readFileSync } from 'node:fs';\nconst programs = [\n",
+    );
     for program in &manifest.programs {
         let camel = camel(&program.name);
         let axes: Vec<String> = program
@@ -179,7 +222,12 @@ fn typescript_main(manifest: &Manifest) -> String {
                 format!("['{}', [{}]]", axis.name, values.join(", "))
             })
             .collect();
-        text += &format!("  [keys.{}{}Key, [{}]],\n", camel[..1].to_lowercase(), &camel[1..], axes.join(", "));
+        text += &format!(
+            "  [keys.{}{}Key, [{}]],\n",
+            camel[..1].to_lowercase(),
+            &camel[1..],
+            axes.join(", ")
+        );
     }
     text + "];\nfor (const line of readFileSync(0, 'utf8').trim().split('\\n')) {\n  const [program, ...ordinals] = line.split(' ').map(Number);\n  const [key, axes] = programs[program];\n  console.log(key(Object.fromEntries(axes.map(([name, values], index) => [name, values[ordinals[index]]]))));\n}\n"
 }
@@ -191,10 +239,15 @@ fn stripped(text: String) -> String {
     for line in text.lines() {
         inside |= line.starts_with("export interface");
         if !inside && !line.starts_with("type ") {
-            let line = line.replace("(key: object, axes: readonly (readonly [string, Value])[]): string", "(key, axes)");
+            let line = line.replace(
+                "(key: object, axes: readonly (readonly [string, Value])[]): string",
+                "(key, axes)",
+            );
             let line = line.replace(" as Record<string, Value | undefined>", "");
             let line = match (line.find("(key: "), line.find(" = {}): string")) {
-                (Some(start), Some(end)) => format!("{}(key{}", &line[..start], line[end..].replace("): string", ")")),
+                (Some(start), Some(end)) => {
+                    format!("{}(key{}", &line[..start], line[end..].replace("): string", ")"))
+                }
                 _ => line,
             };
             out += &format!("{line}\n");
@@ -224,7 +277,8 @@ values = ["x"]
 fn parsed(text: &str) -> Result<Manifest, Failed> {
     let mut sources = SourceSet::default();
     let id = sources.add("lamplight.toml", text);
-    Ok(manifest::parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human))?)
+    Ok(manifest::parse(&sources, id)
+        .map_err(|problems| render(&sources, &problems, Form::Human))?)
 }
 
 fn awkward(language: &str, file: &str, command: &[&str]) -> Outcome {
@@ -252,12 +306,20 @@ fn read_lock() -> Result<Lock, Failed> {
 }
 
 fn extended(lock: &Lock, manifest: &Manifest) -> Lock {
-    manifest.programs.iter().fold(lock.clone(), |lock, program| lock.extended(&program.name, &program.space))
+    manifest
+        .programs
+        .iter()
+        .fold(lock.clone(), |lock, program| lock.extended(&program.name, &program.space))
 }
 
 fn up_to_date() -> Outcome {
     let text = extended(&read_lock()?, &library()?).to_string();
-    if text == LOCK { Ok(()) } else { Err("run `lamplight keys --lock --manifest shaderlib/lamplight.toml` and commit the lock".into()) }
+    if text == LOCK {
+        Ok(())
+    } else {
+        Err("run `lamplight keys --lock --manifest shaderlib/lamplight.toml` and commit the lock"
+            .into())
+    }
 }
 
 /// Every shipped key keeps its text and its number when an axis and values are added.
@@ -276,18 +338,28 @@ fn growth() -> Outcome {
     for program in &old.programs {
         let after = new.program(&program.name).ok_or("a program is gone")?;
         for point in program.space.enumerate() {
-            let (key, dense) = (program.space.key(&point), lock.dense(&program.name, &program.space, &point));
+            let (key, dense) =
+                (program.space.key(&point), lock.dense(&program.name, &program.space, &point));
             let mut sources = SourceSet::default();
             let id = sources.add("key", key.as_str());
             let text = lamplight::permute::Quoted::whole(&sources, id);
-            let same = lamplight::permute::key::parse(&after.space, &text).map_err(|problems| render(&sources, &problems, Form::Human))?;
-            if after.space.key(&same) != key || new_lock.dense(&program.name, &after.space, &same) != dense || dense.is_none() {
+            let same = lamplight::permute::key::parse(&after.space, &text)
+                .map_err(|problems| render(&sources, &problems, Form::Human))?;
+            if after.space.key(&same) != key
+                || new_lock.dense(&program.name, &after.space, &same) != dense
+                || dense.is_none()
+            {
                 return Err(format!("{} {key} changed: {dense:?}", program.name).into());
             }
             count += 1;
         }
     }
-    let dynamic = old.programs.iter().flat_map(|program| program.space.axes()).filter(|axis| axis.mode == Mode::Dynamic).count();
+    let dynamic = old
+        .programs
+        .iter()
+        .flat_map(|program| program.space.axes())
+        .filter(|axis| axis.mode == Mode::Dynamic)
+        .count();
     println!("{count} keys kept, {dynamic} dynamic axes");
     Ok(())
 }

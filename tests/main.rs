@@ -1,6 +1,12 @@
 //! The one test binary. Each kind of test lists its cases, most of them found by their files.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr
+)]
 
 mod bundle;
 mod catalogue;
@@ -17,10 +23,14 @@ mod external;
 mod fragments;
 mod frames;
 mod generate;
+mod guide;
 mod harness;
+mod house;
 mod keys;
 mod library;
 mod link;
+mod link_compare;
+mod metal;
 mod mutate;
 mod packages;
 mod permute;
@@ -37,6 +47,7 @@ mod shaderlib;
 mod shadow;
 mod snapshot;
 mod specialise;
+mod traps;
 
 use std::process::ExitCode;
 
@@ -55,10 +66,13 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     examples::trials,
     frames::trials,
     generate::trials,
+    guide::trials,
     harness::trials,
+    house::trials,
     keys::trials,
     library::trials,
     link::trials,
+    metal::trials,
     mutate::trials,
     packages::trials,
     permute::trials,
@@ -74,11 +88,12 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     shaderlib::trials,
     shadow::trials,
     specialise::trials,
+    traps::trials,
 ];
 
 fn main() -> ExitCode {
     // While there is one thread; where it is missing, the trials that need it say so.
-    lamplight::harness::executors::swiftshader::announce();
+    lamplight::execute::executors::prepare(lamplight::execute::executors::ALL);
     let trials = KINDS.iter().flat_map(|kind| kind()).collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }

@@ -4,8 +4,8 @@
 use std::sync::{Arc, Mutex};
 
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::harness::library::Library;
-use lamplight::harness::mutate::{self, Fate, Report};
+use lamplight::proof::library::Library;
+use lamplight::proof::mutate::{self, Fate, Report};
 use lamplight::source::{Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 use toml::Table;
@@ -33,13 +33,15 @@ fn mutants(library: &Library, modules: &[&str]) -> Result<Report, Failed> {
 }
 
 /// Modules that take a moment; all of them are `cargo xtask mutate`.
-const QUICK: &[&str] = &["lighting::spot", "lighting::material", "math::safe", "shadow::bias", "surface::view"];
+const QUICK: &[&str] =
+    &["lighting::spot", "lighting::material", "math::safe", "shadow::bias", "surface::view"];
 
 fn library_kills() -> Outcome {
     let report = mutants(&Library::embedded(), QUICK)?;
     let (killed, all) = report.killed();
     // One of `is_nan_bits` alone lives, and the list says why.
-    let explained = report.outcomes.iter().filter(|outcome| matches!(outcome.fate, Fate::Explained(_))).count();
+    let explained =
+        report.outcomes.iter().filter(|outcome| matches!(outcome.fate, Fate::Explained(_))).count();
     if all < 150 || all - killed != 1 || explained != 1 {
         return Err(format!("{}{}", report.survivors(), report.summary()).into());
     }
@@ -51,16 +53,23 @@ fn library_kills() -> Outcome {
 /// of a quick module are mutants that do survive.
 fn list_is_sound() -> Outcome {
     let library = Library::embedded();
-    let list: Table = toml::from_str(&library.text("survivors.toml").ok_or("no `survivors.toml`")?)?;
-    let entries = ["equivalent", "survivor"].map(|kind| list[kind].as_array().map_or(&[][..], Vec::as_slice));
+    let list: Table =
+        toml::from_str(&library.text("survivors.toml").ok_or("no `survivors.toml`")?)?;
+    let entries =
+        ["equivalent", "survivor"].map(|kind| list[kind].as_array().map_or(&[][..], Vec::as_slice));
     let mut seen = Vec::new();
     for entry in entries.concat() {
         let entry = &entry;
         let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
         let function = text("function");
         let (module, name) = function.rsplit_once("::").ok_or("no path")?;
-        let source = library.text(&format!("{}.wesl", module.replace("::", "/"))).ok_or_else(|| format!("no module `{module}`"))?;
-        let body = source.split_once(&format!("\nfn {name}(")).ok_or_else(|| format!("no function `{function}`"))?.1;
+        let source = library
+            .text(&format!("{}.wesl", module.replace("::", "/")))
+            .ok_or_else(|| format!("no module `{module}`"))?;
+        let body = source
+            .split_once(&format!("\nfn {name}("))
+            .ok_or_else(|| format!("no function `{function}`"))?
+            .1;
         let body = body.split("\n}").next().unwrap_or_default();
         let has_line = body.lines().any(|line| line.trim() == text("line"));
         if !has_line || text("reason").len() < 20 || text("mutation").is_empty() {
@@ -72,10 +81,19 @@ fn list_is_sound() -> Outcome {
         }
         seen.push(key);
     }
-    let listed = seen.iter().filter(|(function, _, _)| function.starts_with("shadow::bias::")).count();
+    let listed =
+        seen.iter().filter(|(function, _, _)| function.starts_with("shadow::bias::")).count();
     let report = mutants(&library, &["shadow::bias"])?;
-    let found = report.outcomes.iter().filter(|outcome| matches!(outcome.fate, Fate::Equivalent(_))).count();
-    if listed > 0 && found == listed { Ok(()) } else { Err(format!("{found} of {listed} entries are mutants that survive").into()) }
+    let found = report
+        .outcomes
+        .iter()
+        .filter(|outcome| matches!(outcome.fate, Fate::Equivalent(_)))
+        .count();
+    if listed > 0 && found == listed {
+        Ok(())
+    } else {
+        Err(format!("{found} of {listed} entries are mutants that survive").into())
+    }
 }
 
 fn package(files: &[(&str, &str)]) -> Library {
@@ -87,17 +105,19 @@ const HALF: &str = "fn half(x: f32) -> f32 {\n    return x * 0.5;\n}\n";
 
 /// A constant that is 1 % off is noticed in f64 however much f32 is allowed.
 fn hidden_by_tolerance() -> Outcome {
-    let cases =
-        "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
+    let cases = "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
     let report = mutants(&package(&[("mine.wesl", HALF), ("mine.toml", cases)]), &["mine"])?;
-    if report.summary() == "killed 2 of 2 mutants" { Ok(()) } else { Err(format!("{}{}", report.survivors(), report.summary()).into()) }
+    if report.summary() == "killed 2 of 2 mutants" {
+        Ok(())
+    } else {
+        Err(format!("{}{}", report.survivors(), report.summary()).into())
+    }
 }
 
 /// The code is no oracle of itself, and what no case runs is said to be so.
 fn survivors_are_told() -> Outcome {
     let module = format!("{HALF}fn other(x: f32) -> f32 {{\n    return 1.0 - x;\n}}\n");
-    let cases =
-        "[[case]]\nfunction = \"half\"\noracle = \"eval\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
+    let cases = "[[case]]\nfunction = \"half\"\noracle = \"eval\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
     let report = mutants(&package(&[("mine.wesl", &module), ("mine.toml", cases)]), &["mine"])?;
     let text = report.survivors();
     for expected in [
@@ -119,7 +139,8 @@ fn stale_entries_are_told() -> Outcome {
     assert_eq!(report.stale, ["mine::half: `0.505` instead of `0.5` (in `return x * 0.5;`)"]);
     let without = entry.replace("reason", "because");
     let files = [("mine.wesl", HALF), ("mine.toml", cases), ("survivors.toml", &without)];
-    let error = mutants(&package(&files), &["mine"]).err().ok_or("an entry without a reason is taken")?;
+    let error =
+        mutants(&package(&files), &["mine"]).err().ok_or("an entry without a reason is taken")?;
     let message = error.message().unwrap_or_default().to_owned();
     if message.contains("`reason`") { Ok(()) } else { Err(message.into()) }
 }
@@ -128,8 +149,17 @@ fn stale_entries_are_told() -> Outcome {
 fn every_block_is_reached() -> Outcome {
     let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
     let found = mutate::coverage(&library, &sources, &library.modules());
-    let found = found.map_err(|errors| render(&sources.into_inner().unwrap(), &errors, Form::Short))?;
-    let missed: String = found.iter().filter(|module| !module.uncovered.is_empty()).map(ToString::to_string).collect();
+    let found =
+        found.map_err(|errors| render(&sources.into_inner().unwrap(), &errors, Form::Short))?;
+    let missed: String = found
+        .iter()
+        .filter(|module| !module.uncovered.is_empty())
+        .map(ToString::to_string)
+        .collect();
     let blocks: usize = found.iter().map(|module| module.blocks).sum();
-    if missed.is_empty() && blocks > 250 { Ok(()) } else { Err(format!("of {blocks} blocks no case reaches\n{missed}").into()) }
+    if missed.is_empty() && blocks > 250 {
+        Ok(())
+    } else {
+        Err(format!("of {blocks} blocks no case reaches\n{missed}").into())
+    }
 }

@@ -27,14 +27,17 @@ fn wesl_toml_is_read() -> Result<(), Failed> {
     let package = wesl::PkgBuilder::new("lamplight").scan_toml(root().join("shaderlib"))?;
     let mut found = Vec::new();
     for folder in &package.root.submodules {
-        found.extend(folder.submodules.iter().map(|module| format!("{}/{}", folder.name, module.name)));
+        found.extend(
+            folder.submodules.iter().map(|module| format!("{}/{}", folder.name, module.name)),
+        );
     }
     found.sort();
     if found == modules() { Ok(()) } else { Err(format!("{found:?}").into()) }
 }
 
 fn export(form: &str, folder: &Path) -> Result<(), Failed> {
-    run(Command::new(env!("CARGO_BIN_EXE_lamplight")).args(["export", "--form", form]).arg(folder)).map(drop)
+    run(Command::new(env!("CARGO_BIN_EXE_lamplight")).args(["export", "--form", form]).arg(folder))
+        .map(drop)
 }
 
 /// Cargo takes the crate for publishing, and what its build script makes of the shaders links: a
@@ -49,8 +52,11 @@ fn cargo_package_composes() -> Result<(), Failed> {
 
     let scanned = wesl::PkgBuilder::new("lamplight").scan_toml(&package)?;
     let built = scanned.validate().map_err(|error| error.to_string())?;
-    let constants: &CodegenPkg =
-        Box::leak(Box::new(CodegenPkg { crate_name: "lamplight_wgsl", root: constant(built.root), dependencies: &[] }));
+    let constants: &CodegenPkg = Box::leak(Box::new(CodegenPkg {
+        crate_name: "lamplight_wgsl",
+        root: constant(built.root),
+        dependencies: &[],
+    }));
     let shaders = folder.path().join("shaders");
     std::fs::create_dir_all(&shaders)?;
     let mut compiler = wesl::Wesl::new(&shaders);
@@ -58,10 +64,15 @@ fn cargo_package_composes() -> Result<(), Failed> {
     for module in modules() {
         let name = module.replace('/', "_");
         std::fs::write(shaders.join(format!("{name}.wesl")), entry_wesl(&module))?;
-        let path = format!("package::{name}").parse().map_err(|error| format!("{name}: {error}"))?;
-        let linked = compiler.compile(&path).map_err(|error| format!("{module}: {error}"))?.to_string();
-        let parsed = naga::front::wgsl::parse_str(&linked).map_err(|error| error.emit_to_string(&linked))?;
-        Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&parsed).map_err(|error| format!("{error:?}\n{linked}"))?;
+        let path =
+            format!("package::{name}").parse().map_err(|error| format!("{name}: {error}"))?;
+        let linked =
+            compiler.compile(&path).map_err(|error| format!("{module}: {error}"))?.to_string();
+        let parsed =
+            naga::front::wgsl::parse_str(&linked).map_err(|error| error.emit_to_string(&linked))?;
+        Validator::new(ValidationFlags::all(), Capabilities::empty())
+            .validate(&parsed)
+            .map_err(|error| format!("{error:?}\n{linked}"))?;
     }
     Ok(())
 }
@@ -69,7 +80,11 @@ fn cargo_package_composes() -> Result<(), Failed> {
 /// A module as the build script's constants have it.
 fn constant(module: wesl::Module) -> &'static CodegenModule {
     let submodules: Vec<&CodegenModule> = module.submodules.into_iter().map(constant).collect();
-    Box::leak(Box::new(CodegenModule { name: module.name.leak(), source: module.source.leak(), submodules: submodules.leak() }))
+    Box::leak(Box::new(CodegenModule {
+        name: module.name.leak(),
+        source: module.source.leak(),
+        submodules: submodules.leak(),
+    }))
 }
 
 /// The bundle has every module's text, as JSON and as what JavaScript makes of it.
@@ -79,12 +94,18 @@ fn npm_package_is_complete() -> Result<(), Failed> {
     export("npm", &folder.path().join("node_modules"))?;
     let texts = modules().into_iter().map(|module| format!("{module}.wesl"));
     let texts: BTreeMap<String, String> = texts.map(|path| (path.clone(), text(&path))).collect();
-    let expected = serde_json::json!({ "name": "lamplight", "edition": "2026_pre", "modules": texts });
+    let expected =
+        serde_json::json!({ "name": "lamplight", "edition": "2026_pre", "modules": texts });
 
-    let manifest: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(package.join("package.json"))?)?;
-    let exported = |kind: &str| manifest["exports"]["."][kind].as_str().map(|path| package.join(path)).ok_or("no export");
+    let manifest: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(package.join("package.json"))?)?;
+    let exported = |kind: &str| {
+        manifest["exports"]["."][kind].as_str().map(|path| package.join(path)).ok_or("no export")
+    };
     let bundle = std::fs::read_to_string(exported("import")?)?;
-    let object = bundle.strip_prefix("export const weslBundle = ").and_then(|rest| rest.split_once(";\n\nexport default"));
+    let object = bundle
+        .strip_prefix("export const weslBundle = ")
+        .and_then(|rest| rest.split_once(";\n\nexport default"));
     same(&serde_json::from_str(object.ok_or("not a bundle")?.0)?, &expected)?;
     if !exported("types")?.is_file() {
         return Err("no types".into());
@@ -98,9 +119,12 @@ fn npm_package_is_complete() -> Result<(), Failed> {
     if Command::new("node").arg("--version").output().is_err() {
         return Err("node is not installed: `apt-get install nodejs`".into());
     }
-    let script =
-        "import lamplight, { weslBundle } from 'lamplight'; console.log(JSON.stringify(lamplight === weslBundle ? lamplight : {}))";
-    let printed = run(Command::new("node").current_dir(folder.path()).args(["--input-type=module", "--eval", script]))?;
+    let script = "import lamplight, { weslBundle } from 'lamplight'; console.log(JSON.stringify(lamplight === weslBundle ? lamplight : {}))";
+    let printed = run(Command::new("node").current_dir(folder.path()).args([
+        "--input-type=module",
+        "--eval",
+        script,
+    ]))?;
     same(&serde_json::from_str(&printed)?, &expected)
 }
 

@@ -19,7 +19,8 @@ use libtest_mimic::{Failed, Trial};
 pub fn trials() -> Vec<Trial> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/permute");
     let entries = fs::read_dir(folder).expect("the folder of cases");
-    let mut cases: Vec<PathBuf> = entries.map(|entry| entry.expect("a case").path()).filter(|path| path.is_dir()).collect();
+    let mut cases: Vec<PathBuf> =
+        entries.map(|entry| entry.expect("a case").path()).filter(|path| path.is_dir()).collect();
     cases.sort();
     let mut trials: Vec<Trial> = cases.into_iter().map(trial).collect();
     trials.extend(laws::trials());
@@ -41,7 +42,8 @@ fn check(case: &Path) -> Result<(), Failed> {
     if found == expected {
         Ok(())
     } else {
-        Err(format!("--- expected\n{expected}\n--- found\n{found}\n(UPDATE_EXPECT=1 accepts this)").into())
+        Err(format!("--- expected\n{expected}\n--- found\n{found}\n(UPDATE_EXPECT=1 accepts this)")
+            .into())
     }
 }
 
@@ -77,14 +79,26 @@ fn describe(case: &Path, sources: &mut SourceSet, manifest: &Manifest) -> Result
 fn keys(program: &Program) -> String {
     const SHOWN: usize = 24;
     let points = program.space.enumerate();
-    let shown: String = points.iter().take(SHOWN).map(|point| format!("  {}\n", program.space.key(point))).collect();
-    if points.len() <= SHOWN { shown } else { format!("{shown}  and {} more\n", points.len() - SHOWN) }
+    let shown: String = points
+        .iter()
+        .take(SHOWN)
+        .map(|point| format!("  {}\n", program.space.key(point)))
+        .collect();
+    if points.len() <= SHOWN {
+        shown
+    } else {
+        format!("{shown}  and {} more\n", points.len() - SHOWN)
+    }
 }
 
 fn read_key(sources: &mut SourceSet, program: &Program, line: &str) -> String {
     let id = sources.add("key", line);
     match key::parse(&program.space, &Quoted::whole(sources, id)) {
-        Ok(point) => format!("`{line}` is {}, wanted: {}\n", program.space.key(&point), program.space.contains(&point)),
+        Ok(point) => format!(
+            "`{line}` is {}, wanted: {}\n",
+            program.space.key(&point),
+            program.space.contains(&point)
+        ),
         Err(problems) => rendered(sources, &problems),
     }
 }
@@ -95,9 +109,14 @@ fn extended_lock(sources: &mut SourceSet, program: &Program, before: String) -> 
         Err(problems) => return rendered(sources, &problems),
         Ok(lock) => lock.extended(&program.name, &program.space),
     };
-    let dense = |point| (lock.dense(&program.name, &program.space, point), program.space.key(point));
+    let dense =
+        |point| (lock.dense(&program.name, &program.space, point), program.space.key(point));
     let numbers: Vec<_> = program.space.enumerate().iter().map(dense).collect();
-    let numbers: String =
-        numbers.iter().map(|(dense, key)| format!("  {} {key}\n", dense.map_or("-".to_owned(), |dense| dense.to_string()))).collect();
+    let numbers: String = numbers
+        .iter()
+        .map(|(dense, key)| {
+            format!("  {} {key}\n", dense.map_or("-".to_owned(), |dense| dense.to_string()))
+        })
+        .collect();
     format!("{lock}{numbers}")
 }

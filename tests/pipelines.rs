@@ -6,7 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroU64;
 use std::time::Instant;
 
-use lamplight::bundle::{Binding, Bundle, Found, Kind, Language, Program as Loaded, Reflection, Stage, Target, Varying, pack};
+use lamplight::bundle::{
+    Binding, Bundle, Found, Kind, Language, Program as Loaded, Reflection, Stage, Target, Varying,
+    pack,
+};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Request, in_memory};
 use lamplight::permute::axis::ValueSet;
@@ -20,7 +23,8 @@ use pollster::block_on;
 /// Set to test every permutation that ships, instead of a covering sample of all pairs.
 const EVERYTHING: &str = "LAMPLIGHT_EVERY_PIPELINE";
 
-const BACKENDS: [(&str, wgpu::Backends); 2] = [("vulkan", wgpu::Backends::VULKAN), ("gl", wgpu::Backends::GL)];
+const BACKENDS: [(&str, wgpu::Backends); 2] =
+    [("vulkan", wgpu::Backends::VULKAN), ("gl", wgpu::Backends::GL)];
 
 /// Pairs of stages that one device is given: drivers keep what pipelines leave until the end.
 const A_DEVICE: usize = 128;
@@ -45,14 +49,21 @@ fn pipelines() -> Result<(), Failed> {
         for some in pairs.chunks(A_DEVICE) {
             let device = Device::open(backend)?;
             for pair in some {
-                device.accepts(pair, false).map_err(|error| format!("{name}, {}: {error}", pair.title))?;
+                device
+                    .accepts(pair, false)
+                    .map_err(|error| format!("{name}, {}: {error}", pair.title))?;
                 count += 1;
                 if device.spirv {
-                    device.accepts(pair, true).map_err(|error| format!("{name}, SPIR-V, {}: {error}", pair.title))?;
+                    device
+                        .accepts(pair, true)
+                        .map_err(|error| format!("{name}, SPIR-V, {}: {error}", pair.title))?;
                     count += 1;
                 }
             }
-            println!("{name}: {count} pipelines after {:.1?} (bundle: {generated:.1?})", start.elapsed());
+            println!(
+                "{name}: {count} pipelines after {:.1?} (bundle: {generated:.1?})",
+                start.elapsed()
+            );
         }
     }
     Ok(())
@@ -63,18 +74,29 @@ fn wrong_reflections() -> Result<(), Failed> {
     let bundle = bundle(false)?;
     let device = Device::open(wgpu::Backends::VULKAN)?;
     let pairs = every_pair(&bundle)?;
-    let find = |wanted: &dyn Fn(&Pair) -> bool| pairs.iter().find(|pair| wanted(pair)).cloned().ok_or("no such permutation");
+    let find = |wanted: &dyn Fn(&Pair) -> bool| {
+        pairs.iter().find(|pair| wanted(pair)).cloned().ok_or("no such permutation")
+    };
     let is_depth = |binding: &Binding| binding.ty.starts_with("texture_depth");
-    let mut shadowed = find(&|pair| pair.fragment.as_ref().is_some_and(|found| found.reflection.bindings.iter().any(is_depth)))?;
+    let mut shadowed = find(&|pair| {
+        pair.fragment.as_ref().is_some_and(|found| found.reflection.bindings.iter().any(is_depth))
+    })?;
     let lit = find(&|pair| pair.title.starts_with("forward"))?;
     let changes: [Change<'_>; 5] = [
         ("a binding is missing", &lit, &|reflection| reflection.bindings.truncate(1)),
         ("a buffer is too small", &lit, &|reflection| {
-            reflection.bindings.iter_mut().for_each(|binding| binding.size = binding.size.map(|size| size - 16))
+            reflection
+                .bindings
+                .iter_mut()
+                .for_each(|binding| binding.size = binding.size.map(|size| size - 16))
         }),
         ("an input is missing", &lit, &|reflection| reflection.inputs.truncate(1)),
-        ("an input has another type", &lit, &|reflection| reflection.inputs.iter_mut().for_each(|input| "u32".clone_into(&mut input.ty))),
-        ("a group is another", &lit, &|reflection| reflection.bindings.iter_mut().for_each(|binding| binding.group += 1)),
+        ("an input has another type", &lit, &|reflection| {
+            reflection.inputs.iter_mut().for_each(|input| "u32".clone_into(&mut input.ty))
+        }),
+        ("a group is another", &lit, &|reflection| {
+            reflection.bindings.iter_mut().for_each(|binding| binding.group += 1)
+        }),
     ];
     for (what, pair, change) in changes {
         let mut pair = pair.clone();
@@ -85,14 +107,21 @@ fn wrong_reflections() -> Result<(), Failed> {
     }
     let fragment = shadowed.fragment.as_mut().ok_or("no fragment stage")?;
     let bindings = &mut std::sync::Arc::make_mut(&mut fragment.reflection).bindings;
-    bindings.iter_mut().filter(|binding| is_depth(binding)).for_each(|binding| "texture_2d<f32>".clone_into(&mut binding.ty));
-    if device.accepts(&shadowed, false).is_ok() { Err("a depth texture is called a colour, and wgpu took it".into()) } else { Ok(()) }
+    bindings
+        .iter_mut()
+        .filter(|binding| is_depth(binding))
+        .for_each(|binding| "texture_2d<f32>".clone_into(&mut binding.ty));
+    if device.accepts(&shadowed, false).is_ok() {
+        Err("a depth texture is called a colour, and wgpu took it".into())
+    } else {
+        Ok(())
+    }
 }
 
 /// The bundle of the library: what ships, or a set that has every pair of values of two axes.
 fn bundle(everything: bool) -> Result<Bundle, Failed> {
-    let (mut sources, mut manifest) =
-        project::library_manifest().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    let (mut sources, mut manifest) = project::library_manifest()
+        .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
     for program in &mut manifest.programs {
         program.targets = vec![Target::WGSL, Target::SPIRV];
         if !everything {
@@ -115,9 +144,13 @@ fn generated(
 fn covering(program: &Program) -> Space {
     let space = &program.space;
     let include: Vec<Assignment> = cover::pairwise(space).points;
-    let everything = Slice { values: space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect(), span: program.span };
+    let everything = Slice {
+        values: space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect(),
+        span: program.span,
+    };
     let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
-    Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists).unwrap_or_else(|_| space.clone())
+    Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists)
+        .unwrap_or_else(|_| space.clone())
 }
 
 /// The stages of one permutation in one language, in both targets.
@@ -142,11 +175,14 @@ fn every_pair(bundle: &Bundle) -> Result<Vec<Pair>, Failed> {
 }
 
 fn pairs_of(program: &Loaded<'_>, language: Language, pairs: &mut Vec<Pair>) -> Result<(), Failed> {
-    let names: Vec<&str> = program.entries().filter(|(found, _)| *found == language).map(|(_, name)| name).collect();
-    let shaders = names.iter().map(|name| program.entry(language, name)).collect::<Result<Vec<_>, _>>()?;
+    let names: Vec<&str> =
+        program.entries().filter(|(found, _)| *found == language).map(|(_, name)| name).collect();
+    let shaders =
+        names.iter().map(|name| program.entry(language, name)).collect::<Result<Vec<_>, _>>()?;
     let mut seen = BTreeSet::new();
     for key in shaders[0].keys()? {
-        let units = shaders.iter().map(|shader| shader.find(&key)).collect::<Result<Vec<_>, _>>()?;
+        let units =
+            shaders.iter().map(|shader| shader.find(&key)).collect::<Result<Vec<_>, _>>()?;
         if !seen.insert(units) {
             continue;
         }
@@ -179,13 +215,18 @@ struct Device {
 
 impl Device {
     fn open(backend: wgpu::Backends) -> Result<Self, Failed> {
-        let instance =
-            wgpu::Instance::new(wgpu::InstanceDescriptor { backends: backend, ..wgpu::InstanceDescriptor::new_without_display_handle() });
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: backend,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
         let mut adapters = block_on(instance.enumerate_adapters(backend));
         // Other trials have told the loader of SwiftShader.
         adapters.retain(|adapter| !adapter.get_info().name.contains("SwiftShader"));
         adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
-        let adapter = adapters.into_iter().next().ok_or_else(|| format!("no adapter for {backend:?}: cargo xtask test installs one"))?;
+        let adapter = adapters
+            .into_iter()
+            .next()
+            .ok_or_else(|| format!("no adapter for {backend:?}: cargo xtask test installs one"))?;
         let descriptor = wgpu::DeviceDescriptor {
             required_features: adapter.features() & wgpu::Features::PASSTHROUGH_SHADERS,
             required_limits: adapter.limits(),
@@ -194,7 +235,8 @@ impl Device {
             ..Default::default()
         };
         let (device, _) = block_on(adapter.request_device(&descriptor))?;
-        let spirv = backend == wgpu::Backends::VULKAN && device.features().contains(wgpu::Features::PASSTHROUGH_SHADERS);
+        let spirv = backend == wgpu::Backends::VULKAN
+            && device.features().contains(wgpu::Features::PASSTHROUGH_SHADERS);
         Ok(Self { device, spirv })
     }
 
@@ -212,14 +254,29 @@ impl Device {
         let stages = || std::iter::once(&pair.vertex).chain(&pair.fragment);
         let layout = self.layout(stages().map(|found| &*found.reflection), spirv)?;
         let modules = if spirv {
-            pair.spirv.iter().flatten().map(|found| self.passed(found)).collect::<Result<Vec<_>, _>>()?
+            pair.spirv
+                .iter()
+                .flatten()
+                .map(|found| self.passed(found))
+                .collect::<Result<Vec<_>, _>>()?
         } else {
             stages().map(|found| self.module(found)).collect::<Result<Vec<_>, _>>()?
         };
         let attributes = attributes(&pair.vertex.reflection.inputs)?;
-        let stride = attributes.iter().map(|attribute| attribute.offset + attribute.format.size()).max().unwrap_or(0);
-        let buffer = wgpu::VertexBufferLayout { array_stride: stride, step_mode: wgpu::VertexStepMode::Vertex, attributes: &attributes };
-        let targets = pair.fragment.as_ref().map_or(Ok(Vec::new()), |found| targets(&found.reflection.outputs))?;
+        let stride = attributes
+            .iter()
+            .map(|attribute| attribute.offset + attribute.format.size())
+            .max()
+            .unwrap_or(0);
+        let buffer = wgpu::VertexBufferLayout {
+            array_stride: stride,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
+        };
+        let targets = pair
+            .fragment
+            .as_ref()
+            .map_or(Ok(Vec::new()), |found| targets(&found.reflection.outputs))?;
         let depth = wgpu::DepthStencilState {
             format: wgpu::TextureFormat::Depth32Float,
             depth_write_enabled: Some(true),
@@ -258,8 +315,12 @@ impl Device {
     }
 
     fn passed(&self, found: &Found) -> Result<wgpu::ShaderModule, String> {
-        let words: Vec<u32> = found.bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
-        let entry = wgpu::PassthroughShaderEntryPoint { name: found.native.entry_name.as_str().into(), workgroup_size: (0, 0, 0) };
+        let words: Vec<u32> =
+            found.bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+        let entry = wgpu::PassthroughShaderEntryPoint {
+            name: found.native.entry_name.as_str().into(),
+            workgroup_size: (0, 0, 0),
+        };
         let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
             entry_points: std::slice::from_ref(&entry).into(),
             spirv: Some(words.into()),
@@ -272,12 +333,20 @@ impl Device {
     /// One layout over all stages, since they share their groups. wgpu numbers the bindings of a
     /// Vulkan layout without gaps and renumbers those of the shaders it translates itself; where
     /// SPIR-V passes through, bindings that nobody sees fill the gaps.
-    fn layout<'a>(&self, stages: impl Iterator<Item = &'a Reflection>, without_gaps: bool) -> Result<wgpu::PipelineLayout, String> {
+    fn layout<'a>(
+        &self,
+        stages: impl Iterator<Item = &'a Reflection>,
+        without_gaps: bool,
+    ) -> Result<wgpu::PipelineLayout, String> {
         let mut groups: BTreeMap<u32, BTreeMap<u32, wgpu::BindGroupLayoutEntry>> = BTreeMap::new();
         for reflection in stages {
             for binding in &reflection.bindings {
                 let entry = entry(binding, reflection)?;
-                let known = groups.entry(binding.group).or_default().entry(binding.binding).or_insert(entry);
+                let known = groups
+                    .entry(binding.group)
+                    .or_default()
+                    .entry(binding.binding)
+                    .or_insert(entry);
                 known.visibility |= entry.visibility;
                 if known.ty != entry.ty {
                     return Err(format!("the stages disagree about `{}`", binding.name));
@@ -288,15 +357,24 @@ impl Device {
             groups.values_mut().for_each(fill);
         }
         let last = groups.last_key_value().map_or(0, |(group, _)| group + 1);
-        let layouts: Vec<Option<wgpu::BindGroupLayout>> = (0..last).map(|group| Some(self.group(groups.get(&group)?))).collect();
-        let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(Option::as_ref).collect();
-        let descriptor = wgpu::PipelineLayoutDescriptor { label: None, bind_group_layouts: &layouts, immediate_size: 0 };
+        let layouts: Vec<Option<wgpu::BindGroupLayout>> =
+            (0..last).map(|group| Some(self.group(groups.get(&group)?))).collect();
+        let layouts: Vec<Option<&wgpu::BindGroupLayout>> =
+            layouts.iter().map(Option::as_ref).collect();
+        let descriptor = wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &layouts,
+            immediate_size: 0,
+        };
         Ok(self.device.create_pipeline_layout(&descriptor))
     }
 
     fn group(&self, entries: &BTreeMap<u32, wgpu::BindGroupLayoutEntry>) -> wgpu::BindGroupLayout {
         let entries: Vec<_> = entries.values().copied().collect();
-        self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+        self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &entries,
+        })
     }
 }
 
@@ -304,7 +382,12 @@ fn fill(group: &mut BTreeMap<u32, wgpu::BindGroupLayoutEntry>) {
     let last = group.last_key_value().map_or(0, |(binding, _)| *binding);
     for binding in 0..last {
         let ty = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let unseen = wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::NONE, ty, count: None };
+        let unseen = wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::NONE,
+            ty,
+            count: None,
+        };
         group.entry(binding).or_insert(unseen);
     }
 }
@@ -317,11 +400,15 @@ fn entry(binding: &Binding, reflection: &Reflection) -> Result<wgpu::BindGroupLa
             has_dynamic_offset: false,
             min_binding_size: binding.size.and_then(|size| NonZeroU64::new(size.into())),
         },
-        Kind::Sampler if filters_depth(place, reflection) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+        Kind::Sampler if filters_depth(place, reflection) => {
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering)
+        }
         Kind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         Kind::ComparisonSampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
         Kind::Texture => texture(binding)?,
-        Kind::Storage | Kind::StorageTexture => return Err(format!("`{}` is of a kind that the library has not", binding.name)),
+        Kind::Storage | Kind::StorageTexture => {
+            return Err(format!("`{}` is of a kind that the library has not", binding.name));
+        }
     };
     let visibility = match reflection.stage {
         Stage::Vertex => wgpu::ShaderStages::VERTEX,
@@ -334,7 +421,9 @@ fn entry(binding: &Binding, reflection: &Reflection) -> Result<wgpu::BindGroupLa
 /// Whether the sampler reads a depth texture without comparing: such a pair cannot filter.
 fn filters_depth(sampler: [u32; 2], reflection: &Reflection) -> bool {
     let is_depth = |place: [u32; 2]| {
-        reflection.bindings.iter().any(|binding| [binding.group, binding.binding] == place && binding.ty.starts_with("texture_depth"))
+        reflection.bindings.iter().any(|binding| {
+            [binding.group, binding.binding] == place && binding.ty.starts_with("texture_depth")
+        })
     };
     reflection.pairs.iter().any(|pair| pair.sampler == sampler && is_depth(pair.texture))
 }

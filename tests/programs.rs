@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use lamplight::bundle::{Reflection, Target, Varying};
-use lamplight::compose::{self, Composed, Keep, Language, Options};
+use lamplight::bundle::{Language, Reflection, Target, Varying};
+use lamplight::compose::{self, Composed, Keep, Options};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::emit::{emit, isolate, reflect};
@@ -26,7 +26,8 @@ const SHOWN: usize = 3;
 const BATCH: usize = 64;
 
 /// Stages, the entry point of each in WESL, and glslang's name of it.
-const STAGES: [(&str, &str, &str); 2] = [("vertex", "vs_main", "vert"), ("fragment", "fs_main", "frag")];
+const STAGES: [(&str, &str, &str); 2] =
+    [("vertex", "vs_main", "vert"), ("fragment", "fs_main", "frag")];
 
 /// Targets that external validators read.
 const GLSL_TARGETS: [Target; 3] = [Target::GLSL450, Target::GLSL330, Target::ESSL300];
@@ -38,14 +39,28 @@ pub fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
     for program in programs {
         for stage in STAGES.iter().filter(|(stage, ..)| has(&program, stage)) {
-            let (name, shipped, covered) = (format!("programs::{}::{}", program.name, stage.0), program.clone(), program.clone());
-            trials.push(Trial::test(format!("{name}::shipped"), move || every(&shipped, stage, &shipped.space.enumerate())));
-            trials.push(Trial::test(format!("{name}::pairs"), move || every(&covered, stage, &cover::pairwise(&covered.space).points)));
+            let (name, shipped, covered) = (
+                format!("programs::{}::{}", program.name, stage.0),
+                program.clone(),
+                program.clone(),
+            );
+            trials.push(Trial::test(format!("{name}::shipped"), move || {
+                every(&shipped, stage, &shipped.space.enumerate())
+            }));
+            trials.push(Trial::test(format!("{name}::pairs"), move || {
+                every(&covered, stage, &cover::pairwise(&covered.space).points)
+            }));
             let (sampled, whole) = (program.clone(), program.clone());
-            trials.push(Trial::test(format!("{name}::glslang"), move || glslang_takes_sources(&whole, stage)));
-            trials.push(Trial::test(format!("{name}::validators"), move || validators(&sampled, stage)));
+            trials.push(Trial::test(format!("{name}::glslang"), move || {
+                glslang_takes_sources(&whole, stage)
+            }));
+            trials.push(Trial::test(format!("{name}::validators"), move || {
+                validators(&sampled, stage)
+            }));
         }
-        trials.push(Trial::test(format!("programs::{}::distinct", program.name), move || distinct(&program)));
+        trials.push(Trial::test(format!("programs::{}::distinct", program.name), move || {
+            distinct(&program)
+        }));
     }
     trials
 }
@@ -54,7 +69,9 @@ fn programs() -> Result<Vec<Program>, Failed> {
     let mut sources = SourceSet::default();
     let text = Embedded.read("lamplight.toml").ok().flatten().ok_or("no manifest")?;
     let id = sources.add("lamplight.toml", text);
-    Ok(manifest::parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human))?.programs)
+    Ok(manifest::parse(&sources, id)
+        .map_err(|problems| render(&sources, &problems, Form::Human))?
+        .programs)
 }
 
 fn has(program: &Program, stage: &str) -> bool {
@@ -75,8 +92,14 @@ struct Sources {
 }
 
 impl Sources {
-    fn new(program: &Program, (stage, entry, _): &(&'static str, &'static str, &'static str)) -> Result<Self, Failed> {
-        let packages = Packages { root: Package { name: "lamplight".to_owned(), files: Box::new(Embedded) }, dependencies: Vec::new() };
+    fn new(
+        program: &Program,
+        (stage, entry, _): &(&'static str, &'static str, &'static str),
+    ) -> Result<Self, Failed> {
+        let packages = Packages {
+            root: Package { name: "lamplight".to_owned(), files: Box::new(Embedded) },
+            dependencies: Vec::new(),
+        };
         let mut texts = SourceSet::default();
         let root = &program.wesl.as_ref().ok_or("no WESL")?.path;
         let wesl = resolve::wesl::load(&mut texts, &packages, root);
@@ -89,10 +112,19 @@ impl Sources {
 
     /// Name of the entry point, and the composer.
     fn languages(&self) -> [(&'static str, Box<Composer<'_>>); 2] {
-        let options = Options { keep: Keep::Items(vec![self.entry.to_owned()]), ..Options::default() };
+        let options =
+            Options { keep: Keep::Items(vec![self.entry.to_owned()]), ..Options::default() };
         [
-            (self.entry, Box::new(move |settings| compose::wesl::compose(&self.wesl, settings, &options))),
-            ("main", Box::new(|settings| compose::glsl::compose(&self.glsl, settings, &Options::default()))),
+            (
+                self.entry,
+                Box::new(move |settings| compose::wesl::compose(&self.wesl, settings, &options)),
+            ),
+            (
+                "main",
+                Box::new(|settings| {
+                    compose::glsl::compose(&self.glsl, settings, &Options::default())
+                }),
+            ),
         ]
     }
 }
@@ -105,19 +137,27 @@ struct Texts {
     of: Vec<usize>,
 }
 
-fn texts(program: &Program, sources: &SourceSet, points: &[Assignment], compose: &Composer<'_>) -> Result<Texts, Failed> {
-    let (mut known, mut tree, mut found) = (BTreeMap::new(), ReadTree::default(), Texts { composed: Vec::new(), of: Vec::new() });
+fn texts(
+    program: &Program,
+    sources: &SourceSet,
+    points: &[Assignment],
+    compose: &Composer<'_>,
+) -> Result<Texts, Failed> {
+    let (mut known, mut tree, mut found) =
+        (BTreeMap::new(), ReadTree::default(), Texts { composed: Vec::new(), of: Vec::new() });
     for point in points {
         let settings = program.space.settings(point);
         if let Some(&index) = tree.get(&settings) {
             found.of.push(index);
             continue;
         }
-        let composed =
-            compose(&settings).map_err(|problems| format!("{}\n{}", program.space.key(point), render(sources, &problems, Form::Human)))?;
+        let composed = compose(&settings).map_err(|problems| {
+            format!("{}\n{}", program.space.key(point), render(sources, &problems, Form::Human))
+        })?;
         let next = found.composed.len();
         let index = *known.entry(composed.text.clone()).or_insert(next);
-        tree.insert(&composed.reads, index).map_err(|_| "the composer's reads contradict each other")?;
+        tree.insert(&composed.reads, index)
+            .map_err(|_| "the composer's reads contradict each other")?;
         found.of.push(index);
         if index == next {
             found.composed.push((composed, point.clone()));
@@ -127,20 +167,31 @@ fn texts(program: &Program, sources: &SourceSet, points: &[Assignment], compose:
 }
 
 /// Composes, validates and writes every point in both languages, and compares the interfaces.
-fn every(program: &Program, stage: &(&'static str, &'static str, &'static str), points: &[Assignment]) -> Result<(), Failed> {
+fn every(
+    program: &Program,
+    stage: &(&'static str, &'static str, &'static str),
+    points: &[Assignment],
+) -> Result<(), Failed> {
     let sources = Sources::new(program, stage)?;
     let mut interfaces = Vec::new();
     for (entry, compose) in sources.languages() {
         let texts = texts(program, &sources.texts, points, &*compose)?;
-        let write = |(composed, _): &(Composed, Assignment)| written(program, &sources.texts, composed, entry);
-        let results: Vec<Result<Reflection, String>> = on_large_stack(|| texts.composed.par_iter().map(write).collect());
-        let failures = results.iter().zip(&texts.composed).filter_map(|(result, (_, point))| Some((point, result.as_ref().err()?)));
+        let write = |(composed, _): &(Composed, Assignment)| {
+            written(program, &sources.texts, composed, entry)
+        };
+        let results: Vec<Result<Reflection, String>> =
+            on_large_stack(|| texts.composed.par_iter().map(write).collect());
+        let failures = results
+            .iter()
+            .zip(&texts.composed)
+            .filter_map(|(result, (_, point))| Some((point, result.as_ref().err()?)));
         report(program, failures.map(|(point, error)| (point, error.clone())).collect())?;
         let interface = |index: &usize| results[*index].as_ref().ok().cloned();
         interfaces.push(texts.of.iter().map(interface).collect::<Vec<_>>());
     }
-    let differences =
-        (0..points.len()).filter_map(|index| Some((&points[index], difference(&interfaces[0][index], &interfaces[1][index])?)));
+    let differences = (0..points.len()).filter_map(|index| {
+        Some((&points[index], difference(&interfaces[0][index], &interfaces[1][index])?))
+    });
     report(program, differences.collect())
 }
 
@@ -148,11 +199,19 @@ fn report(program: &Program, failures: Vec<(&Assignment, String)>) -> Result<(),
     if failures.is_empty() {
         return Ok(());
     }
-    let shown = failures.iter().take(SHOWN).map(|(point, what)| format!("[{}]\n{what}\n", program.space.key(point)));
+    let shown = failures
+        .iter()
+        .take(SHOWN)
+        .map(|(point, what)| format!("[{}]\n{what}\n", program.space.key(point)));
     Err(format!("{} failures\n{}", failures.len(), shown.collect::<String>()).into())
 }
 
-fn written(program: &Program, sources: &SourceSet, composed: &Composed, entry: &str) -> Result<Reflection, String> {
+fn written(
+    program: &Program,
+    sources: &SourceSet,
+    composed: &Composed,
+    entry: &str,
+) -> Result<Reflection, String> {
     let explain = |problems: Diagnostics| render(sources, &problems, Form::Human);
     let alone = alone(composed, entry).map_err(explain)?;
     for target in &program.targets {
@@ -169,61 +228,97 @@ fn alone(composed: &Composed, entry: &str) -> Result<Validated, Diagnostics> {
 /// be all of the vertex stage's outputs: GLSL declares only those that are used.
 fn difference(wesl: &Option<Reflection>, glsl: &Option<Reflection>) -> Option<String> {
     let (wesl, glsl) = (wesl.as_ref()?, glsl.as_ref()?);
-    let lacks = |whole: &[Varying], part: &[Varying]| places(part).difference(&places(whole)).next().cloned();
+    let lacks = |whole: &[Varying], part: &[Varying]| {
+        places(part).difference(&places(whole)).next().cloned()
+    };
     if wesl.bindings != glsl.bindings {
         return Some(format!("bindings\n{:#?}\n{:#?}", wesl.bindings, glsl.bindings));
     }
     if wesl.pairs != glsl.pairs {
         return Some(format!("pairs\n{:?}\n{:?}", wesl.pairs, glsl.pairs));
     }
-    let outputs = lacks(&wesl.outputs, &glsl.outputs).or_else(|| lacks(&glsl.outputs, &wesl.outputs));
-    outputs.or_else(|| lacks(&wesl.inputs, &glsl.inputs)).map(|place| format!("only one language has {place}"))
+    let outputs =
+        lacks(&wesl.outputs, &glsl.outputs).or_else(|| lacks(&glsl.outputs, &wesl.outputs));
+    outputs
+        .or_else(|| lacks(&wesl.inputs, &glsl.inputs))
+        .map(|place| format!("only one language has {place}"))
 }
 
 fn places(varyings: &[Varying]) -> BTreeSet<String> {
-    varyings.iter().map(|found| format!("{:?} {:?} {} {:?}", found.location, found.builtin, found.ty, found.interpolation)).collect()
+    varyings
+        .iter()
+        .map(|found| {
+            format!(
+                "{:?} {:?} {} {:?}",
+                found.location, found.builtin, found.ty, found.interpolation
+            )
+        })
+        .collect()
 }
 
 /// No two permutations of a program are the same text in all stages.
 fn distinct(program: &Program) -> Result<(), Failed> {
     let points = program.space.enumerate();
     let mut alike: [BTreeMap<Vec<usize>, Vec<&Assignment>>; 2] = Default::default();
-    let mut stages: [Vec<Vec<usize>>; 2] = [vec![Vec::new(); points.len()], vec![Vec::new(); points.len()]];
+    let mut stages: [Vec<Vec<usize>>; 2] =
+        [vec![Vec::new(); points.len()], vec![Vec::new(); points.len()]];
     for stage in STAGES.iter().filter(|(stage, ..)| has(program, stage)) {
         let sources = Sources::new(program, stage)?;
         for (language, (_, compose)) in sources.languages().into_iter().enumerate() {
             let texts = texts(program, &sources.texts, &points, &*compose)?;
-            stages[language].iter_mut().zip(texts.of).for_each(|(stages, index)| stages.push(index));
+            stages[language]
+                .iter_mut()
+                .zip(texts.of)
+                .for_each(|(stages, index)| stages.push(index));
         }
     }
     for (language, stages) in stages.into_iter().enumerate() {
-        stages.into_iter().zip(&points).for_each(|(stages, point)| alike[language].entry(stages).or_default().push(point));
+        stages
+            .into_iter()
+            .zip(&points)
+            .for_each(|(stages, point)| alike[language].entry(stages).or_default().push(point));
     }
     let twins = alike.iter().flat_map(|alike| alike.values()).filter(|points| points.len() > 1);
-    report(program, twins.map(|points| (points[0], format!("is the same as [{}]", program.space.key(points[1])))).collect())
+    report(
+        program,
+        twins
+            .map(|points| (points[0], format!("is the same as [{}]", program.space.key(points[1]))))
+            .collect(),
+    )
 }
 
 /// glslangValidator compiles the GLSL of every permutation that ships, as composed, for Vulkan.
-fn glslang_takes_sources(program: &Program, stage: &(&'static str, &'static str, &'static str)) -> Result<(), Failed> {
+fn glslang_takes_sources(
+    program: &Program,
+    stage: &(&'static str, &'static str, &'static str),
+) -> Result<(), Failed> {
     let sources = Sources::new(program, stage)?;
     let folder = tempfile::tempdir()?;
     let [_, (_, compose)] = sources.languages();
     let texts = texts(program, &sources.texts, &program.space.enumerate(), &*compose)?;
     let mut files = Vec::new();
     for (index, (composed, point)) in texts.composed.iter().enumerate() {
-        let path = folder.path().join(format!("{index}.{}", stage.2)).to_string_lossy().into_owned();
+        let path =
+            folder.path().join(format!("{index}.{}", stage.2)).to_string_lossy().into_owned();
         std::fs::write(&path, &composed.text)?;
         files.push((path, point));
     }
     let refused = |batch: &[(String, &Assignment)]| -> Vec<(Assignment, String)> {
         // Files of one call are linked with each other, which fails with status 3 where all compile.
         let paths = batch.iter().map(|(path, _)| path);
-        let status = Command::new("glslangValidator").args(["--client", "vulkan100"]).args(paths).stdout(Stdio::null()).status();
+        let status = Command::new("glslangValidator")
+            // It writes what it compiled into the folder it is in.
+            .current_dir(folder.path())
+            .args(["--client", "vulkan100"])
+            .args(paths)
+            .stdout(Stdio::null())
+            .status();
         if batch.len() > 1 && status.is_ok_and(|status| status.code() == Some(3)) {
             return Vec::new();
         }
-        let alone =
-            |(path, point): &(String, &Assignment)| Some(((*point).clone(), run("glslangValidator", &[VULKAN, &[path]].concat()).err()?));
+        let alone = |(path, point): &(String, &Assignment)| {
+            Some(((*point).clone(), run("glslangValidator", &[VULKAN, &[path]].concat()).err()?))
+        };
         batch.iter().filter_map(alone).collect()
     };
     let failures: Vec<_> = files.par_chunks(BATCH).flat_map_iter(refused).collect();
@@ -235,22 +330,32 @@ const VULKAN: &[&str] = &["-V", "-o", "/dev/null"];
 
 /// Runs the outputs of the covering set through spirv-val and glslangValidator, and the GLSL that
 /// they were made from.
-fn validators(program: &Program, stage: &(&'static str, &'static str, &'static str)) -> Result<(), Failed> {
+fn validators(
+    program: &Program,
+    stage: &(&'static str, &'static str, &'static str),
+) -> Result<(), Failed> {
     let sources = Sources::new(program, stage)?;
     let folder = tempfile::tempdir()?;
     for (entry, compose) in sources.languages() {
-        let texts = texts(program, &sources.texts, &cover::pairwise(&program.space).points, &*compose)?;
+        let texts =
+            texts(program, &sources.texts, &cover::pairwise(&program.space).points, &*compose)?;
         let refused = |(index, (composed, point)): (usize, &'_ (Composed, Assignment))| {
             let prefix = folder.path().join(format!("{entry}{index}"));
             Some((point.clone(), accepted(composed, entry, stage.2, &prefix).err()?))
         };
-        let failures: Vec<_> = on_large_stack(|| texts.composed.par_iter().enumerate().filter_map(refused).collect());
+        let failures: Vec<_> =
+            on_large_stack(|| texts.composed.par_iter().enumerate().filter_map(refused).collect());
         report(program, failures.iter().map(|(point, what)| (point, what.clone())).collect())?;
     }
     Ok(())
 }
 
-fn accepted(composed: &Composed, entry: &str, extension: &str, prefix: &Path) -> Result<(), String> {
+fn accepted(
+    composed: &Composed,
+    entry: &str,
+    extension: &str,
+    prefix: &Path,
+) -> Result<(), String> {
     let alone = alone(composed, entry).map_err(|problems| problems[0].message.clone())?;
     let write = |target: Target, extension: &str| -> Result<String, String> {
         let path = prefix.with_extension(format!("{target}.{extension}"));
@@ -263,11 +368,15 @@ fn accepted(composed: &Composed, entry: &str, extension: &str, prefix: &Path) ->
         run("glslangValidator", &["-S", extension, &write(target, extension)?])?;
     }
     // What is written for ES 3.00 is for every later ES: one that only 3.00 takes would be a trap.
-    let es_300 = std::fs::read_to_string(write(Target::ESSL300, extension)?).map_err(|error| error.to_string())?;
+    let es_300 = std::fs::read_to_string(write(Target::ESSL300, extension)?)
+        .map_err(|error| error.to_string())?;
     let es_310 = es_300.replacen("#version 300 es", "#version 310 es", 1);
     run("glslangValidator", &[&save(&es_310, prefix, "es310", extension)?])?;
     if composed.language == Language::Glsl {
-        run("glslangValidator", &[VULKAN, &[&save(&composed.text, prefix, "source", extension)?]].concat())?;
+        run(
+            "glslangValidator",
+            &[VULKAN, &[&save(&composed.text, prefix, "source", extension)?]].concat(),
+        )?;
     }
     Ok(())
 }
@@ -279,7 +388,15 @@ fn save(text: &str, prefix: &Path, name: &str, extension: &str) -> Result<String
 }
 
 fn run(tool: &str, arguments: &[&str]) -> Result<(), String> {
-    let output = Command::new(tool).args(arguments).stdin(Stdio::null()).output().map_err(|error| format!("{tool}: {error}"))?;
+    let output = Command::new(tool)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| format!("{tool}: {error}"))?;
     let said = [output.stdout, output.stderr].concat();
-    if output.status.success() { Ok(()) } else { Err(format!("{tool}: {}", String::from_utf8_lossy(&said))) }
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(format!("{tool}: {}", String::from_utf8_lossy(&said)))
+    }
 }

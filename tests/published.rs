@@ -12,9 +12,19 @@ use crate::examples::run;
 /// The safe form and its value, the published form and its value.
 const FORMS: &[(&str, f64, &str, f64)] = &[
     // The caller must double the number of the pair; with the plain number the back of one is the front of the next.
-    ("lighting::material::material_index(1, false)", 3.0, "lighting::material::material_index_oglpg(1, false)", 2.0),
+    (
+        "lighting::material::material_index(1, false)",
+        3.0,
+        "lighting::material::material_index_oglpg(1, false)",
+        2.0,
+    ),
     // The edge of the cone.
-    ("lighting::spot::cone_hard(0.5, 0.5)", 1.0, "lighting::spot::cone_hard_exclusive(0.5, 0.5)", 0.0),
+    (
+        "lighting::spot::cone_hard(0.5, 0.5)",
+        1.0,
+        "lighting::spot::cone_hard_exclusive(0.5, 0.5)",
+        0.0,
+    ),
     // A light behind the surface has a highlight.
     (
         "brdf::specular::blinn_phong(vec3f(0, 0, 1), vec3f(0.8, 0, -0.6), vec3f(0, 0, 1), 2)",
@@ -57,18 +67,35 @@ const FORMS: &[(&str, f64, &str, f64)] = &[
         0.5,
     ),
     // A brightness that is not linear in the distance.
-    ("shadow::coord::linearize_depth(0.995, 0.1, 100) / 100", 0.166_805_67, "shadow::coord::depth_view_igl(0.995)", 0.5),
+    (
+        "shadow::coord::linearize_depth(0.995, 0.1, 100) / 100",
+        0.166_805_67,
+        "shadow::coord::depth_view_igl(0.995)",
+        0.5,
+    ),
 ];
 
 pub fn trials() -> Vec<Trial> {
-    ["wesl", "glsl"].into_iter().map(|language| Trial::test(format!("published::{language}"), move || forms_differ(language))).collect()
+    ["wesl", "glsl"]
+        .into_iter()
+        .map(|language| {
+            Trial::test(format!("published::{language}"), move || forms_differ(language))
+        })
+        .collect()
 }
 
 fn forms_differ(language: &str) -> Result<(), Failed> {
     let expressions = FORMS.iter().flat_map(|(safe, _, published, _)| [safe, published]);
-    let printed = run(Command::new(env!("CARGO_BIN_EXE_lamplight")).args(["eval", "--lang", language]).args(expressions))?;
-    let values = printed.lines().map(str::parse).collect::<Result<Vec<f64>, _>>().map_err(|error| format!("{error}:\n{printed}"))?;
-    let expected: Vec<f64> = FORMS.iter().flat_map(|(_, safe, _, published)| [*safe, *published]).collect();
+    let printed = run(Command::new(env!("CARGO_BIN_EXE_lamplight"))
+        .args(["eval", "--lang", language])
+        .args(expressions))?;
+    let values = printed
+        .lines()
+        .map(str::parse)
+        .collect::<Result<Vec<f64>, _>>()
+        .map_err(|error| format!("{error}:\n{printed}"))?;
+    let expected: Vec<f64> =
+        FORMS.iter().flat_map(|(_, safe, _, published)| [*safe, *published]).collect();
     let near = |(found, expected): (&f64, &f64)| (found - expected).abs() < 5e-6;
     if values.len() == expected.len() && values.iter().zip(&expected).all(near) {
         return Ok(());

@@ -14,15 +14,22 @@ use libtest_mimic::{Failed, Trial};
 const LONGEST: Duration = Duration::from_secs(10);
 
 pub fn trials() -> Vec<Trial> {
-    let seeds = KINDS.iter().map(|kind| Trial::test(format!("regressions::{}", kind.name), || seeded(kind)));
-    seeds.chain(KINDS.iter().flat_map(|kind| files(kind).into_iter().map(|file| trial(kind, file)))).collect()
+    let seeds = KINDS
+        .iter()
+        .map(|kind| Trial::test(format!("regressions::{}", kind.name), || seeded(kind)));
+    seeds
+        .chain(KINDS.iter().flat_map(|kind| files(kind).into_iter().map(|file| trial(kind, file))))
+        .collect()
 }
 
 /// A kind without valid inputs to start from would be fuzzed in vain.
 fn seeded(kind: &Kind) -> Result<(), Failed> {
-    let is_there = |(folder, _): &&(&str, &str)| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).is_dir();
+    let is_there =
+        |(folder, _): &&(&str, &str)| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).is_dir();
     match kind.corpus.iter().find(|folder| !is_there(folder)) {
-        Some((folder, ending)) => Err(format!("no folder {folder} with files of `{ending}`").into()),
+        Some((folder, ending)) => {
+            Err(format!("no folder {folder} with files of `{ending}`").into())
+        }
         None if kind.words.is_empty() && kind.name != "bundle" => Err("no words".into()),
         None => Ok(()),
     }
@@ -30,7 +37,12 @@ fn seeded(kind: &Kind) -> Result<(), Failed> {
 
 fn files(kind: &Kind) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/regressions").join(kind.name);
-    let mut found: Vec<PathBuf> = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path())
+        .collect();
     found.sort();
     found
 }

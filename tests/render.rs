@@ -5,20 +5,22 @@ mod closed_forms;
 mod command;
 mod difference;
 mod frames;
+mod needs;
 mod pages;
 mod shadows;
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+use lamplight::bundle::Language;
 use lamplight::catalogue::preset::{self, Preset};
 use lamplight::catalogue::probe::{self, Probe};
-use lamplight::compose::Language;
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::harness::frame::{Buffers, Painter, Programs, Stage, probe as watch};
-use lamplight::harness::on_thread;
-use lamplight::harness::render::{Picture, Plan, Prepared, Shot, Surroundings, open, prepare};
+use lamplight::execute::frame::{Buffers, EntryPoint};
+use lamplight::execute::{Session, executors, on_thread};
+use lamplight::picture::frame::{Programs, probe as watch};
+use lamplight::picture::{Picture, Plan, Prepared, Shot, Surroundings, prepare};
 use lamplight::scene::environment;
 use libtest_mimic::{Failed, Trial};
 
@@ -56,7 +58,12 @@ pub fn trials() -> Vec<Trial> {
             })
         })
     });
-    presets.chain(forms).chain(pages::trials()).chain(command::trials()).collect()
+    presets
+        .chain(forms)
+        .chain(pages::trials())
+        .chain(command::trials())
+        .chain(needs::trials())
+        .collect()
 }
 
 /// The library's programs and presets, read once.
@@ -69,21 +76,40 @@ pub struct Library {
 pub fn library() -> &'static Library {
     static LIBRARY: OnceLock<Library> = OnceLock::new();
     LIBRARY.get_or_init(|| {
-        let programs = Programs::load().map_err(|(texts, problems)| render(&texts, &problems, Form::Human)).unwrap();
+        let programs = Programs::load()
+            .map_err(|(texts, problems)| render(&texts, &problems, Form::Human))
+            .unwrap();
         let probes = programs.with_texts(probe::library).unwrap();
-        let presets = programs.with_texts(|texts| preset::library(texts, programs.manifest(), &probes)).unwrap();
+        let presets = programs
+            .with_texts(|texts| preset::library(texts, programs.manifest(), &probes))
+            .unwrap();
         Library { programs, presets, probes }
     })
 }
 
 /// Runs a trial with a painter, on a thread that drivers can be torn down on.
-pub fn on_device(name: &str, run: impl FnOnce(&dyn Painter) -> Result<(), String> + Send) -> Result<(), Failed> {
-    let outcome = on_thread(|| run(open(name)?.as_ref()));
+pub fn on_device(
+    name: &str,
+    run: impl FnOnce(&dyn Session) -> Result<(), String> + Send,
+) -> Result<(), Failed> {
+    let outcome = on_thread(|| run(start(name)?.as_ref()));
     outcome.ok_or("panicked")?.map_err(Failed::from)
 }
 
+/// Opens an executor by name.
+pub fn start(name: &str) -> Result<Box<dyn Session>, String> {
+    executors::find(name).ok_or("no such executor")?.start()
+}
+
 pub fn shot(size: [u32; 2], samples: u32, language: Language) -> Shot {
-    Shot { size, samples, exposure: 0.0, cascades: 1, language, surroundings: Surroundings::Formula(environment("studio").unwrap()) }
+    Shot {
+        size,
+        samples,
+        exposure: 0.0,
+        cascades: 1,
+        language,
+        surroundings: Surroundings::Formula(environment("studio").unwrap()),
+    }
 }
 
 pub fn said(problems: Diagnostics) -> String {
@@ -95,10 +121,16 @@ pub fn plan(preset: &Preset) -> Result<Plan, String> {
 }
 
 /// A preset looks as it did when it was reviewed, and its fragments are what the evaluator computes.
-fn shown(painter: &dyn Painter, preset: &Preset, language: Language, backend: &str) -> Result<(), String> {
+fn shown(
+    painter: &dyn Session,
+    preset: &Preset,
+    language: Language,
+    backend: &str,
+) -> Result<(), String> {
     let plan = plan(preset)?;
     let shot = shot(SIZE, SAMPLES, language);
-    let picture = lamplight::harness::render::render(painter, &library().programs, &plan, &shot).map_err(said)?;
+    let picture =
+        lamplight::picture::render(painter, &library().programs, &plan, &shot).map_err(said)?;
     difference::reviewed(&picture, &preset.name, backend)?;
     let tally = recomputed(painter, &plan, language)?;
     println!("{} on {backend}: {tally}", preset.name);
@@ -106,7 +138,7 @@ fn shown(painter: &dyn Painter, preset: &Preset, language: Language, backend: &s
 }
 
 /// Sampled fragments of those objects that share a material with the first.
-fn recomputed(painter: &dyn Painter, plan: &Plan, language: Language) -> Result<Tally, String> {
+fn recomputed(painter: &dyn Session, plan: &Plan, language: Language) -> Result<Tally, String> {
     let small = shot(SMALL, 1, language);
     let mut prepared = prepare(painter, &library().programs, plan, &small).map_err(said)?;
     // How far between two levels a texture is read, drivers decide as they like.
@@ -118,7 +150,8 @@ fn recomputed(painter: &dyn Painter, plan: &Plan, language: Language) -> Result<
     let frame = watched(painter, &prepared, SMALL)?;
     let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
     let mut buffers = prepared.buffers.clone();
-    buffers.extend(prepared.eye_view([0.0; 2], SMALL));
+    let view = prepared.eye_view([0.0; 2], SMALL).map_err(|problem| problem.message)?;
+    buffers.extend(view);
     buffers.extend(first);
     let resources = fragments::resources(buffers, &prepared.fixtures, &prepared.levels);
     let mut tally = Tally::default();
@@ -127,7 +160,9 @@ fn recomputed(painter: &dyn Painter, plan: &Plan, language: Language) -> Result<
     fragments::recompute(stage, resources, &watched, step, &mut tally)?;
     match tally {
         Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
-        Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => Err(format!("{open} of {tried} fragments are open")),
+        Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => {
+            Err(format!("{open} of {tried} fragments are open"))
+        }
         tally => Ok(tally),
     }
 }
@@ -136,17 +171,28 @@ fn recomputed(painter: &dyn Painter, plan: &Plan, language: Language) -> Result<
 fn fragment_buffers(prepared: &Prepared) -> Vec<Buffers> {
     let bindings = prepared.stages.fragment.iter().flat_map(|stage| &stage.reflection.bindings);
     let used: Vec<_> = bindings.map(|binding| (binding.group, binding.binding)).collect();
-    let of = |buffers: &Buffers| buffers.iter().filter(|(place, _)| used.contains(place)).map(|(p, b)| (*p, b.clone())).collect();
+    let of = |buffers: &Buffers| {
+        buffers
+            .iter()
+            .filter(|(place, _)| used.contains(place))
+            .map(|(p, b)| (*p, b.clone()))
+            .collect()
+    };
     prepared.items.iter().map(|(_, buffers)| of(buffers)).collect()
 }
 
 /// The targets of one frame: colours, and what each fragment was given.
-pub fn watched(painter: &dyn Painter, prepared: &Prepared, size: [u32; 2]) -> Result<Vec<Vec<u32>>, String> {
+pub fn watched(
+    painter: &dyn Session,
+    prepared: &Prepared,
+    size: [u32; 2],
+) -> Result<Vec<Vec<u32>>, String> {
     let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
     let watched = watch::watched(&stage.validated.module, stage.entry).ok_or("no colour")?;
-    let views = [prepared.eye_view([0.0; 2], size)];
-    let fragment = Stage { module: &watched.module, entry: stage.entry };
-    let frames = prepared.draw(painter, &views, size, Some((fragment, watched.targets))).map_err(said)?;
+    let views = [prepared.eye_view([0.0; 2], size).map_err(|problem| problem.message)?];
+    let fragment = EntryPoint { module: &watched.module, entry: stage.entry };
+    let frames =
+        prepared.draw(painter, &views, size, Some((fragment, watched.targets))).map_err(said)?;
     Ok(frames.into_iter().next().ok_or("no frame")?.targets)
 }
 

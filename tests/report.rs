@@ -65,7 +65,10 @@ impl Checked {
         let folder = TempDir::new()?;
         fs::write(folder.path().join("fades & more.wesl"), module)?;
         fs::write(folder.path().join("fades & more.toml"), cases)?;
-        let output = Command::new(env!("CARGO_BIN_EXE_lamplight")).args(["check", ".", "--report", "out"]).current_dir(&folder).output()?;
+        let output = Command::new(env!("CARGO_BIN_EXE_lamplight"))
+            .args(["check", ".", "--report", "out"])
+            .current_dir(&folder)
+            .output()?;
         Ok(Self { folder, output })
     }
 
@@ -78,7 +81,11 @@ impl Checked {
     }
 
     fn exits(&self, code: i32) -> Outcome {
-        if self.output.status.code() == Some(code) { Ok(()) } else { Err(format!("{}: {}", self.output.status, self.errors()).into()) }
+        if self.output.status.code() == Some(code) {
+            Ok(())
+        } else {
+            Err(format!("{}: {}", self.output.status, self.errors()).into())
+        }
     }
 }
 
@@ -89,22 +96,52 @@ fn forms_list_the_failure() -> Outcome {
     let xml = checked.read("junit.xml")?;
     well_formed(&xml, &[])?;
     // The run in f32, and the code in f64.
-    contains(&xml, &["<testsuites name=\"lamplight\" tests=\"4\" failures=\"2\">", "classname=\"fades &amp; more\"", "<failure message="])?;
+    contains(
+        &xml,
+        &[
+            "<testsuites name=\"lamplight\" tests=\"4\" failures=\"2\">",
+            "classname=\"fades &amp; more\"",
+            "<failure message=",
+        ],
+    )?;
     let page = checked.read("index.html")?;
     well_formed(page.strip_prefix("<!doctype html>").ok_or("no document type")?, &["meta"])?;
-    contains(&page, &["<section id=\"fades &amp; more::fade\">", "not all hold", "function = &quot;fade&quot;", "<svg", "worst inputs"])
+    contains(
+        &page,
+        &[
+            "<section id=\"fades &amp; more::fade\">",
+            "not all hold",
+            "function = &quot;fade&quot;",
+            "<svg",
+            "worst inputs",
+        ],
+    )
 }
 
 fn json_lists(text: &str) -> Outcome {
     let report: Value = serde_json::from_str(text)?;
     let outcomes = report["outcomes"].as_array().ok_or("no outcomes")?;
-    let of = |function: &str| outcomes.iter().find(|outcome| outcome["function"] == function).ok_or_else(|| format!("no `{function}`"));
+    let of = |function: &str| {
+        outcomes
+            .iter()
+            .find(|outcome| outcome["function"] == function)
+            .ok_or_else(|| format!("no `{function}`"))
+    };
     let (fade, threshold) = (of("fade")?, of("threshold")?);
-    assert_eq!((&report["passed"], &fade["passed"], &threshold["passed"]), (&Value::Bool(false), &Value::Bool(false), &Value::Bool(true)));
+    assert_eq!(
+        (&report["passed"], &fade["passed"], &threshold["passed"]),
+        (&Value::Bool(false), &Value::Bool(false), &Value::Bool(true))
+    );
     let verdict = &fade["verdict"];
     assert_eq!(verdict["inputs"], 600);
-    let (failing, smallest) = (verdict["failing"].as_u64().unwrap_or(0), verdict["smallest"].as_str().unwrap_or_default());
-    if failing < 100 || !smallest.contains("[[case]]") || verdict["worst_inputs"].as_array().is_none_or(Vec::is_empty) {
+    let (failing, smallest) = (
+        verdict["failing"].as_u64().unwrap_or(0),
+        verdict["smallest"].as_str().unwrap_or_default(),
+    );
+    if failing < 100
+        || !smallest.contains("[[case]]")
+        || verdict["worst_inputs"].as_array().is_none_or(Vec::is_empty)
+    {
         return Err(format!("{verdict:#}").into());
     }
     Ok(())
@@ -117,10 +154,15 @@ fn pasted_case_fails_alike() -> Outcome {
     let start = errors.find("[[case]]").ok_or_else(|| format!("nothing to paste in\n{errors}"))?;
     let pasted = errors[start..].split("\n\n").next().unwrap_or_default();
     contains(pasted, &["function = \"fade\"", "# d = 0x", "expect = [0.0]"])?;
-    let found = |text: &str| text.lines().find(|line| line.trim().starts_with("found ")).map(str::to_owned);
+    let found =
+        |text: &str| text.lines().find(|line| line.trim().starts_with("found ")).map(str::to_owned);
     let again = Checked::new(MODULE, pasted)?;
     again.exits(3)?;
-    if found(&again.errors()) == found(&errors) { Ok(()) } else { Err(format!("{errors}\nagain:\n{}", again.errors()).into()) }
+    if found(&again.errors()) == found(&errors) {
+        Ok(())
+    } else {
+        Err(format!("{errors}\nagain:\n{}", again.errors()).into())
+    }
 }
 
 /// Each law with one that is broken; whether one input breaks it, which is then shrunk.
@@ -132,14 +174,24 @@ const BROKEN: &[(&str, &str, &str, bool)] = &[
     ("threshold", "{ even = \"x\" }", "{ x = [0, 0.75] }", true),
     ("fade", "{ swap = [\"d\", \"reach\"] }", "{ d = [1, 3], reach = [1, 2] }", true),
     ("fade", "{ reaches = [0, 2] }", "{ d = 1, reach = [1, 2] }", false),
-    ("lobe", "{ integral = \"l\", about = \"n\", gives = 3.1, within = 0.01 }", "{ n = { unit = 4 }, l = { same = \"n\" } }", false),
+    (
+        "lobe",
+        "{ integral = \"l\", about = \"n\", gives = 3.1, within = 0.01 }",
+        "{ n = { unit = 4 }, l = { same = \"n\" } }",
+        false,
+    ),
     (
         "lobe",
         "{ integral = \"l\", about = \"n\", cosine = true, at_most = 2, within = 0.01 }",
         "{ n = { unit = 4 }, l = { same = \"n\" } }",
         false,
     ),
-    ("lobe", "{ integral = \"l\", about = \"n\", gives = 0, within = 9 }", "{ n = [[[0, 0, 0]]], l = { unit = 9 } }", false),
+    (
+        "lobe",
+        "{ integral = \"l\", about = \"n\", gives = 0, within = 9 }",
+        "{ n = [[[0, 0, 0]]], l = { unit = 9 } }",
+        false,
+    ),
 ];
 
 /// Laws that do not hold are told, with a small input that breaks them where one does, as a case.
@@ -147,14 +199,17 @@ fn broken_laws() -> Outcome {
     for (function, law, inputs, is_of_one_input) in BROKEN {
         let name = law.trim_start_matches("{ ").split(' ').next().unwrap_or_default();
         let said = format!("the law `{name}` is broken");
-        let case = format!("[[case]]\nfunction = \"{function}\"\noracle = \"none\"\nlaws = [{law}]\ninputs = {inputs}\n");
+        let case = format!(
+            "[[case]]\nfunction = \"{function}\"\noracle = \"none\"\nlaws = [{law}]\ninputs = {inputs}\n"
+        );
         let checked = Checked::new(MODULE, &case)?;
         checked.exits(3)?;
         let errors = checked.errors();
         contains(&errors, &[&said])?;
         match errors.find("[[case]]") {
             Some(start) if *is_of_one_input => {
-                let again = Checked::new(MODULE, errors[start..].split("\n\n").next().unwrap_or_default())?;
+                let again =
+                    Checked::new(MODULE, errors[start..].split("\n\n").next().unwrap_or_default())?;
                 again.exits(3)?;
                 contains(&again.errors(), &[&said])?;
             }
@@ -169,7 +224,10 @@ fn broken_laws() -> Outcome {
 fn kept_laws() -> Outcome {
     let laws = [
         ("lobe", "{ integral = \"l\", about = \"n\", gives = 3.141592653589793, within = 1e-6 }"),
-        ("lobe", "{ integral = \"l\", about = \"n\", cosine = true, at_most = 2.0944, within = 1e-4 }"),
+        (
+            "lobe",
+            "{ integral = \"l\", about = \"n\", cosine = true, at_most = 2.0944, within = 1e-4 }",
+        ),
         ("lobe", "{ integral = \"l\", steps = 64, gives = 3.141592653589793, within = 1e-2 }"),
         ("lobe", "{ continuous = \"l\", slope = 1.01 }"),
     ];
@@ -188,7 +246,10 @@ fn off_before_rounding() -> Outcome {
     let cases = "[[case]]\nfunction = \"threshold\"\nformula = \"select(0, 0.75, x > 0.5)\"\ntolerance = { abs = 0.3 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
     let checked = Checked::new(MODULE, cases)?;
     checked.exits(3)?;
-    contains(&checked.errors(), &["threshold (case 1): the code in f64, without any rounding, is off on 4 of 9 inputs"])
+    contains(
+        &checked.errors(),
+        &["threshold (case 1): the code in f64, without any rounding, is off on 4 of 9 inputs"],
+    )
 }
 
 fn passing_report() -> Outcome {
@@ -214,7 +275,8 @@ fn well_formed(text: &str, void: &[&str]) -> Outcome {
     let mut parts = text.split('<');
     bare(parts.next().unwrap_or_default())?;
     for part in parts {
-        let (tag, after) = part.split_once('>').ok_or_else(|| format!("`<{part}` is not closed"))?;
+        let (tag, after) =
+            part.split_once('>').ok_or_else(|| format!("`<{part}` is not closed"))?;
         if open.last() != Some(&"style") {
             bare(after)?;
         }
@@ -235,6 +297,11 @@ fn well_formed(text: &str, void: &[&str]) -> Outcome {
 
 fn bare(text: &str) -> Outcome {
     let entities = ["amp;", "lt;", "gt;", "quot;"];
-    let wrong = text.split('&').skip(1).find(|rest| !entities.iter().any(|entity| rest.starts_with(entity)));
-    wrong.map_or(Ok(()), |rest| Err(format!("a bare `&` before `{}`", rest.chars().take(20).collect::<String>()).into()))
+    let wrong = text
+        .split('&')
+        .skip(1)
+        .find(|rest| !entities.iter().any(|entity| rest.starts_with(entity)));
+    wrong.map_or(Ok(()), |rest| {
+        Err(format!("a bare `&` before `{}`", rest.chars().take(20).collect::<String>()).into())
+    })
 }

@@ -24,13 +24,17 @@ const BOUND: f64 = (1u64 << 30) as f64;
 /// A program with so many values of each axis; their product is the number of permutations.
 fn package(folder: &Path, counts: [usize; 5]) -> Outcome {
     let axes = ["a", "b", "c", "d", "e"];
-    let mut manifest = String::from("[program.large]\nwesl = \"large.wesl\"\ntargets = [\"spirv\", \"wgsl\"]\n\n[program.large.axis]\n");
+    let mut manifest = String::from(
+        "[program.large]\nwesl = \"large.wesl\"\ntargets = [\"spirv\", \"wgsl\"]\n\n[program.large.axis]\n",
+    );
     for (axis, count) in axes.iter().zip(counts) {
         let values: Vec<String> = (1..=count).map(|value| value.to_string()).collect();
         writeln!(manifest, "{axis} = {{ values = [{}], default = 1 }}", values.join(", "))?;
     }
     let imports = axes.map(|axis| format!("import constants::{axis};\n")).join("");
-    let body = axes.map(|axis| format!("    sum = sum * 0.5 + vec4<f32>(f32({axis}), sum.xyz);\n")).join("");
+    let body = axes
+        .map(|axis| format!("    sum = sum * 0.5 + vec4<f32>(f32({axis}), sum.xyz);\n"))
+        .join("");
     let root = format!(
         "{imports}\n@fragment\nfn fs_main(@location(0) color: vec4<f32>) -> @location(0) vec4<f32> {{\n    var sum = color;\n{}    return sum;\n}}\n",
         body.repeat(8)
@@ -55,13 +59,19 @@ fn peak(counts: [usize; 5]) -> Result<(f64, Duration), Failed> {
         // The kernel keeps the high-water mark, so that seldom looking is enough.
         let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        most = line.and_then(|line| line.trim().strip_suffix(" kB")?.parse().ok()).map_or(most, |found: f64| found * 1024.0);
+        most = line
+            .and_then(|line| line.trim().strip_suffix(" kB")?.parse().ok())
+            .map_or(most, |found: f64| found * 1024.0);
         if let Some(status) = child.try_wait()? {
             break status;
         }
         std::thread::sleep(Duration::from_millis(10));
     };
-    if status.success() && most > 0.0 { Ok((most, start.elapsed())) } else { Err("no memory was measured".into()) }
+    if status.success() && most > 0.0 {
+        Ok((most, start.elapsed()))
+    } else {
+        Err("no memory was measured".into())
+    }
 }
 
 fn flat() -> Outcome {
@@ -69,7 +79,11 @@ fn flat() -> Outcome {
     let each = (many - few) / 3_000.0;
     let expected = few + 99_000.0 * each;
     println!("{:.1} MB for 1,000, {:.1} MB for 4,000 permutations", few / 1e6, many / 1e6);
-    if expected < BOUND { Ok(()) } else { Err(format!("100,000 permutations would take {:.0} MB", expected / 1e6).into()) }
+    if expected < BOUND {
+        Ok(())
+    } else {
+        Err(format!("100,000 permutations would take {:.0} MB", expected / 1e6).into())
+    }
 }
 
 fn all() -> Outcome {

@@ -37,7 +37,11 @@ pub fn trials() -> Vec<Trial> {
 }
 
 fn near(what: &str, found: f64, wanted: f64, error: f64) -> Outcome {
-    if (found - wanted).abs() <= error { Ok(()) } else { Err(format!("{what}: {found}, wanted {wanted} within {error:e}").into()) }
+    if (found - wanted).abs() <= error {
+        Ok(())
+    } else {
+        Err(format!("{what}: {found}, wanted {wanted} within {error:e}").into())
+    }
 }
 
 fn close(what: &str, found: DVec3, wanted: DVec3, error: f64) -> Outcome {
@@ -59,13 +63,20 @@ fn views() -> Outcome {
         close("straight up", view.transform_vector3(direction.normalize()), DVec3::NEG_Z, 1e-12)?;
         near("a rotation", DMat3::from_mat4(view).determinant(), 1.0, 1e-12)?;
     }
-    close("no direction", scene::look_at(eye, eye, DVec3::Y).transform_point3(DVec3::ZERO), -eye, 0.0)
+    close(
+        "no direction",
+        scene::look_at(eye, eye, DVec3::Y).transform_point3(DVec3::ZERO),
+        -eye,
+        0.0,
+    )
 }
 
 fn angles() -> Outcome {
     let (origin, turn) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.3, -0.7, 1.1));
-    let place =
-        DMat4::from_translation(origin) * DMat4::from_rotation_z(turn.z) * DMat4::from_rotation_y(turn.y) * DMat4::from_rotation_x(turn.x);
+    let place = DMat4::from_translation(origin)
+        * DMat4::from_rotation_z(turn.z)
+        * DMat4::from_rotation_y(turn.y)
+        * DMat4::from_rotation_x(turn.x);
     let product = scene::from_angles(origin, turn) * place;
     for (column, wanted) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
         close("a column", product.col(column).xyz(), wanted, 1e-12)?;
@@ -102,7 +113,11 @@ fn perspective() -> Outcome {
 fn frusta() -> Outcome {
     let view = scene::look_at(DVec3::new(3.0, 1.0, -2.0), DVec3::ZERO, DVec3::Y);
     for (clip, depth) in CLIPS.into_iter().flat_map(|clip| DEPTHS.map(|depth| (clip, depth))) {
-        let corners = scene::corners(scene::perspective(FRAC_PI_2, 1.0, 1.0, 10.0, clip, depth) * view, clip, depth);
+        let corners = scene::corners(
+            scene::perspective(FRAC_PI_2, 1.0, 1.0, 10.0, clip, depth) * view,
+            clip,
+            depth,
+        );
         for (index, corner) in corners.into_iter().enumerate() {
             // At 90 degrees a plane reaches as far to the side as it is away.
             let away = if index < 4 { 1.0 } else { 10.0 };
@@ -119,16 +134,25 @@ fn frusta() -> Outcome {
 
 fn tight() -> Outcome {
     let view = scene::look_along(DVec3::ZERO, DVec3::new(1.0, -2.0, 0.5), DVec3::Y);
-    let points: Vec<DVec3> = (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 3.0).collect();
+    let points: Vec<DVec3> = (0..8)
+        .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 3.0)
+        .collect();
     let bounds = scene::fit(view, &points).ok_or("no bounds")?;
     for (clip, depth) in CLIPS.into_iter().flat_map(|clip| DEPTHS.map(|depth| (clip, depth))) {
         let projection = scene::orthographic(&bounds, clip, depth) * view;
-        let seen: Vec<DVec3> = points.iter().map(|point| projection.project_point3(*point)).collect();
-        let (low, high) = (seen.iter().copied().reduce(DVec3::min).ok_or("none")?, seen.iter().copied().reduce(DVec3::max).ok_or("none")?);
+        let seen: Vec<DVec3> =
+            points.iter().map(|point| projection.project_point3(*point)).collect();
+        let (low, high) = (
+            seen.iter().copied().reduce(DVec3::min).ok_or("none")?,
+            seen.iter().copied().reduce(DVec3::max).ok_or("none")?,
+        );
         let (first, last) = depth_of(clip, depth);
         close("low", low, DVec3::new(-1.0, -1.0, first.min(last)), 1e-12)?;
         close("high", high, DVec3::new(1.0, 1.0, first.max(last)), 1e-12)?;
-        let nearest = points.iter().min_by(|a, b| view.transform_point3(**b).z.total_cmp(&view.transform_point3(**a).z)).ok_or("none")?;
+        let nearest = points
+            .iter()
+            .min_by(|a, b| view.transform_point3(**b).z.total_cmp(&view.transform_point3(**a).z))
+            .ok_or("none")?;
         near("the nearest", projection.project_point3(*nearest).z, first, 1e-12)?;
     }
     if scene::fit(view, &[]).is_none() { Ok(()) } else { Err("bounds of nothing".into()) }
@@ -139,16 +163,21 @@ fn faces() -> Outcome {
     let (size, light) = (8, DVec3::new(1.0, -2.0, 0.5));
     for clip in [Clip::Wgpu, Clip::OpenGl] {
         let projection = scene::cube_projection(0.1, 10.0, clip, Depth::Normal);
-        for (face, column, row) in (0..6).flat_map(|face| (0..size).flat_map(move |row| (0..size).map(move |column| (face, column, row)))) {
+        for (face, column, row) in (0..6).flat_map(|face| {
+            (0..size).flat_map(move |row| (0..size).map(move |column| (face, column, row)))
+        }) {
             let direction = CubeMap::direction(size, face, column, row);
             let inside = (0..6).filter(|face| {
-                let seen = projection * scene::cube_view(light, *face) * (light + direction * 3.0).extend(1.0);
+                let seen = projection
+                    * scene::cube_view(light, *face)
+                    * (light + direction * 3.0).extend(1.0);
                 seen.w > 0.0 && seen.x.abs() <= seen.w && seen.y.abs() <= seen.w
             });
             if inside.collect::<Vec<_>>() != [face] {
                 return Err(format!("{direction} is not on face {face} alone").into());
             }
-            let seen = (projection * scene::cube_view(light, face)).project_point3(light + direction * 3.0);
+            let seen = (projection * scene::cube_view(light, face))
+                .project_point3(light + direction * 3.0);
             let middle = |index: usize| 2.0 * (index as f64 + 0.5) / size as f64 - 1.0;
             near("column", seen.x, middle(column), 1e-12)?;
             near("row", -seen.y, middle(row), 1e-12)?;
@@ -164,13 +193,20 @@ fn shadow_matrices() -> Outcome {
     let bounds = Bounds { left: -4.0, right: 4.0, bottom: -2.0, top: 2.0, near: 1.0, far: 9.0 };
     let back = view.inverse();
     for clip in CLIPS {
-        let matrix = scene::shadow_matrix(scene::orthographic(&bounds, clip, Depth::Normal), view, clip);
+        let matrix =
+            scene::shadow_matrix(scene::orthographic(&bounds, clip, Depth::Normal), view, clip);
         // A quarter from the left, an eighth from the top, half way.
         let point = back.transform_point3(DVec3::new(-2.0, 1.5, -5.0));
         let v = if clip == Clip::OpenGl { 0.875 } else { 0.125 };
         close("a place", matrix.project_point3(point), DVec3::new(0.25, v, 0.5), 1e-12)?;
-        let reversed = scene::shadow_matrix(scene::orthographic(&bounds, clip, Depth::Reversed), view, clip);
-        near("near is 1", reversed.project_point3(back.transform_point3(DVec3::new(0.0, 0.0, -1.0))).z, 1.0, 1e-12)?;
+        let reversed =
+            scene::shadow_matrix(scene::orthographic(&bounds, clip, Depth::Reversed), view, clip);
+        near(
+            "near is 1",
+            reversed.project_point3(back.transform_point3(DVec3::new(0.0, 0.0, -1.0))).z,
+            1.0,
+            1e-12,
+        )?;
     }
     Ok(())
 }
@@ -185,7 +221,11 @@ fn cascades() -> Outcome {
         near("logarithmic", *found, wanted, 1e-9)?;
     }
     let mixed = scene::cascade_splits(0.1, 250.0, 5, 0.7);
-    if mixed.is_sorted() && mixed.last() == Some(&250.0) && mixed[0] > 0.1 { Ok(()) } else { Err(format!("mixed: {mixed:?}").into()) }
+    if mixed.is_sorted() && mixed.last() == Some(&250.0) && mixed[0] > 0.1 {
+        Ok(())
+    } else {
+        Err(format!("mixed: {mixed:?}").into())
+    }
 }
 
 fn normals() -> Outcome {
@@ -211,14 +251,22 @@ fn normals() -> Outcome {
     let welded = scene::smooth_normals(&loose, None)?;
     close("welded", welded[0], DVec3::Y, 1e-12)?;
     close("welded again", welded[3], DVec3::Y, 1e-12)?;
-    match (scene::face_normals(&positions, Some(&[0, 1])), scene::smooth_normals(&positions, Some(&[0, 1, 5]))) {
-        (Err(MeshError::Incomplete { corners: 2 }), Err(MeshError::Beyond { index: 5, vertices: 5 })) => Ok(()),
+    match (
+        scene::face_normals(&positions, Some(&[0, 1])),
+        scene::smooth_normals(&positions, Some(&[0, 1, 5])),
+    ) {
+        (
+            Err(MeshError::Incomplete { corners: 2 }),
+            Err(MeshError::Beyond { index: 5, vertices: 5 }),
+        ) => Ok(()),
         other => Err(format!("{other:?}").into()),
     }
 }
 
 fn normal_matrix() -> Outcome {
-    let model = DMat4::from_rotation_y(0.4) * DMat4::from_scale(DVec3::new(1.0, 3.0, -0.5)) * DMat4::from_translation(DVec3::ONE);
+    let model = DMat4::from_rotation_y(0.4)
+        * DMat4::from_scale(DVec3::new(1.0, 3.0, -0.5))
+        * DMat4::from_translation(DVec3::ONE);
     let matrix = scene::normal_matrix(model);
     let (along, across) = (DVec3::new(1.0, 2.0, -1.0), DVec3::new(0.5, -1.0, 2.0));
     let normal = matrix * along.cross(across);
@@ -231,7 +279,9 @@ fn normal_matrix() -> Outcome {
 fn gaussian() -> Outcome {
     let kernel = scene::gaussian(10, 8.0);
     near("the sum", kernel.iter().sum(), 1.0, 1e-15)?;
-    for (offset, wanted) in [0.14107424, 0.132526984, 0.109868729, 0.080381679].into_iter().enumerate() {
+    for (offset, wanted) in
+        [0.14107424, 0.132526984, 0.109868729, 0.080381679].into_iter().enumerate()
+    {
         near("as published", kernel[10 + offset], wanted, 5e-9)?;
         near("symmetric", kernel[10 - offset], kernel[10 + offset], 0.0)?;
     }
@@ -242,15 +292,31 @@ fn gaussian() -> Outcome {
 /// to 2 leave of it elsewhere; a harmonic gives itself alone.
 fn harmonics() -> Outcome {
     let of = |sky: &scene::Sky<'_>| {
-        scene::sh9_project(scene::directions(64).into_iter().map(|(direction, weight)| (direction, weight, sky(direction))))
+        scene::sh9_project(
+            scene::directions(64)
+                .into_iter()
+                .map(|(direction, weight)| (direction, weight, sky(direction))),
+        )
     };
     let constant = of(&|_| DVec3::ONE);
     near("L00", constant[0].x, 2.0 * PI.sqrt(), 1e-12)?;
-    constant[1..].iter().try_for_each(|coefficient| close("the others", *coefficient, DVec3::ZERO, 1e-12))?;
+    constant[1..]
+        .iter()
+        .try_for_each(|coefficient| close("the others", *coefficient, DVec3::ZERO, 1e-12))?;
     close("irradiance", scene::irradiance_sh9(DVec3::Y, &constant), DVec3::splat(PI), 1e-12)?;
     let linear = of(&|d| DVec3::splat(1.0 + d.y));
-    close("of 1 + y", scene::irradiance_sh9(DVec3::Y, &linear), DVec3::splat(PI + 2.0 * PI / 3.0), 1e-12)?;
-    close("of 1 + y, below", scene::irradiance_sh9(DVec3::NEG_Y, &linear), DVec3::splat(PI / 3.0), 1e-12)?;
+    close(
+        "of 1 + y",
+        scene::irradiance_sh9(DVec3::Y, &linear),
+        DVec3::splat(PI + 2.0 * PI / 3.0),
+        1e-12,
+    )?;
+    close(
+        "of 1 + y, below",
+        scene::irradiance_sh9(DVec3::NEG_Y, &linear),
+        DVec3::splat(PI / 3.0),
+        1e-12,
+    )?;
     for index in 0..9 {
         let found = of(&|d| DVec3::splat(scene::sh9_basis(d)[index]));
         for (other, coefficient) in found.iter().enumerate() {
@@ -259,23 +325,42 @@ fn harmonics() -> Outcome {
     }
     // max(cos, 0) = 1/4 + cos/2 + 5/32 (3 cos^2 - 1) + ...: irradiance by pi, 2 pi/3 and pi/4.
     let lobe = of(&|d| DVec3::splat(d.y.max(0.0)));
-    near("a cosine sky", scene::irradiance_sh9(DVec3::Y, &lobe).x, PI / 4.0 + PI / 3.0 + 5.0 * PI / 64.0, 2e-4)
+    near(
+        "a cosine sky",
+        scene::irradiance_sh9(DVec3::Y, &lobe).x,
+        PI / 4.0 + PI / 3.0 + 5.0 * PI / 64.0,
+        2e-4,
+    )
 }
 
 fn images() -> Outcome {
     let constant = Equirect::of(&|_| DVec3::new(1.0, 2.0, 3.0), 64, 32).ok_or("no image")?;
     near("the whole sphere", constant.samples().map(|(_, angle, _)| angle).sum(), 4.0 * PI, 1e-12)?;
     let coefficients = scene::sh9_project(constant.samples());
-    close("irradiance", scene::irradiance_sh9(DVec3::X, &coefficients), DVec3::new(1.0, 2.0, 3.0) * PI, 0.02)?;
+    close(
+        "irradiance",
+        scene::irradiance_sh9(DVec3::X, &coefficients),
+        DVec3::new(1.0, 2.0, 3.0) * PI,
+        0.02,
+    )?;
     let sky = |d: DVec3| DVec3::new(1.0 + d.x, 1.0 + d.y, 1.0 + d.z);
     let image = Equirect::of(&sky, 256, 128).ok_or("no image")?;
     let found = scene::sh9_project(image.samples());
     for n in [DVec3::X, DVec3::NEG_Y, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
-        close("a linear sky", scene::irradiance_sh9(n, &found), DVec3::splat(PI) + n * (2.0 * PI / 3.0), 2e-3)?;
+        close(
+            "a linear sky",
+            scene::irradiance_sh9(n, &found),
+            DVec3::splat(PI) + n * (2.0 * PI / 3.0),
+            2e-3,
+        )?;
         close("read back", image.radiance(n), sky(n), 1e-3)?;
     }
     close("at the seam", image.radiance(DVec3::new(-1.0, 0.0, 1e-9)), sky(DVec3::NEG_X), 1e-3)?;
-    if Equirect::new(2, 2, vec![DVec3::ZERO; 3]).is_none() { Ok(()) } else { Err("an image of missing pixels".into()) }
+    if Equirect::new(2, 2, vec![DVec3::ZERO; 3]).is_none() {
+        Ok(())
+    } else {
+        Err("an image of missing pixels".into())
+    }
 }
 
 /// A constant stays; the lobe of exponent k over 1 + y has the mean 1 + n.y (k + 1) / (k + 2).
@@ -298,7 +383,11 @@ fn filtered() -> Outcome {
 fn volumes() -> Outcome {
     let volume = |shape: &Shape| -> f64 {
         let corner = |index: u32| shape.vertices[index as usize].position;
-        shape.indices.chunks(3).map(|three| corner(three[0]).dot(corner(three[1]).cross(corner(three[2]))) / 6.0).sum()
+        shape
+            .indices
+            .chunks(3)
+            .map(|three| corner(three[0]).dot(corner(three[1]).cross(corner(three[2]))) / 6.0)
+            .sum()
     };
     let can = [0.0, 1.0, 2.0].map(|height| DVec2::new(1.0, height));
     let pipe = [(DVec2::ZERO, 0.5), (DVec2::new(1.0, 0.0), 0.5), (DVec2::new(2.0, 0.0), 0.5)];
@@ -308,7 +397,8 @@ fn volumes() -> Outcome {
     // Open at their ends, of which one is at the origin and the other is missing a cone.
     near("a can", volume(&Shape::lathe(&can, (96, 24))), PI * 2.0 * 2.0 / 3.0, 0.02)?;
     near("a pipe", volume(&Shape::tube(&pipe, (96, 24))), PI * 0.25 * 2.0 * 2.0 / 3.0, 0.02)?;
-    let moved = Shape::sphere(1.0, (24, 12)).transformed(DMat4::from_translation(DVec3::X) * DMat4::from_scale(DVec3::splat(2.0)));
+    let moved = Shape::sphere(1.0, (24, 12))
+        .transformed(DMat4::from_translation(DVec3::X) * DMat4::from_scale(DVec3::splat(2.0)));
     near("a larger ball", volume(&moved), 4.0 / 3.0 * PI * 8.0, 1.5)
 }
 
@@ -316,13 +406,20 @@ fn volumes() -> Outcome {
 fn scenes() -> Outcome {
     for (name, _, make) in SETS {
         for object in make().objects {
-            let positions: Vec<DVec3> = object.shape.vertices.iter().map(|vertex| vertex.position).collect();
+            let positions: Vec<DVec3> =
+                object.shape.vertices.iter().map(|vertex| vertex.position).collect();
             let faces = scene::face_normals(&positions, Some(&object.shape.indices))?;
-            for (three, face) in object.shape.indices.chunks(3).zip(&faces).filter(|(_, face)| **face != DVec3::ZERO) {
+            for (three, face) in
+                object.shape.indices.chunks(3).zip(&faces).filter(|(_, face)| **face != DVec3::ZERO)
+            {
                 for vertex in three.iter().map(|index| &object.shape.vertices[*index as usize]) {
                     near(name, vertex.normal.length(), 1.0, 1e-9)?;
                     if vertex.normal.dot(*face) < 0.0 {
-                        return Err(format!("{name}: at {} the normal looks to the other side of the face", vertex.position).into());
+                        return Err(format!(
+                            "{name}: at {} the normal looks to the other side of the face",
+                            vertex.position
+                        )
+                        .into());
                     }
                 }
             }
@@ -344,6 +441,13 @@ fn environments() -> Outcome {
         }
     }
     let constant = scene::environment("constant").ok_or("no constant environment")?;
-    let samples = scene::directions(8).into_iter().map(|(direction, angle)| (direction, angle, constant(direction)));
-    close("irradiance", scene::irradiance_sh9(DVec3::Y, &scene::sh9_project(samples)), DVec3::splat(PI), 1e-12)
+    let samples = scene::directions(8)
+        .into_iter()
+        .map(|(direction, angle)| (direction, angle, constant(direction)));
+    close(
+        "irradiance",
+        scene::irradiance_sh9(DVec3::Y, &scene::sh9_project(samples)),
+        DVec3::splat(PI),
+        1e-12,
+    )
 }

@@ -40,8 +40,16 @@ struct Dialect {
 }
 
 const DIALECTS: [Dialect; 4] = [
-    Dialect { head: "#version 450\n", output: "layout(location = 0) out vec4 colour;\n", options: &["-V", "-o", "/dev/null"] },
-    Dialect { head: "#version 330 core\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\n", output: "out vec4 colour;\n", options: &[] },
+    Dialect {
+        head: "#version 450\n",
+        output: "layout(location = 0) out vec4 colour;\n",
+        options: &["-V", "-o", "/dev/null"],
+    },
+    Dialect {
+        head: "#version 330 core\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\n",
+        output: "out vec4 colour;\n",
+        options: &[],
+    },
     Dialect { head: ES_300, output: "out vec4 colour;\n", options: &[] },
     Dialect { head: ES_310, output: "out vec4 colour;\n", options: &[] },
 ];
@@ -76,7 +84,11 @@ pub fn modules() -> Vec<String> {
 
 fn stems(extension: &str) -> Vec<String> {
     let files = Embedded.list(&[extension]);
-    files.iter().filter(|path| !path.starts_with("programs/")).filter_map(|path| Some(path.rsplit_once('.')?.0.to_owned())).collect()
+    files
+        .iter()
+        .filter(|path| !path.starts_with("programs/"))
+        .filter_map(|path| Some(path.rsplit_once('.')?.0.to_owned()))
+        .collect()
 }
 
 fn every_module_has_its_twin() -> Result<(), Failed> {
@@ -120,18 +132,28 @@ fn glsl_is_valid(module: &str) -> Result<(), Failed> {
 
 fn every_target_writes(module: &str) -> Result<(), Failed> {
     for (version, text) in emits::emits(&called_wesl(module)?)? {
-        run_glslang(&text, &[]).map_err(|error| format!("{version:?}: {}\n{text}", error.message().unwrap_or_default()))?;
+        run_glslang(&text, &[]).map_err(|error| {
+            format!("{version:?}: {}\n{text}", error.message().unwrap_or_default())
+        })?;
     }
     Ok(())
 }
 
 /// Structures are compared where a function takes or gives them.
 fn twins_agree(module: &str) -> Result<(), Failed> {
-    let summaries = |path: String| functions(&read(&path)).into_iter().map(|f| (f.name, f.doc.first().cloned())).collect::<Vec<_>>();
+    let summaries = |path: String| {
+        functions(&read(&path))
+            .into_iter()
+            .map(|f| (f.name, f.doc.first().cloned()))
+            .collect::<Vec<_>>()
+    };
     let wesl = summaries(format!("{module}.wesl"));
     same("summaries", &wesl, &summaries(format!("{module}.glsl")))?;
     let own = |parsed: Module| -> BTreeMap<String, String> {
-        signatures(&parsed).into_iter().filter(|(name, _)| wesl.iter().any(|(own, _)| own == name)).collect()
+        signatures(&parsed)
+            .into_iter()
+            .filter(|(name, _)| wesl.iter().any(|(own, _)| own == name))
+            .collect()
     };
     same("signatures", &own(parse_wesl(module)?), &own(parse_glsl(module)?))
 }
@@ -146,13 +168,28 @@ fn functions_are_documented(module: &str) -> Result<(), Failed> {
 }
 
 fn faults(function: &Function) -> Vec<String> {
-    let part = |name: &str| function.doc.iter().find_map(|line| line.strip_prefix(name)).filter(|text| !text.is_empty());
-    let missing = DOC_PARTS.iter().filter(|name| part(name).is_none()).map(|name| format!("`{}` lacks `{name}`", function.name));
+    let part = |name: &str| {
+        function.doc.iter().find_map(|line| line.strip_prefix(name)).filter(|text| !text.is_empty())
+    };
+    let missing = DOC_PARTS
+        .iter()
+        .filter(|name| part(name).is_none())
+        .map(|name| format!("`{}` lacks `{name}`", function.name));
     let described = part(DOC_PARTS[0]).unwrap_or_default();
-    let unknown = function.parameters.iter().filter(|name| !described.contains(&format!("`{name}`")));
-    let summary = function.doc.first().filter(|line| line.ends_with('.') && !DOC_PARTS.iter().any(|part| line.starts_with(part)));
-    let unsaid = summary.is_none().then(|| format!("`{}` does not say in a sentence what it computes", function.name));
-    unsaid.into_iter().chain(missing).chain(unknown.map(|name| format!("`{}` does not describe `{name}`", function.name))).collect()
+    let unknown =
+        function.parameters.iter().filter(|name| !described.contains(&format!("`{name}`")));
+    let summary = function
+        .doc
+        .first()
+        .filter(|line| line.ends_with('.') && !DOC_PARTS.iter().any(|part| line.starts_with(part)));
+    let unsaid = summary
+        .is_none()
+        .then(|| format!("`{}` does not say in a sentence what it computes", function.name));
+    unsaid
+        .into_iter()
+        .chain(missing)
+        .chain(unknown.map(|name| format!("`{}` does not describe `{name}`", function.name)))
+        .collect()
 }
 
 /// A function as its text has it.
@@ -196,7 +233,10 @@ fn is_declaration(line: &str) -> bool {
 
 /// Names and types. A comma is followed by a parameter's name and colon, or belongs to a type.
 fn parameters(declaration: &str) -> (Vec<String>, Vec<String>) {
-    let list = declaration.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map_or("", |(list, _)| list);
+    let list = declaration
+        .split_once('(')
+        .and_then(|(_, rest)| rest.split_once(')'))
+        .map_or("", |(list, _)| list);
     let mut found: Vec<(String, String)> = Vec::new();
     for part in list.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         match (part.split_once(": "), found.last_mut()) {
@@ -209,14 +249,18 @@ fn parameters(declaration: &str) -> (Vec<String>, Vec<String>) {
 }
 
 fn read(path: &str) -> String {
-    Embedded.read(path).expect("the embedded library is readable").unwrap_or_else(|| panic!("no `{path}` in the library"))
+    Embedded
+        .read(path)
+        .expect("the embedded library is readable")
+        .unwrap_or_else(|| panic!("no `{path}` in the library"))
 }
 
 /// A text of WESL composed with the library: `lamplight` is a dependency, as it is for a user.
 fn composed_wesl(text: String) -> Result<String, Failed> {
     let (mut sources, packages) = beside("main.wesl", text);
-    let composed = resolve::wesl::load(&mut sources, &packages, "main.wesl")
-        .and_then(|graph| compose::wesl::compose(&graph, &Settings::default(), &Options::default()));
+    let composed = resolve::wesl::load(&mut sources, &packages, "main.wesl").and_then(|graph| {
+        compose::wesl::compose(&graph, &Settings::default(), &Options::default())
+    });
     written(&sources, composed)
 }
 
@@ -230,13 +274,18 @@ fn composed_glsl(text: String) -> Result<String, Failed> {
 }
 
 fn beside(root: &str, text: String) -> (SourceSet, Packages) {
-    let root = Package { name: "user".into(), files: Box::new(Memory([(root.to_owned(), text)].into())) };
+    let root =
+        Package { name: "user".into(), files: Box::new(Memory([(root.to_owned(), text)].into())) };
     let library = Package { name: "lamplight".into(), files: Box::new(Embedded) };
     (SourceSet::default(), Packages { root, dependencies: vec![library] })
 }
 
-fn written(sources: &SourceSet, composed: Result<Composed, Vec<Diagnostic>>) -> Result<String, Failed> {
-    let shown = |diagnostics: &[Diagnostic]| Failed::from(render(sources, diagnostics, Form::Human));
+fn written(
+    sources: &SourceSet,
+    composed: Result<Composed, Vec<Diagnostic>>,
+) -> Result<String, Failed> {
+    let shown =
+        |diagnostics: &[Diagnostic]| Failed::from(render(sources, diagnostics, Form::Human));
     let composed = composed.map_err(|diagnostics| shown(&diagnostics))?;
     if composed.warnings.is_empty() { Ok(composed.text) } else { Err(shown(&composed.warnings)) }
 }
@@ -249,14 +298,18 @@ fn called_wesl(module: &str) -> Result<String, Failed> {
 /// An entry point that calls each function of a module by its path in the package `lamplight`.
 pub fn entry_wesl(module: &str) -> String {
     let path = format!("lamplight::{}", module.replace('/', "::"));
-    let called = |f: Function| (format!("{path}::{}", f.name), f.types.iter().map(|ty| qualified(ty)).collect());
-    let functions: Vec<_> = functions(&read(&format!("{module}.wesl"))).into_iter().map(called).collect();
+    let called = |f: Function| {
+        (format!("{path}::{}", f.name), f.types.iter().map(|ty| qualified(ty)).collect())
+    };
+    let functions: Vec<_> =
+        functions(&read(&format!("{module}.wesl"))).into_iter().map(called).collect();
     emits::entry(&functions)
 }
 
 /// A structure's name with its module before it; any other type as it is.
 fn qualified(ty: &str) -> String {
-    let declares = |module: &String| read(&format!("{module}.wesl")).contains(&format!("\nstruct {ty} {{"));
+    let declares =
+        |module: &String| read(&format!("{module}.wesl")).contains(&format!("\nstruct {ty} {{"));
     match modules().into_iter().find(declares) {
         Some(module) => format!("lamplight::{}::{ty}", module.replace('/', "::")),
         None => ty.to_owned(),
@@ -268,7 +321,10 @@ fn include(module: &str) -> String {
 }
 
 fn fragment(includes: &str, dialect: &Dialect) -> Result<String, Failed> {
-    composed_glsl(format!("{}{includes}{}void main() {{\n    colour = vec4(1.0);\n}}\n", dialect.head, dialect.output))
+    composed_glsl(format!(
+        "{}{includes}{}void main() {{\n    colour = vec4(1.0);\n}}\n",
+        dialect.head, dialect.output
+    ))
 }
 
 fn parse_wesl(module: &str) -> Result<Module, Failed> {
@@ -278,13 +334,16 @@ fn parse_wesl(module: &str) -> Result<Module, Failed> {
 
 fn parse_glsl(module: &str) -> Result<Module, Failed> {
     let text = fragment(&include(module), &DIALECTS[0])?;
-    let parsed = glsl::Frontend::default().parse(&glsl::Options::from(ShaderStage::Fragment), &text);
+    let parsed =
+        glsl::Frontend::default().parse(&glsl::Options::from(ShaderStage::Fragment), &text);
     validated(parsed.map_err(|errors| errors.emit_to_string(&text))?)
 }
 
 fn validated(module: Module) -> Result<Module, Failed> {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
-    Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).map_err(|error| format!("{error:?}"))?;
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|error| format!("{error:?}"))?;
     Ok(module)
 }
 
@@ -296,28 +355,43 @@ fn glslang(module: &str, dialect: &Dialect) -> Result<(), Failed> {
 fn glslang_includes(module: &str) -> Result<(), Failed> {
     let path = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
     let Dialect { head, output, options } = &DIALECTS[0];
-    let include = format!("#extension GL_GOOGLE_include_directive : require\n#include \"{module}.glsl\"\n");
+    let include =
+        format!("#extension GL_GOOGLE_include_directive : require\n#include \"{module}.glsl\"\n");
     let text = format!("{head}{include}{output}void main() {{\n    colour = vec4(1.0);\n}}\n");
     run_glslang(&text, &[options, &[path][..]].concat())
 }
 
 fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {
     let mut command = Command::new("glslangValidator");
-    command.args(["--stdin", "-S", "frag"]).args(options).stdin(Stdio::piped()).stdout(Stdio::piped());
+    command
+        .args(["--stdin", "-S", "frag"])
+        .args(options)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped());
     let started = command.spawn();
-    let mut child = started.map_err(|error| format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`"))?;
+    let mut child = started.map_err(|error| {
+        format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`")
+    })?;
     child.stdin.take().expect("piped").write_all(text.as_bytes())?;
     let output = child.wait_with_output()?;
-    if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&output.stdout).into_owned().into()) }
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(String::from_utf8_lossy(&output.stdout).into_owned().into())
+    }
 }
 
 /// Each function's parameters and result, by its name.
 fn signatures(module: &Module) -> BTreeMap<String, String> {
     let functions = module.functions.iter().map(|(_, function)| {
         let name = |name: &Option<String>| name.clone().unwrap_or_default();
-        let parameters: Vec<String> =
-            function.arguments.iter().map(|argument| format!("{}: {}", name(&argument.name), spelled(module, argument.ty))).collect();
-        let result = function.result.as_ref().map_or(String::new(), |result| spelled(module, result.ty));
+        let parameters: Vec<String> = function
+            .arguments
+            .iter()
+            .map(|argument| format!("{}: {}", name(&argument.name), spelled(module, argument.ty)))
+            .collect();
+        let result =
+            function.result.as_ref().map_or(String::new(), |result| spelled(module, result.ty));
         (name(&function.name), format!("({}) -> {result}", parameters.join(", ")))
     });
     functions.filter(|(name, _)| name != "main").collect()
@@ -327,14 +401,22 @@ fn spelled(module: &Module, handle: Handle<Type>) -> String {
     let Type { name, inner } = &module.types[handle];
     match inner {
         TypeInner::Struct { members, .. } => {
-            let members = members.iter().map(|member| format!("{:?}@{}: {}", member.name, member.offset, spelled(module, member.ty)));
+            let members = members.iter().map(|member| {
+                format!("{:?}@{}: {}", member.name, member.offset, spelled(module, member.ty))
+            });
             format!("{name:?} {{ {} }}", members.collect::<Vec<_>>().join(", "))
         }
-        TypeInner::Array { base, size, .. } => format!("array<{}, {size:?}>", spelled(module, *base)),
+        TypeInner::Array { base, size, .. } => {
+            format!("array<{}, {size:?}>", spelled(module, *base))
+        }
         other => format!("{other:?}"),
     }
 }
 
 fn same<T: PartialEq + std::fmt::Debug>(what: &str, wesl: &T, glsl: &T) -> Result<(), Failed> {
-    if wesl == glsl { Ok(()) } else { Err(format!("{what} differ\nWESL: {wesl:#?}\nGLSL: {glsl:#?}").into()) }
+    if wesl == glsl {
+        Ok(())
+    } else {
+        Err(format!("{what} differ\nWESL: {wesl:#?}\nGLSL: {glsl:#?}").into())
+    }
 }

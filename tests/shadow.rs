@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use glam::{DMat4, DVec3, DVec4};
-use lamplight::compose::Language;
+use lamplight::bundle::Language;
 use lamplight::diagnostic::Diagnostic;
-use lamplight::harness::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
-use lamplight::harness::library::Library;
-use lamplight::harness::{Session, executors, kernel, on_thread};
+use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use lamplight::execute::{Session, executors, kernel, on_thread};
+use lamplight::proof::library::Library;
 use lamplight::source::{Embedded, Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
@@ -35,7 +35,12 @@ const PROPERTIES: &[(&str, Property)] = &[
 
 /// One trial for each property.
 pub fn trials() -> Vec<Trial> {
-    PROPERTIES.iter().map(|(name, property)| Trial::test(format!("shadow::{name}"), move || everywhere(*property))).collect()
+    PROPERTIES
+        .iter()
+        .map(|(name, property)| {
+            Trial::test(format!("shadow::{name}"), move || everywhere(*property))
+        })
+        .collect()
 }
 
 const WESL: &str = "
@@ -162,11 +167,16 @@ struct Run<'a> {
 /// The property in both languages on every executor; all that fail are named.
 fn everywhere(property: Property) -> Result<(), Failed> {
     let outcome = on_thread(|| {
-        let files = [("scene.wesl", WESL), ("scene.glsl", GLSL)].map(|(path, text)| (path.to_owned(), text.to_owned()));
-        let library = Library::new("scene", Arc::new(Memory(files.into())), vec![("lamplight".to_owned(), Arc::new(Embedded))]);
+        let files = [("scene.wesl", WESL), ("scene.glsl", GLSL)]
+            .map(|(path, text)| (path.to_owned(), text.to_owned()));
+        let library = Library::new(
+            "scene",
+            Arc::new(Memory(files.into())),
+            vec![("lamplight".to_owned(), Arc::new(Embedded))],
+        );
         let mut failed = String::new();
         for entry in executors::ALL {
-            let mut session = (entry.open)().map_err(|error| entry.missing(&error))?;
+            let mut session = entry.start()?;
             for language in [Language::Wesl, Language::Glsl] {
                 let mut run = Run { session: session.as_mut(), library: &library, language };
                 if let Err(error) = property(&mut run) {
@@ -181,14 +191,27 @@ fn everywhere(property: Property) -> Result<(), Failed> {
 
 impl Run<'_> {
     /// Results of a function of the scene for rows of f32 arguments.
-    fn call(&mut self, function: &str, map: Option<(Texture, Sampler)>, rows: &[Vec<f32>]) -> Result<Vec<f64>, String> {
+    fn call(
+        &mut self,
+        function: &str,
+        map: Option<(Texture, Sampler)>,
+        rows: &[Vec<f32>],
+    ) -> Result<Vec<f64>, String> {
         let words: Vec<u32> = rows.iter().flatten().map(|value| value.to_bits()).collect();
         self.call_words(function, map, &words)
     }
 
-    fn call_words(&mut self, function: &str, map: Option<(Texture, Sampler)>, words: &[u32]) -> Result<Vec<f64>, String> {
+    fn call_words(
+        &mut self,
+        function: &str,
+        map: Option<(Texture, Sampler)>,
+        words: &[u32],
+    ) -> Result<Vec<f64>, String> {
         let sources = Mutex::new(SourceSet::default());
-        let module = self.library.module(&sources, "scene", self.language, &[function.to_owned()]).map_err(|errors| said(&errors))?;
+        let module = self
+            .library
+            .module(&sources, "scene", self.language, &[function.to_owned()])
+            .map_err(|errors| said(&errors))?;
         let fixtures: BTreeMap<_, _> = map
             .into_iter()
             .flat_map(|(map, smp)| [("map", Fixture::Texture(map)), ("smp", Fixture::Sampler(smp))])
@@ -207,7 +230,10 @@ fn said(errors: &[Diagnostic]) -> String {
 /// Texels of a square depth map from the place of their centres.
 fn depths(side: u32, depth: impl Fn(f64, f64) -> f64) -> Texture {
     let centre = |index: u32| (f64::from(index) + 0.5) / f64::from(side);
-    let texels = (0..side).flat_map(|y| (0..side).map(move |x| (x, y))).map(|(x, y)| depth(centre(x), centre(y)) as f32).collect();
+    let texels = (0..side)
+        .flat_map(|y| (0..side).map(move |x| (x, y)))
+        .map(|(x, y)| depth(centre(x), centre(y)) as f32)
+        .collect();
     Texture { kind: TextureKind::Depth2d, width: side, height: side, texels }
 }
 
@@ -226,21 +252,32 @@ fn flip() -> DMat4 {
 
 /// A depth as a map of either kind holds it, and the comparison that goes with it.
 fn reversal(reversed: bool) -> (fn(f64) -> f64, Compare) {
-    if reversed { (|depth| 1.0 - depth, Compare::GreaterEqual) } else { (|depth| depth, Compare::LessEqual) }
+    if reversed {
+        (|depth| 1.0 - depth, Compare::GreaterEqual)
+    } else {
+        (|depth| depth, Compare::LessEqual)
+    }
 }
 
 /// The upper left quarter of the map, seen from the light, is covered by a plane across the light's
 /// direction; points before it and behind it, over all quarters, for both directions of depth.
-fn covered(run: &mut Run<'_>, view: DMat4, projection: DMat4, planes: [f64; 3]) -> Result<(), String> {
+fn covered(
+    run: &mut Run<'_>,
+    view: DMat4,
+    projection: DMat4,
+    planes: [f64; 3],
+) -> Result<(), String> {
     let depth_at = |z: f64| {
         let clip = projection * DVec4::new(0.0, 0.0, -z, 1.0);
         clip.z / clip.w
     };
     for reversed in [false, true] {
         let matrix = if reversed { flip() * projection * view } else { projection * view };
-        let (stored, cleared) = if reversed { (1.0 - depth_at(planes[1]), 0.0) } else { (depth_at(planes[1]), 1.0) };
+        let (stored, cleared) =
+            if reversed { (1.0 - depth_at(planes[1]), 0.0) } else { (depth_at(planes[1]), 1.0) };
         let map = depths(16, |u, v| if u < 0.5 && v < 0.5 { stored } else { cleared });
-        let sampler = comparing(if reversed { Compare::GreaterEqual } else { Compare::LessEqual }, true);
+        let sampler =
+            comparing(if reversed { Compare::GreaterEqual } else { Compare::LessEqual }, true);
         let (mut rows, mut expected) = (Vec::new(), Vec::new());
         for (x, y, z) in places(planes) {
             // From a place on the map and a distance to the world: the inverse of what the shader does.
@@ -249,7 +286,14 @@ fn covered(run: &mut Run<'_>, view: DMat4, projection: DMat4, planes: [f64; 3]) 
             let ndc = DVec4::new(x * w, y * w, depth_at(z) * w, w);
             let point = (projection * view).inverse() * ndc;
             let point = point.truncate() / point.w;
-            rows.push(matrix.to_cols_array().into_iter().chain(point.to_array()).map(|value| value as f32).collect());
+            rows.push(
+                matrix
+                    .to_cols_array()
+                    .into_iter()
+                    .chain(point.to_array())
+                    .map(|value| value as f32)
+                    .collect(),
+            );
             expected.push(f64::from(u8::from(!(x < 0.0 && y > 0.0 && z > planes[1]))));
         }
         let found = run.call("lit", Some((map, sampler)), &rows)?;
@@ -271,32 +315,52 @@ fn places(planes: [f64; 3]) -> impl Iterator<Item = (f64, f64, f64)> {
 fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let back = (eye - target).normalize();
     let right = up.cross(back).normalize();
-    let world = DMat4::from_cols(right.extend(0.0), back.cross(right).extend(0.0), back.extend(0.0), eye.extend(1.0));
+    let world = DMat4::from_cols(
+        right.extend(0.0),
+        back.cross(right).extend(0.0),
+        back.extend(0.0),
+        eye.extend(1.0),
+    );
     world.inverse()
 }
 
 /// A box from -half to half, depths from 0 to 1 between the planes.
 fn orthographic(half: f64, near: f64, far: f64) -> DMat4 {
     let depth = 1.0 / (near - far);
-    DMat4::from_cols(DVec4::X / half, DVec4::Y / half, DVec4::Z * depth, DVec4::new(0.0, 0.0, near * depth, 1.0))
+    DMat4::from_cols(
+        DVec4::X / half,
+        DVec4::Y / half,
+        DVec4::Z * depth,
+        DVec4::new(0.0, 0.0, near * depth, 1.0),
+    )
 }
 
 /// A square cone of the angle, depths from 0 to 1 between the planes.
 fn perspective(angle: f64, near: f64, far: f64) -> DMat4 {
     let (scale, depth) = (1.0 / (angle / 2.0).tan(), far / (near - far));
-    DMat4::from_cols(DVec4::X * scale, DVec4::Y * scale, DVec4::new(0.0, 0.0, depth, -1.0), DVec4::Z * near * depth)
+    DMat4::from_cols(
+        DVec4::X * scale,
+        DVec4::Y * scale,
+        DVec4::new(0.0, 0.0, depth, -1.0),
+        DVec4::Z * near * depth,
+    )
 }
 
 /// Directional light from every octant and along the axes.
 fn octants(run: &mut Run<'_>) -> Result<(), String> {
     let signs = [-1.0, 1.0];
-    let octants = signs.into_iter().flat_map(|x| signs.into_iter().flat_map(move |y| signs.into_iter().map(move |z| DVec3::new(x, y, z))));
-    for octant in octants.chain([DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z]) {
+    let octants = signs.into_iter().flat_map(|x| {
+        signs.into_iter().flat_map(move |y| signs.into_iter().map(move |z| DVec3::new(x, y, z)))
+    });
+    for octant in
+        octants.chain([DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z])
+    {
         let direction = (octant * DVec3::new(0.6, 0.7, 0.4)).normalize();
         let up = if direction.y.abs() > 0.9 { DVec3::Z } else { DVec3::Y };
         let view = look_at(direction * 10.0, DVec3::ZERO, up);
         let projection = orthographic(4.0, 0.1, 20.0);
-        covered(run, view, projection, [6.0, 8.0, 12.0]).map_err(|error| format!("light from {direction}: {error}"))?;
+        covered(run, view, projection, [6.0, 8.0, 12.0])
+            .map_err(|error| format!("light from {direction}: {error}"))?;
     }
     Ok(())
 }
@@ -327,34 +391,55 @@ fn outside_is_lit(run: &mut Run<'_>) -> Result<(), String> {
         ([f32::MAX, 0.0, 0.5, 1.0], 0.0, 1.0),
         ([0.0, 0.0, 0.5, 1e-39], 0.0, 1.0),
     ];
-    let rows: Vec<_> = CLIPS.iter().map(|(clip, min_w, _)| [clip.as_slice(), &[*min_w]].concat()).collect();
-    let found = run.call("clip", Some((depths(4, |_, _| 0.0), comparing(Compare::LessEqual, true))), &rows)?;
+    let rows: Vec<_> =
+        CLIPS.iter().map(|(clip, min_w, _)| [clip.as_slice(), &[*min_w]].concat()).collect();
+    let found = run.call(
+        "clip",
+        Some((depths(4, |_, _| 0.0), comparing(Compare::LessEqual, true))),
+        &rows,
+    )?;
     let expected: Vec<_> = CLIPS.iter().map(|(_, _, lit)| *lit).collect();
     if found != expected {
         return Err(format!("{found:?}, not {expected:?}"));
     }
     // A map of moments, as `forward` reads it: the least variance leaves a millionth of the light.
-    let map = Texture { kind: TextureKind::Color2d, width: 4, height: 4, texels: [0.0, 0.0, 0.0, 1.0].repeat(16) };
+    let map = Texture {
+        kind: TextureKind::Color2d,
+        width: 4,
+        height: 4,
+        texels: [0.0, 0.0, 0.0, 1.0].repeat(16),
+    };
     let found = run.call("clip_moments", Some((map, plain(true))), &rows)?;
     let near = |(found, expected): (&f64, &f64)| (found - expected).abs() < 1e-4;
-    if found.iter().zip(&expected).all(near) { Ok(()) } else { Err(format!("moments: {found:?}, not {expected:?}")) }
+    if found.iter().zip(&expected).all(near) {
+        Ok(())
+    } else {
+        Err(format!("moments: {found:?}, not {expected:?}"))
+    }
 }
 
 /// The depth that is stored is lit; its neighbours in f32 fall on their sides.
 fn equal_depth_is_lit(run: &mut Run<'_>) -> Result<(), String> {
     let map = depths(8, |u, v| (u * 7.31 + v * 3.77).fract() * 0.9 + 0.05);
-    for (compare, nearer, farther) in [(Compare::LessEqual, 1.0, 0.0), (Compare::GreaterEqual, 0.0, 1.0)] {
+    for (compare, nearer, farther) in
+        [(Compare::LessEqual, 1.0, 0.0), (Compare::GreaterEqual, 0.0, 1.0)]
+    {
         let (mut rows, mut expected) = (Vec::new(), Vec::new());
         for (index, stored) in map.texels.iter().enumerate() {
             let (u, v) = ((index % 8) as f32 / 8.0 + 0.0625, (index / 8) as f32 / 8.0 + 0.0625);
-            for (depth, lit) in [(*stored, 1.0), (stored.next_down(), nearer), (stored.next_up(), farther)] {
+            for (depth, lit) in
+                [(*stored, 1.0), (stored.next_down(), nearer), (stored.next_up(), farther)]
+            {
                 rows.push(vec![u, v, depth]);
                 expected.push(lit);
             }
         }
         let found = run.call("stored", Some((map.clone(), comparing(compare, false))), &rows)?;
         if let Some(wrong) = (0..rows.len()).find(|index| found[*index] != expected[*index]) {
-            return Err(format!("{compare:?} {:?}: {}, not {}", rows[wrong], found[wrong], expected[wrong]));
+            return Err(format!(
+                "{compare:?} {:?}: {}, not {}",
+                rows[wrong], found[wrong], expected[wrong]
+            ));
         }
     }
     Ok(())
@@ -369,8 +454,17 @@ fn bias_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
         let cosine = (1.0 / (1.0 + slope * slope)).sqrt() as f32;
         let places: Vec<f64> = (0..128).map(|i| (f64::from(i) + 0.5) / 128.0).collect();
         let mut dark = |beyond: f64, texels: f32| -> Result<usize, String> {
-            let rows: Vec<_> = places.iter().map(|u| vec![*u as f32, 0.5, (receiver(*u) + beyond) as f32, cosine, texels / 16.0]).collect();
-            let found = run.call("sloped", Some((map.clone(), comparing(Compare::LessEqual, false))), &rows)?;
+            let rows: Vec<_> = places
+                .iter()
+                .map(|u| {
+                    vec![*u as f32, 0.5, (receiver(*u) + beyond) as f32, cosine, texels / 16.0]
+                })
+                .collect();
+            let found = run.call(
+                "sloped",
+                Some((map.clone(), comparing(Compare::LessEqual, false))),
+                &rows,
+            )?;
             Ok(found.iter().filter(|lit| **lit == 0.0).count())
         };
         let counts = [dark(0.0, 0.0)?, dark(0.0, 0.501)?, dark(0.08, 0.501)?];
@@ -386,11 +480,13 @@ fn bias_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
 fn normal_offset_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
     const SIDE: u32 = 16;
     let direction = DVec3::new(0.7, 0.6, 0.3).normalize();
-    let plain_matrix = orthographic(4.0, 0.1, 20.0) * look_at(direction * 10.0, DVec3::ZERO, DVec3::Y);
+    let plain_matrix =
+        orthographic(4.0, 0.1, 20.0) * look_at(direction * 10.0, DVec3::ZERO, DVec3::Y);
     let from_map = plain_matrix.inverse();
     // Along a ray of parallel light the height falls evenly with the depth.
     let floor = |u: f64, v: f64| {
-        let height = |depth: f64| (from_map * DVec4::new(2.0 * u - 1.0, 1.0 - 2.0 * v, depth, 1.0)).y;
+        let height =
+            |depth: f64| (from_map * DVec4::new(2.0 * u - 1.0, 1.0 - 2.0 * v, depth, 1.0)).y;
         height(0.0) / (height(0.0) - height(1.0))
     };
     let texel = 8.0 / f64::from(SIDE);
@@ -399,10 +495,19 @@ fn normal_offset_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
         let matrix = if reversed { flip() * plain_matrix } else { plain_matrix };
         let mut dark = |nearer: f64, scale: f64| -> Result<usize, String> {
             let map = depths(SIDE, |u, v| held(floor(u, v) - nearer));
-            let places = (0..144).map(|i| DVec3::new(f64::from(i % 12) / 3.0 - 1.9, 0.0, f64::from(i / 12) / 3.0 - 1.8));
+            let places = (0..144).map(|i| {
+                DVec3::new(f64::from(i % 12) / 3.0 - 1.9, 0.0, f64::from(i / 12) / 3.0 - 1.8)
+            });
             let row = |p: DVec3| {
-                let vectors = [p, DVec3::Y, direction].into_iter().flat_map(|vector| vector.to_array());
-                matrix.to_cols_array().into_iter().chain(vectors).chain([texel, scale]).map(|value| value as f32).collect()
+                let vectors =
+                    [p, DVec3::Y, direction].into_iter().flat_map(|vector| vector.to_array());
+                matrix
+                    .to_cols_array()
+                    .into_iter()
+                    .chain(vectors)
+                    .chain([texel, scale])
+                    .map(|value| value as f32)
+                    .collect()
             };
             let rows: Vec<Vec<f32>> = places.map(row).collect();
             let found = run.call("raised", Some((map, comparing(compare, false))), &rows)?;
@@ -410,7 +515,9 @@ fn normal_offset_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
         };
         let counts = [dark(0.0, 0.0)?, dark(0.0, 0.75)?, dark(0.05, 0.75)?];
         if !(36..108).contains(&counts[0]) || counts[1..] != [0, 144] {
-            return Err(format!("reversed {reversed}: {counts:?} of 144 are dark, not about half, 0 and 144"));
+            return Err(format!(
+                "reversed {reversed}: {counts:?} of 144 are dark, not about half, 0 and 144"
+            ));
         }
     }
     Ok(())
@@ -428,7 +535,8 @@ fn receiver_plane_follows_slope(run: &mut Run<'_>) -> Result<(), String> {
         let sign = if reversed { -1.0 } else { 1.0 };
         let map = depths(32, |u, v| held(receiver(u, v)));
         let mut lit = |beyond: f64, share: f64| -> Result<[f64; 2], String> {
-            let places = (0..64).map(|i| (0.3 + 0.05 * f64::from(i % 8), 0.3 + 0.05 * f64::from(i / 8)));
+            let places =
+                (0..64).map(|i| (0.3 + 0.05 * f64::from(i % 8), 0.3 + 0.05 * f64::from(i / 8)));
             let row = |(u, v): (f64, f64)| {
                 let (duv_dx, duv_dy) = ([0.01, 0.002], [-0.003, 0.008]);
                 let rise = |duv: [f64; 2]| sign * (SLOPE[0] * duv[0] + SLOPE[1] * duv[1]);
@@ -442,12 +550,18 @@ fn receiver_plane_follows_slope(run: &mut Run<'_>) -> Result<(), String> {
                     .collect()
             };
             let rows: Vec<Vec<f32>> = places.map(row).collect();
-            let found = run.call("planar", Some((map.clone(), comparing(compare, false))), &rows)?;
-            Ok([found.iter().copied().fold(1.0, f64::min), found.iter().copied().fold(0.0, f64::max)])
+            let found =
+                run.call("planar", Some((map.clone(), comparing(compare, false))), &rows)?;
+            Ok([
+                found.iter().copied().fold(1.0, f64::min),
+                found.iter().copied().fold(0.0, f64::max),
+            ])
         };
         let (followed, level, behind) = (lit(0.0, 1.0)?, lit(0.0, 0.0)?, lit(0.1, 1.0)?);
         if followed != [1.0, 1.0] || level[1] > 0.9 || behind != [0.0, 0.0] {
-            return Err(format!("reversed {reversed}: least and most {followed:?}, {level:?}, {behind:?}"));
+            return Err(format!(
+                "reversed {reversed}: least and most {followed:?}, {level:?}, {behind:?}"
+            ));
         }
     }
     Ok(())
@@ -458,7 +572,9 @@ fn cube_octants(run: &mut Run<'_>) -> Result<(), String> {
     const SIDE: u32 = 8;
     let (near, far) = (0.1, 20.0);
     let depth = |distance: f64| far / (far - near) * (1.0 - near / distance);
-    let octant = |index: u32| DVec3::from_array([0, 1, 2].map(|axis| if index & (1 << axis) == 0 { 1.0 } else { -1.0 }));
+    let octant = |index: u32| {
+        DVec3::from_array([0, 1, 2].map(|axis| if index & (1 << axis) == 0 { 1.0 } else { -1.0 }))
+    };
     let within = |p: DVec3, index: u32| (p * octant(index)).min_element() > 0.0;
     for reversed in [false, true] {
         let (held, compare) = reversal(reversed);
@@ -468,21 +584,36 @@ fn cube_octants(run: &mut Run<'_>) -> Result<(), String> {
                 let towards = face_direction(face, place(x), place(y));
                 held(if within(towards, covered) { depth(2.0) } else { 1.0 }) as f32
             };
-            let texels = (0..6).flat_map(|face| (0..SIDE * SIDE).map(move |i| texel(face, i % SIDE, i / SIDE))).collect();
+            let texels = (0..6)
+                .flat_map(|face| (0..SIDE * SIDE).map(move |i| texel(face, i % SIDE, i / SIDE)))
+                .collect();
             let map = Texture { kind: TextureKind::DepthCube, width: SIDE, height: SIDE, texels };
             let (mut rows, mut expected) = (Vec::new(), Vec::new());
-            for (index, distance) in (0..8).flat_map(|index| [(index, 1.0), (index, 1.99), (index, 2.01), (index, 4.0)]) {
-                for shape in [DVec3::new(1.0, 0.6, 0.5), DVec3::new(0.5, 1.0, 0.6), DVec3::new(0.6, 0.5, 1.0)] {
+            for (index, distance) in
+                (0..8).flat_map(|index| [(index, 1.0), (index, 1.99), (index, 2.01), (index, 4.0)])
+            {
+                for shape in [
+                    DVec3::new(1.0, 0.6, 0.5),
+                    DVec3::new(0.5, 1.0, 0.6),
+                    DVec3::new(0.6, 0.5, 1.0),
+                ] {
                     let offset = octant(index) * shape * distance;
                     rows.push(
-                        offset.to_array().into_iter().chain([near, far, f64::from(u8::from(reversed))]).map(|value| value as f32).collect(),
+                        offset
+                            .to_array()
+                            .into_iter()
+                            .chain([near, far, f64::from(u8::from(reversed))])
+                            .map(|value| value as f32)
+                            .collect(),
                     );
                     expected.push(f64::from(u8::from(!(index == covered && distance > 2.0))));
                 }
             }
             let found = run.call("cube", Some((map, comparing(compare, true))), &rows)?;
             if found != expected {
-                return Err(format!("reversed {reversed}, octant {covered}: {found:?}, not {expected:?}"));
+                return Err(format!(
+                    "reversed {reversed}, octant {covered}: {found:?}, not {expected:?}"
+                ));
             }
         }
     }
@@ -546,22 +677,35 @@ fn warped_moments_of_two_depths(run: &mut Run<'_>) -> Result<(), String> {
 
 /// A filtered edge between an occluder and the receiver behind it: Chebyshev's bound is the lit
 /// share itself there, so the penumbra is a straight line; and it is an upper bound everywhere.
-fn two_depths(run: &mut Run<'_>, function: &str, error: f64, moments: impl Fn(f64) -> [f64; 4]) -> Result<(), String> {
+fn two_depths(
+    run: &mut Run<'_>,
+    function: &str,
+    error: f64,
+    moments: impl Fn(f64) -> [f64; 4],
+) -> Result<(), String> {
     const SIDE: u32 = 32;
     let (near, far) = (0.25, 0.75);
     let share = |x: u32| (f64::from(x) / f64::from(SIDE - 1)).clamp(0.0, 1.0);
     let (before, behind) = (moments(near), moments(far));
-    let texel = |x: u32| (0..4).map(move |channel| (before[channel] * (1.0 - share(x)) + behind[channel] * share(x)) as f32);
+    let texel = |x: u32| {
+        (0..4).map(move |channel| {
+            (before[channel] * (1.0 - share(x)) + behind[channel] * share(x)) as f32
+        })
+    };
     let texels = (0..SIDE).flat_map(texel).collect();
     let map = Texture { kind: TextureKind::Color2d, width: SIDE, height: 1, texels };
     let depths = [0.2f32, 0.25, 0.3, 0.5, 0.75];
-    let rows: Vec<_> = depths.iter().flat_map(|t| (0..SIDE).map(move |x| vec![(x as f32 + 0.5) / SIDE as f32, 0.5, *t])).collect();
+    let rows: Vec<_> = depths
+        .iter()
+        .flat_map(|t| (0..SIDE).map(move |x| vec![(x as f32 + 0.5) / SIDE as f32, 0.5, *t]))
+        .collect();
     let found = run.call(function, Some((map, plain(false))), &rows)?;
     for (values, t) in found.chunks(SIDE as usize).zip(depths) {
         let lit = |x: usize| if f64::from(t) <= near { 1.0 } else { share(x as u32) };
         let bounds = values.iter().enumerate().all(|(x, value)| *value >= lit(x) - error);
         let rises = values.windows(2).all(|pair| pair[1] >= pair[0] - error);
-        let exact = t != 0.75 || values.iter().enumerate().all(|(x, value)| (value - lit(x)).abs() < error);
+        let exact =
+            t != 0.75 || values.iter().enumerate().all(|(x, value)| (value - lit(x)).abs() < error);
         if !(bounds && rises && exact) {
             return Err(format!("depth {t}: {values:?}"));
         }
@@ -575,7 +719,9 @@ fn random_taps_shift(run: &mut Run<'_>) -> Result<(), String> {
     let (places, pixels) = (128u32, 64u32);
     for w in [1.0f32, 2.0, 4.0] {
         let mut rows = Vec::new();
-        for (place, pixel) in (0..places).flat_map(|place| (0..pixels).map(move |pixel| (place, pixel))) {
+        for (place, pixel) in
+            (0..places).flat_map(|place| (0..pixels).map(move |pixel| (place, pixel)))
+        {
             let u = 0.1 + 0.6 * (place as f32 + 0.5) / places as f32;
             rows.push(vec![
                 (2.0 * u - 1.0) * w,
@@ -586,12 +732,22 @@ fn random_taps_shift(run: &mut Run<'_>) -> Result<(), String> {
                 (pixel * 31 % 97) as f32 + 0.5,
             ]);
         }
-        let found = run.call("random", Some((map.clone(), comparing(Compare::LessEqual, true))), &rows)?;
+        let found =
+            run.call("random", Some((map.clone(), comparing(Compare::LessEqual, true))), &rows)?;
         // Where the shadow ends on average, from its area.
-        let edge = |form: usize| 0.7 - 0.6 * found.iter().skip(form).step_by(2).sum::<f64>() / f64::from(places * pixels);
+        let edge = |form: usize| {
+            0.7 - 0.6 * found.iter().skip(form).step_by(2).sum::<f64>() / f64::from(places * pixels)
+        };
         let shift = 0.125 / f64::from(w);
-        if (edge(0) - 0.5).abs() > 0.002 || (edge(1) - (0.5 - shift)).abs() > 0.01 * f64::from(1.0 / w) {
-            return Err(format!("w {w}: the edges are at {} and {}, not 0.5 and {}", edge(0), edge(1), 0.5 - shift));
+        if (edge(0) - 0.5).abs() > 0.002
+            || (edge(1) - (0.5 - shift)).abs() > 0.01 * f64::from(1.0 / w)
+        {
+            return Err(format!(
+                "w {w}: the edges are at {} and {}, not 0.5 and {}",
+                edge(0),
+                edge(1),
+                0.5 - shift
+            ));
         }
     }
     Ok(())
@@ -603,7 +759,8 @@ fn kernel_adds_up(run: &mut Run<'_>) -> Result<(), String> {
     let weights = run.call_words("weight", None, &words)?;
     let sum: f64 = weights.iter().sum();
     let mirrored = weights.iter().eq(weights.iter().rev());
-    let variance: f64 = weights.iter().zip(-10..).map(|(weight, i)| weight * f64::from(i * i)).sum();
+    let variance: f64 =
+        weights.iter().zip(-10..).map(|(weight, i)| weight * f64::from(i * i)).sum();
     if (sum - 1.0).abs() < 1e-6 && mirrored && (7.9..8.0).contains(&variance) {
         Ok(())
     } else {

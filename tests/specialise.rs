@@ -81,12 +81,20 @@ fn shared() -> Outcome {
     let mut units = keys.iter().map(|key| shader.find(key)).collect::<Result<Vec<_>, _>>()?;
     units.sort_unstable();
     units.dedup();
-    check(keys.len() == 12 && units.len() == 2, &format!("{} keys, {} shaders", keys.len(), units.len()))?;
+    check(
+        keys.len() == 12 && units.len() == 2,
+        &format!("{} keys, {} shaders", keys.len(), units.len()),
+    )?;
     for target in Target::ALL {
         let found = shader.get("taps=16,negative", *target)?;
-        let values: Vec<String> = found.constants.iter().map(|constant| format!("{}={}", constant.name, constant.value)).collect();
+        let values: Vec<String> = found
+            .constants
+            .iter()
+            .map(|constant| format!("{}={}", constant.name, constant.value))
+            .collect();
         check(values == ["negative=true", "taps=16"], &format!("{values:?}"))?;
-        let mut choices: Vec<&str> = found.native.choices.iter().map(|choice| choice.name.as_str()).collect();
+        let mut choices: Vec<&str> =
+            found.native.choices.iter().map(|choice| choice.name.as_str()).collect();
         choices.sort_unstable();
         check(choices == ["negative", "taps"], &format!("{target}: {choices:?}"))?;
     }
@@ -95,7 +103,8 @@ fn shared() -> Outcome {
 
 /// Runs a tool of the distribution.
 fn run(tool: &str, arguments: &[&str]) -> Result<String, Failed> {
-    let output = Command::new(tool).args(arguments).output().map_err(|error| format!("{tool}: {error}"))?;
+    let output =
+        Command::new(tool).args(arguments).output().map_err(|error| format!("{tool}: {error}"))?;
     let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
     if output.status.success() { Ok(said) } else { Err(format!("{tool}: {said}").into()) }
 }
@@ -106,13 +115,38 @@ fn spirv() -> Outcome {
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     std::fs::write(path("a.spv"), &found.bytes)?;
     run("spirv-val", &["--target-env", "vulkan1.1", &path("a.spv")])?;
-    let id = |name: &str| found.native.choices.iter().find(|choice| choice.name == name).and_then(|choice| choice.id).ok_or("no id");
+    let id = |name: &str| {
+        found
+            .native
+            .choices
+            .iter()
+            .find(|choice| choice.name == name)
+            .and_then(|choice| choice.id)
+            .ok_or("no id")
+    };
     let chosen = format!("{}:16 {}:true", id("taps")?, id("negative")?);
-    run("spirv-opt", &["--set-spec-const-default-value", &chosen, "--freeze-spec-const", "-O", &path("a.spv"), "-o", &path("b.spv")])?;
+    run(
+        "spirv-opt",
+        &[
+            "--set-spec-const-default-value",
+            &chosen,
+            "--freeze-spec-const",
+            "-O",
+            &path("a.spv"),
+            "-o",
+            &path("b.spv"),
+        ],
+    )?;
     run("spirv-val", &["--target-env", "vulkan1.1", &path("b.spv")])?;
     let text = run("spirv-dis", &["--raw-id", &path("a.spv")])?;
-    check(text.matches("OpSpecConstant").count() == 2 && text.matches("SpecId").count() == 2, &text)?;
-    check(!text.lines().any(|line| line.contains("OpVariable") && line.contains("Private")), &text)?;
+    check(
+        text.matches("OpSpecConstant").count() == 2 && text.matches("SpecId").count() == 2,
+        &text,
+    )?;
+    check(
+        !text.lines().any(|line| line.contains("OpVariable") && line.contains("Private")),
+        &text,
+    )?;
     let text = run("spirv-dis", &["--raw-id", &path("b.spv")])?;
     check(!text.contains("OpSpecConstant"), &text)
 }
@@ -123,10 +157,15 @@ fn values() -> Outcome {
     for (key, expected) in [("default", 198.0), ("taps=5", 60.0), ("negative,taps=16", -632.0)] {
         let found = found(key, Target::WGSL)?;
         let number = |value: &str| value.parse().unwrap_or(f64::from(u8::from(value == "true")));
-        let constants: Vec<(&str, f64)> =
-            found.constants.iter().map(|constant| (constant.name.as_str(), number(&constant.value))).collect();
+        let constants: Vec<(&str, f64)> = found
+            .constants
+            .iter()
+            .map(|constant| (constant.name.as_str(), number(&constant.value)))
+            .collect();
         let source = wgpu::ShaderSource::Wgsl(std::str::from_utf8(&found.bytes)?.into());
-        let module = device.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let module = device
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
         let drawn = device.draw(&module, &constants)?;
         check(drawn == [expected, 1.0, 0.0, 1.0], &format!("WGSL {key}: {drawn:?}"))?;
         let drawn = device.draw(&device.chosen(key)?, &[])?;
@@ -152,10 +191,14 @@ struct Out { @builtin(position) position: vec4f, @location(0) x: f32 }
 impl Drawing {
     fn open() -> Result<Self, Failed> {
         let backends = wgpu::Backends::VULKAN;
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle() });
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
         let mut adapters = block_on(instance.enumerate_adapters(backends));
         adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
-        let adapter = adapters.into_iter().next().ok_or("no Vulkan driver: cargo xtask test installs one")?;
+        let adapter =
+            adapters.into_iter().next().ok_or("no Vulkan driver: cargo xtask test installs one")?;
         let descriptor = wgpu::DeviceDescriptor {
             required_features: wgpu::Features::PASSTHROUGH_SHADERS,
             required_limits: adapter.limits(),
@@ -165,7 +208,8 @@ impl Drawing {
         };
         let (device, queue) = block_on(adapter.request_device(&descriptor))?;
         let source = wgpu::ShaderSource::Wgsl(VERTEX.into());
-        let vertex = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let vertex =
+            device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
         Ok(Self { device, queue, vertex })
     }
 
@@ -176,22 +220,57 @@ impl Drawing {
         let folder = tempfile::tempdir()?;
         let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
         std::fs::write(path("a.spv"), &found.bytes)?;
-        let id = |name: &str| found.native.choices.iter().find(|choice| choice.name == name).and_then(|choice| choice.id);
-        let values = found.constants.iter().filter_map(|constant| Some(format!("{}:{}", id(&constant.name)?, constant.value)));
+        let id = |name: &str| {
+            found
+                .native
+                .choices
+                .iter()
+                .find(|choice| choice.name == name)
+                .and_then(|choice| choice.id)
+        };
+        let values = found
+            .constants
+            .iter()
+            .filter_map(|constant| Some(format!("{}:{}", id(&constant.name)?, constant.value)));
         let values: Vec<String> = values.collect();
-        run("spirv-opt", &["--set-spec-const-default-value", &values.join(" "), &path("a.spv"), "-o", &path("b.spv")])?;
+        run(
+            "spirv-opt",
+            &[
+                "--set-spec-const-default-value",
+                &values.join(" "),
+                &path("a.spv"),
+                "-o",
+                &path("b.spv"),
+            ],
+        )?;
         let bytes = std::fs::read(path("b.spv"))?;
-        let words: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
-        let entry = wgpu::PassthroughShaderEntryPoint { name: found.native.entry_name.as_str().into(), workgroup_size: (0, 0, 0) };
+        let words: Vec<u32> =
+            bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        let entry = wgpu::PassthroughShaderEntryPoint {
+            name: found.native.entry_name.as_str().into(),
+            workgroup_size: (0, 0, 0),
+        };
         let entry_points = std::slice::from_ref(&entry).into();
-        let descriptor = wgpu::ShaderModuleDescriptorPassthrough { entry_points, spirv: Some(words.into()), ..Default::default() };
+        let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
+            entry_points,
+            spirv: Some(words.into()),
+            ..Default::default()
+        };
         // SAFETY: `spirv-val` accepts the words.
         Ok(unsafe { self.device.create_shader_module_passthrough(descriptor) })
     }
 
-    fn draw(&self, fragment: &wgpu::ShaderModule, constants: &[(&str, f64)]) -> Result<Vec<f32>, Failed> {
+    fn draw(
+        &self,
+        fragment: &wgpu::ShaderModule,
+        constants: &[(&str, f64)],
+    ) -> Result<Vec<f32>, Failed> {
         let format = wgpu::TextureFormat::Rgba32Float;
-        let layout = wgpu::PipelineLayoutDescriptor { label: None, bind_group_layouts: &[], immediate_size: 0 };
+        let layout = wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[],
+            immediate_size: 0,
+        };
         let pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
             layout: Some(&self.device.create_pipeline_layout(&layout)),
@@ -207,7 +286,10 @@ impl Drawing {
             fragment: Some(wgpu::FragmentState {
                 module: fragment,
                 entry_point: Some("fs_main"),
-                compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants,
+                    ..Default::default()
+                },
                 targets: &[Some(format.into())],
             }),
             multiview_mask: None,
@@ -225,21 +307,47 @@ impl Drawing {
             view_formats: &[],
         });
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 256, usage, mapped_at_creation: false });
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 256,
+            usage,
+            mapped_at_creation: false,
+        });
         let view = target.create_view(&Default::default());
-        let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
-        let attachment = wgpu::RenderPassColorAttachment { view: &view, depth_slice: None, resolve_target: None, ops };
+        let ops = wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            store: wgpu::StoreOp::Store,
+        };
+        let attachment = wgpu::RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops,
+        };
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        let mut pass =
-            encoder.begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: &[Some(attachment)], ..Default::default() });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(attachment)],
+            ..Default::default()
+        });
         pass.set_pipeline(&pipeline);
         pass.draw(0..3, 0..1);
         drop(pass);
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(256), rows_per_image: None };
-        encoder.copy_texture_to_buffer(target.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, size);
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(256),
+            rows_per_image: None,
+        };
+        encoder.copy_texture_to_buffer(
+            target.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+            size,
+        );
         self.queue.submit([encoder.finish()]);
         buffer.map_async(wgpu::MapMode::Read, .., |_| ());
-        self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(std::time::Duration::from_secs(30)) })?;
+        self.device.poll(wgpu::PollType::Wait {
+            submission_index: None,
+            timeout: Some(std::time::Duration::from_secs(30)),
+        })?;
         let bytes = buffer.get_mapped_range(..).map_err(|error| format!("{error:?}"))?;
         Ok(bytes[..16].as_chunks::<4>().0.iter().map(|word| f32::from_le_bytes(*word)).collect())
     }
@@ -271,16 +379,23 @@ fn texts() -> Outcome {
 /// A text in GLSL is composed for each value, and `variants` says so.
 fn static_in_glsl() -> Outcome {
     let folder = tempfile::tempdir()?;
-    let manifest = MANIFEST.replace("wesl = \"spec.wesl\"", "glsl = { fragment = \"spec.frag.glsl\" }\ntargets = [\"glsl450\"]");
+    let manifest = MANIFEST.replace(
+        "wesl = \"spec.wesl\"",
+        "glsl = { fragment = \"spec.frag.glsl\" }\ntargets = [\"glsl450\"]",
+    );
     std::fs::write(folder.path().join("lamplight.toml"), manifest)?;
-    let text = "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(float(TAPS)); }\n";
+    let text =
+        "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(float(TAPS)); }\n";
     std::fs::write(folder.path().join("spec.frag.glsl"), text)?;
     let bundle = bundle_of(folder.path())?;
     let shader = bundle.program("spec")?.shader("fragment")?;
     for (key, value) in [("default", "9"), ("taps=16", "16")] {
         let found = shader.get(key, Target::GLSL450)?;
         let text = String::from_utf8(found.bytes)?;
-        check(found.constants.is_empty() && found.native.choices.is_empty() && text.contains(value), &text)?;
+        check(
+            found.constants.is_empty() && found.native.choices.is_empty() && text.contains(value),
+            &text,
+        )?;
     }
     let manifest = folder.path().join("lamplight.toml").to_string_lossy().into_owned();
     let said = run(env!("CARGO_BIN_EXE_lamplight"), &["variants", "--manifest", &manifest])?;
@@ -291,13 +406,18 @@ fn static_in_glsl() -> Outcome {
 fn usage() -> Outcome {
     let folder = tempfile::tempdir()?;
     let used = "spec tint=green\nspec taps=16\nspec gone=1\nspec tint=mauve\nother x\n";
-    std::fs::write(folder.path().join("lamplight.toml"), MANIFEST.replace("wesl =", "usage = \"spec.used\"\nwesl ="))?;
+    std::fs::write(
+        folder.path().join("lamplight.toml"),
+        MANIFEST.replace("wesl =", "usage = \"spec.used\"\nwesl ="),
+    )?;
     std::fs::write(folder.path().join("spec.wesl"), TEXT)?;
     std::fs::write(folder.path().join("spec.used"), used)?;
     let keys = bundle_of(folder.path())?.program("spec")?.shader("fs_main")?.keys()?;
     check(keys == ["taps=16", "tint=green"], &format!("{keys:?}"))?;
     let mut sources = SourceSet::default();
-    let manifest = project::read_manifest(&folder.path().join("lamplight.toml"), &mut sources).map_err(|_| "no manifest")?;
-    let told: Vec<&str> = manifest.warnings.iter().map(|warning| warning.message.as_str()).collect();
+    let manifest = project::read_manifest(&folder.path().join("lamplight.toml"), &mut sources)
+        .map_err(|_| "no manifest")?;
+    let told: Vec<&str> =
+        manifest.warnings.iter().map(|warning| warning.message.as_str()).collect();
     check(told.len() == 2 && told[0].contains("`gone=1`"), &format!("{told:?}"))
 }

@@ -15,7 +15,9 @@ use lamplight::diagnostic::Diagnostics;
 use lamplight::permute::{Setting, Settings};
 use lamplight::resolve::{self, Packages, wesl::Graph};
 use lamplight::source::{Memory, Package, SourceSet};
-use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescriptor, ShaderDefValue};
+use naga_oil::compose::{
+    ComposableModuleDescriptor, Composer, NagaModuleDescriptor, ShaderDefValue,
+};
 
 use crate::Outcome;
 use crate::corpus::{self, Dialect, FLAGS, MODULES, ROOTS};
@@ -28,23 +30,39 @@ const JOBS: usize = ROOTS * PERMUTATIONS;
 /// Prints every figure; the last line is the two ratios.
 pub fn run() -> Outcome {
     let lines = corpus::lines(Dialect::Wesl);
-    println!("corpus: {MODULES} modules, {lines} lines, {ROOTS} roots, {PERMUTATIONS} permutations of {FLAGS} flags each");
+    println!(
+        "corpus: {MODULES} modules, {lines} lines, {ROOTS} roots, {PERMUTATIONS} permutations of {FLAGS} flags each"
+    );
     let files = files();
     println!("lamplight: all modules loaded and indexed in {}", millis(loading(&files)?));
     let graphs = timed(|| load(&files));
-    println!("lamplight: {ROOTS} roots loaded, each with what it reaches, in {}", millis(graphs.elapsed));
+    println!(
+        "lamplight: {ROOTS} roots loaded, each with what it reaches, in {}",
+        millis(graphs.elapsed)
+    );
     let ours = compose(&graphs.value?)?;
-    println!("lamplight: {} lines of text a permutation", ours.value.iter().map(|text| text.lines().count()).sum::<usize>() / JOBS);
+    println!(
+        "lamplight: {} lines of text a permutation",
+        ours.value.iter().map(|text| text.lines().count()).sum::<usize>() / JOBS
+    );
     let theirs = wesl_texts()?;
     println!("to text: lamplight {}, wesl {}", ours.rate(), theirs.rate());
     let naga = parse(&ours.value)?;
     let share = 100.0 * ours.elapsed.as_secs_f64() / naga.parse.as_secs_f64();
-    println!("composition adds {share:.1} % to naga's parsing ({} to {})", millis(ours.elapsed), millis(naga.parse));
+    println!(
+        "composition adds {share:.1} % to naga's parsing ({} to {})",
+        millis(ours.elapsed),
+        millis(naga.parse)
+    );
     let oil = naga_oil_modules()?;
     let whole = Timed { value: (), elapsed: ours.elapsed + naga.parse + naga.validate, jobs: JOBS };
     println!("to a validated module: lamplight {}, naga_oil {}", whole.rate(), oil.rate());
     library::run()?;
-    println!("compose: {:.1}x wesl, {:.2}x naga_oil", ours.times_faster(&theirs), whole.times_faster(&oil));
+    println!(
+        "compose: {:.1}x wesl, {:.2}x naga_oil",
+        ours.times_faster(&theirs),
+        whole.times_faster(&oil)
+    );
     Ok(())
 }
 
@@ -79,13 +97,19 @@ fn timed<T>(make: impl FnOnce() -> T) -> Timed<T> {
 }
 
 fn files() -> BTreeMap<String, String> {
-    let modules = (0..MODULES).map(|module| (format!("{}.wesl", corpus::path(module).join("/")), corpus::module(module, Dialect::Wesl)));
-    let roots = (0..ROOTS).map(|root| (format!("root_{root}.wesl"), corpus::root(root, Dialect::Wesl)));
+    let modules = (0..MODULES).map(|module| {
+        (format!("{}.wesl", corpus::path(module).join("/")), corpus::module(module, Dialect::Wesl))
+    });
+    let roots =
+        (0..ROOTS).map(|root| (format!("root_{root}.wesl"), corpus::root(root, Dialect::Wesl)));
     modules.chain(roots).chain([("everything.wesl".to_owned(), corpus::everything())]).collect()
 }
 
 fn packages(files: &BTreeMap<String, String>) -> Packages {
-    Packages { root: Package { name: "package".to_owned(), files: Box::new(Memory(files.clone())) }, dependencies: Vec::new() }
+    Packages {
+        root: Package { name: "package".to_owned(), files: Box::new(Memory(files.clone())) },
+        dependencies: Vec::new(),
+    }
 }
 
 /// The best of several: the first one touches memory that no engine would touch twice.
@@ -93,7 +117,8 @@ fn loading(files: &BTreeMap<String, String>) -> Result<Duration, String> {
     let packages = packages(files);
     let mut best = Duration::MAX;
     for _ in 0..5 {
-        let loaded = timed(|| resolve::wesl::load(&mut SourceSet::default(), &packages, "everything.wesl"));
+        let loaded =
+            timed(|| resolve::wesl::load(&mut SourceSet::default(), &packages, "everything.wesl"));
         loaded.value.map_err(told)?;
         best = best.min(loaded.elapsed);
     }
@@ -102,7 +127,10 @@ fn loading(files: &BTreeMap<String, String>) -> Result<Duration, String> {
 
 fn load(files: &BTreeMap<String, String>) -> Result<Vec<Graph>, String> {
     let packages = packages(files);
-    let load = |root| resolve::wesl::load(&mut SourceSet::default(), &packages, &format!("root_{root}.wesl")).map_err(told);
+    let load = |root| {
+        resolve::wesl::load(&mut SourceSet::default(), &packages, &format!("root_{root}.wesl"))
+            .map_err(told)
+    };
     (0..ROOTS).map(load).collect()
 }
 
@@ -113,32 +141,50 @@ fn told(diagnostics: Diagnostics) -> String {
 fn compose(graphs: &[Graph]) -> Result<Timed<Vec<String>>, String> {
     let settings: Vec<Settings> = (0..PERMUTATIONS).map(settings).collect();
     let options = Options::default();
-    let jobs = || graphs.iter().flat_map(|graph| settings.iter().map(move |settings| (graph, settings)));
-    let texts = timed(|| jobs().map(|(graph, settings)| Ok(composer::compose(graph, settings, &options)?.text)).collect::<Result<_, _>>());
+    let jobs =
+        || graphs.iter().flat_map(|graph| settings.iter().map(move |settings| (graph, settings)));
+    let texts = timed(|| {
+        jobs()
+            .map(|(graph, settings)| Ok(composer::compose(graph, settings, &options)?.text))
+            .collect::<Result<_, _>>()
+    });
     Ok(Timed { value: texts.value.map_err(told)?, elapsed: texts.elapsed, jobs: JOBS })
 }
 
 fn settings(permutation: usize) -> Settings {
-    let values = (0..FLAGS).map(|flag| (corpus::flag_name(flag, Dialect::Wesl), Setting::Bool(corpus::flag(permutation, flag))));
+    let values = (0..FLAGS).map(|flag| {
+        (corpus::flag_name(flag, Dialect::Wesl), Setting::Bool(corpus::flag(permutation, flag)))
+    });
     Settings { values: values.collect(), ..Settings::default() }
 }
 
 fn wesl_texts() -> Result<Timed<()>, Box<dyn Error>> {
     let mut resolver = wesl::VirtualResolver::new();
-    let module_path = |segments| wesl::ModulePath::new(wesl::syntax::PathOrigin::Absolute, segments);
+    let module_path =
+        |segments| wesl::ModulePath::new(wesl::syntax::PathOrigin::Absolute, segments);
     for module in 0..MODULES {
-        resolver.add_module(module_path(corpus::path(module)), Cow::Owned(corpus::module(module, Dialect::Wesl)));
+        resolver.add_module(
+            module_path(corpus::path(module)),
+            Cow::Owned(corpus::module(module, Dialect::Wesl)),
+        );
     }
     for root in 0..ROOTS {
-        resolver.add_module(module_path(vec![format!("root_{root}")]), Cow::Owned(corpus::root(root, Dialect::Wesl)));
+        resolver.add_module(
+            module_path(vec![format!("root_{root}")]),
+            Cow::Owned(corpus::root(root, Dialect::Wesl)),
+        );
     }
     let mut compiler = wesl::Wesl::new_barebones().set_custom_resolver(resolver);
-    compiler.set_options(wesl::CompileOptions { validate: false, ..wesl::CompileOptions::default() });
+    compiler
+        .set_options(wesl::CompileOptions { validate: false, ..wesl::CompileOptions::default() });
     let start = Instant::now();
     for root in 0..ROOTS {
         for permutation in 0..PERMUTATIONS {
             for flag in 0..FLAGS {
-                compiler.set_feature(&corpus::flag_name(flag, Dialect::Wesl), corpus::flag(permutation, flag));
+                compiler.set_feature(
+                    &corpus::flag_name(flag, Dialect::Wesl),
+                    corpus::flag(permutation, flag),
+                );
             }
             let path = module_path(vec![format!("root_{root}")]);
             black_box(compiler.compile(&path)?.to_string());
@@ -153,17 +199,24 @@ struct Naga {
 }
 
 fn parse(texts: &[String]) -> Result<Naga, String> {
-    let parse = |text: &String| naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text));
+    let parse = |text: &String| {
+        naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))
+    };
     let parsed = timed(|| texts.iter().map(parse).collect::<Result<Vec<_>, _>>());
     let modules = parsed.value?;
-    let validate = |module: &naga::Module| validator().validate(module).map(drop).map_err(|error| error.to_string());
+    let validate = |module: &naga::Module| {
+        validator().validate(module).map(drop).map_err(|error| error.to_string())
+    };
     let validated = timed(|| modules.iter().try_for_each(validate));
     validated.value?;
     Ok(Naga { parse: parsed.elapsed, validate: validated.elapsed })
 }
 
 fn validator() -> naga::valid::Validator {
-    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default())
+    naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::default(),
+    )
 }
 
 /// Modules are added once; each permutation then makes a module and validates it.
@@ -171,8 +224,13 @@ fn naga_oil_modules() -> Result<Timed<()>, Box<dyn Error>> {
     let mut composer = Composer::non_validating();
     let added = timed(|| {
         (0..MODULES).try_for_each(|module| {
-            let (source, path) = (corpus::module(module, Dialect::NagaOil), corpus::path(module).join("/"));
-            let descriptor = ComposableModuleDescriptor { source: &source, file_path: &path, ..Default::default() };
+            let (source, path) =
+                (corpus::module(module, Dialect::NagaOil), corpus::path(module).join("/"));
+            let descriptor = ComposableModuleDescriptor {
+                source: &source,
+                file_path: &path,
+                ..Default::default()
+            };
             composer.add_composable_module(descriptor).map(drop).map_err(Box::new)
         })
     });
@@ -181,10 +239,16 @@ fn naga_oil_modules() -> Result<Timed<()>, Box<dyn Error>> {
     let roots: Vec<String> = (0..ROOTS).map(|root| corpus::root(root, Dialect::NagaOil)).collect();
     let (start, mut jobs) = (Instant::now(), 0);
     // Roots of one permutation share the modules that were built for it.
-    for (permutation, source) in (0..PERMUTATIONS).flat_map(|permutation| roots.iter().map(move |source| (permutation, source))) {
+    for (permutation, source) in (0..PERMUTATIONS)
+        .flat_map(|permutation| roots.iter().map(move |source| (permutation, source)))
+    {
         let shader_defs = naga_oil_defs(permutation);
-        let module =
-            composer.make_naga_module(NagaModuleDescriptor { source, file_path: "root.wgsl", shader_defs, ..Default::default() })?;
+        let module = composer.make_naga_module(NagaModuleDescriptor {
+            source,
+            file_path: "root.wgsl",
+            shader_defs,
+            ..Default::default()
+        })?;
         validator().validate(&module)?;
         jobs += 1;
         if start.elapsed() > LONGEST {

@@ -30,7 +30,11 @@ pub enum Dialect {
 
 /// Path segments of a module.
 pub fn path(module: usize) -> Vec<String> {
-    vec![format!("part_{}", letters(part(module))), format!("layer_{}", letters(layer(module))), format!("unit_{}", letters(module))]
+    vec![
+        format!("part_{}", letters(part(module))),
+        format!("layer_{}", letters(layer(module))),
+        format!("unit_{}", letters(module)),
+    ]
 }
 
 /// The text of a module.
@@ -54,7 +58,11 @@ pub fn root(root: usize, dialect: Dialect) -> String {
     let mut random = Random::new(root as u64 + 7_001);
     let top = (LAYERS - 1) * PARTS * UNITS;
     let used: Vec<Import> = (0..UNITS)
-        .map(|unit| Import { module: top + root % PARTS * UNITS + unit, function: random.below(FUNCTIONS), instead: None })
+        .map(|unit| Import {
+            module: top + root % PARTS * UNITS + unit,
+            function: random.below(FUNCTIONS),
+            instead: None,
+        })
         .collect();
     let mut text = String::new();
     import(&mut text, &used, &mut random, dialect);
@@ -141,12 +149,15 @@ fn import(text: &mut String, imports: &[Import], random: &mut Random, dialect: D
         let unit = letters(*module);
         let Some(other) = instead else {
             let _ = match dialect {
-                Dialect::Wesl => writeln!(text, "import package::{here}::{{{name_here}, GAIN_{unit}}};"),
+                Dialect::Wesl => {
+                    writeln!(text, "import package::{here}::{{{name_here}, GAIN_{unit}}};")
+                }
                 Dialect::NagaOil => writeln!(text, "#import {here}::{{{name_here}, GAIN_{unit}}}"),
             };
             continue;
         };
-        let (there, name_there, flag) = (path(*other), name(*other, *function), flag_name(random.below(FLAGS), dialect));
+        let (there, name_there, flag) =
+            (path(*other), name(*other, *function), flag_name(random.below(FLAGS), dialect));
         let _ = match dialect {
             Dialect::Wesl => writeln!(
                 text,
@@ -173,7 +184,14 @@ fn preamble(text: &mut String, module: usize, flag: usize, dialect: Dialect) {
     );
 }
 
-fn write_function(text: &mut String, module: usize, function: usize, imports: &[Import], random: &mut Random, dialect: Dialect) {
+fn write_function(
+    text: &mut String,
+    module: usize,
+    function: usize,
+    imports: &[Import],
+    random: &mut Random,
+    dialect: Dialect,
+) {
     let unit = letters(module);
     let _ = write!(
         text,
@@ -186,7 +204,11 @@ fn write_function(text: &mut String, module: usize, function: usize, imports: &[
         condition(text, random.below(FLAGS), dialect);
     }
     if let Some(import) = imports.get(function) {
-        let gain = if import.instead.is_some() { "0.5".to_owned() } else { format!("GAIN_{}", letters(import.module)) };
+        let gain = if import.instead.is_some() {
+            "0.5".to_owned()
+        } else {
+            format!("GAIN_{}", letters(import.module))
+        };
         let _ = writeln!(text, "    sum += {}(state.direction, l, s * {gain});", import.local());
     }
     if function % 3 == 1 {
@@ -230,7 +252,8 @@ impl Random {
     }
 
     fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 33) as usize) % bound
     }
 }

@@ -29,7 +29,9 @@ pub fn run() -> Outcome {
 
 fn program() -> Result<Program, Box<dyn Error>> {
     let told = |problems: Diagnostics| format!("{problems:?}");
-    let graph = resolve::wesl::load(&mut SourceSet::default(), &lamplight::project::library(), MODULE).map_err(told)?;
+    let graph =
+        resolve::wesl::load(&mut SourceSet::default(), &lamplight::project::library(), MODULE)
+            .map_err(told)?;
     let options = Options { keep: Keep::Items(vec![FUNCTION.to_owned()]), ..Options::default() };
     let composed = composer::compose(&graph, &Settings::default(), &options).map_err(told)?;
     let validated = validate(&composed).map_err(told)?;
@@ -38,8 +40,10 @@ fn program() -> Result<Program, Box<dyn Error>> {
 
 /// Light moves across the highlight, so that no call repeats the last one.
 fn rate<N: Number>(machine: &mut Machine<N>) -> Result<f64, Box<dyn Error>> {
-    let function = machine.program().function(FUNCTION).ok_or("the library has no such function")?;
-    let mut arguments: [N; 10] = [0.0, 0.0, 1.0, 0.0, 0.6, 0.8, 0.0, 0.0, 1.0, 32.0].map(N::from_f64);
+    let function =
+        machine.program().function(FUNCTION).ok_or("the library has no such function")?;
+    let mut arguments: [N; 10] =
+        [0.0, 0.0, 1.0, 0.0, 0.6, 0.8, 0.0, 0.0, 1.0, 32.0].map(N::from_f64);
     let start = Instant::now();
     for step in 0..CALLS {
         arguments[3] = N::from_f64(f64::from(step) / f64::from(CALLS));

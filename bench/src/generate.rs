@@ -8,8 +8,8 @@ use std::hint::black_box;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use lamplight::bundle::{Target, pack};
-use lamplight::compose::{Composed, Language, Options, compose};
+use lamplight::bundle::{Language, Stage, Target, pack};
+use lamplight::compose::{Composed, Options, compose};
 use lamplight::emit::emit;
 use lamplight::generate::{Discard, Request, Tools, generate, in_memory};
 use lamplight::permute::{Assignment, Manifest, Program};
@@ -28,6 +28,8 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 const PROGRAM: &str = "forward";
 
+const LANGUAGES: [Language; 2] = [Language::Wesl, Language::Glsl];
+
 /// The most a run of ours and one of the loop are repeated; the best of each counts.
 const ROUNDS: usize = 3;
 
@@ -36,29 +38,42 @@ const SAMPLE: usize = 40;
 
 /// Prints every figure; the last line is the rate and the ratio.
 pub fn run() -> Outcome {
-    let (_, manifest) = project::library_manifest().map_err(|(_, diagnostics)| format!("{diagnostics:?}"))?;
+    let (_, manifest) =
+        project::library_manifest().map_err(|(_, diagnostics)| format!("{diagnostics:?}"))?;
     let program = manifest.program(PROGRAM).ok_or("the library has no such program")?;
     let points = program.space.enumerate();
-    println!("{PROGRAM}: {} permutations, {} targets, {} threads", points.len(), program.targets.len(), rayon::current_num_threads());
-    let wesl = only(&manifest, Language::Wesl)?;
-    let (mut ours, mut theirs) = (Spent::MOST, Spent::MOST);
+    println!(
+        "{PROGRAM}: {} permutations, {} targets, {} threads",
+        points.len(),
+        program.targets.len(),
+        rayon::current_num_threads()
+    );
+    let mut ours = [Spent::MOST; 2];
+    let mut theirs = [Spent::MOST; 2];
     for _ in 0..ROUNDS {
-        ours = ours.least(spent(|| generated(&wesl))?);
-        theirs = theirs.least(spent(|| plain(program, &points))?);
+        for (index, language) in LANGUAGES.into_iter().enumerate() {
+            let alone = only(&manifest, language)?;
+            ours[index] = ours[index].least(spent(|| generated(&alone))?);
+            theirs[index] = theirs[index].least(spent(|| plain(program, &points, language))?);
+        }
     }
-    let both = spent(|| generated(&manifest))?;
-    for (what, spent) in
-        [("lamplight, WESL", ours), ("lamplight, WESL and GLSL, each permutation in both", both), ("plain loop over naga, WESL", theirs)]
-    {
-        println!("{what}: {}", spent.told(points.len()));
+    for (index, language) in LANGUAGES.into_iter().enumerate() {
+        println!("lamplight, {language:?}: {}", ours[index].told(points.len()));
+        println!("plain loop over naga, {language:?}: {}", theirs[index].told(points.len()));
+        println!("{language:?}: {:.1}x plain naga loop", theirs[index].wall_over(ours[index]));
     }
+    let (ours, theirs) = (ours[0].and(ours[1]), theirs[0].and(theirs[1]));
     packed(&manifest)?;
     crate::load::run()?;
     tools(program, &points)?;
     // What the two took of the machine, which others may have used too.
-    println!("by processor time: {:.1}x plain naga loop", theirs.processors.as_secs_f64() / ours.processors.as_secs_f64());
-    let rate = points.len() as f64 / ours.wall.as_secs_f64();
-    println!("gen: {rate:.0} permutations/s, {:.1}x plain naga loop", theirs.wall.as_secs_f64() / ours.wall.as_secs_f64());
+    println!(
+        "by processor time: {:.1}x plain naga loop",
+        theirs.processors.as_secs_f64() / ours.processors.as_secs_f64()
+    );
+    // Each permutation counts once for each language.
+    let rate = (LANGUAGES.len() * points.len()) as f64 / ours.wall.as_secs_f64();
+    println!("gen: {rate:.0} permutations/s, {:.1}x plain naga loop", theirs.wall_over(ours));
     Ok(())
 }
 
@@ -74,6 +89,14 @@ impl Spent {
 
     fn least(self, other: Self) -> Self {
         Self { wall: self.wall.min(other.wall), processors: self.processors.min(other.processors) }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { wall: self.wall + other.wall, processors: self.processors + other.processors }
+    }
+
+    fn wall_over(self, other: Self) -> f64 {
+        self.wall.as_secs_f64() / other.wall.as_secs_f64()
     }
 
     fn told(self, permutations: usize) -> String {
@@ -98,7 +121,9 @@ fn spent(work: impl FnOnce() -> Result<(), String>) -> Result<Spent, String> {
 fn processors() -> Duration {
     let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields = text.rsplit_once(')').map_or("", |(_, rest)| rest).split_whitespace();
-    Duration::from_millis(10 * fields.skip(11).take(2).filter_map(|ticks| ticks.parse::<u64>().ok()).sum::<u64>())
+    Duration::from_millis(
+        10 * fields.skip(11).take(2).filter_map(|ticks| ticks.parse::<u64>().ok()).sum::<u64>(),
+    )
 }
 
 /// The manifest with `forward` in one language.
@@ -129,42 +154,88 @@ fn generated(manifest: &Manifest) -> Result<(), String> {
 /// The single file beside the raw outputs in it, each distinct one counted once.
 fn packed(manifest: &Manifest) -> Outcome {
     let request = Request { program: Some(PROGRAM.to_owned()), ..Request::default() };
-    let generated = in_memory(&mut SourceSet::default(), &project::library(), manifest, &request, &|_| {});
+    let generated =
+        in_memory(&mut SourceSet::default(), &project::library(), manifest, &request, &|_| {});
     let generated = generated.map_err(|diagnostics| format!("{diagnostics:?}"))?;
     let raw: u64 = generated.summary.targets.iter().map(|target| target.bytes).sum();
     let start = Instant::now();
     let file = pack(&generated.contents)?.len();
     let (raw, file) = (raw as f64 / 1e6, file as f64 / 1e6);
-    println!("the single file: {file:.2} MB of {raw:.2} MB, {:.1} to one, {:.2} s", raw / file, start.elapsed().as_secs_f64());
+    println!(
+        "the single file: {file:.2} MB of {raw:.2} MB, {:.1} to one, {:.2} s",
+        raw / file,
+        start.elapsed().as_secs_f64()
+    );
     Ok(())
 }
 
-/// Every permutation for itself: one text with both entry points, one module, each written for
-/// each target.
-fn plain(program: &Program, points: &[Assignment]) -> Result<(), String> {
-    let graph = graph(program)?;
-    let bytes = on_large_stack(|| points.par_iter().map(|point| permutation(&graph, program, point)).sum::<Result<usize, String>>())?;
+/// Every permutation for itself: in WGSL one text with both entry points, in GLSL a text for each;
+/// one module a text, each entry point written for each target.
+fn plain(program: &Program, points: &[Assignment], language: Language) -> Result<(), String> {
+    let graphs = graphs(program, language)?;
+    let one = |point: &Assignment| {
+        graphs.iter().map(|graph| permutation(graph, program, point)).sum::<Result<usize, String>>()
+    };
+    let bytes = on_large_stack(|| points.par_iter().map(one).sum::<Result<usize, String>>())?;
     black_box(bytes);
     Ok(())
 }
 
+/// The roots of a program: one in WESL, one for each stage in GLSL.
+fn graphs(program: &Program, language: Language) -> Result<Vec<Graph>, String> {
+    let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
+    let roots: Vec<_> = match language {
+        Language::Wesl => program.wesl.iter().collect(),
+        Language::Glsl => glsl.collect(),
+    };
+    let load = |path: &str| {
+        resolve::load(&mut SourceSet::default(), &project::library(), path, language)
+            .map_err(|diagnostics| format!("{diagnostics:?}"))
+    };
+    roots.into_iter().map(|root| load(&root.path)).collect()
+}
+
 fn graph(program: &Program) -> Result<Graph, String> {
-    let root = &program.wesl.as_ref().ok_or("the program has no WESL")?.path;
-    resolve::load(&mut SourceSet::default(), &project::library(), root, Language::Wesl).map_err(|diagnostics| format!("{diagnostics:?}"))
+    graphs(program, Language::Wesl)?.pop().ok_or_else(|| "the program has no WESL".to_owned())
 }
 
 fn composed(graph: &Graph, program: &Program, point: &Assignment) -> Result<Composed, String> {
-    compose(graph, &program.space.settings(point), &Options::default()).map_err(|diagnostics| format!("{diagnostics:?}"))
+    compose(graph, &program.space.settings(point), &Options::default())
+        .map_err(|diagnostics| format!("{diagnostics:?}"))
+}
+
+fn parsed(composed: &Composed) -> Result<naga::Module, String> {
+    match (composed.language, composed.stage) {
+        (Language::Glsl, Some(stage)) => {
+            let stage = match stage {
+                Stage::Vertex => naga::ShaderStage::Vertex,
+                Stage::Fragment => naga::ShaderStage::Fragment,
+                Stage::Compute => naga::ShaderStage::Compute,
+            };
+            naga::front::glsl::Frontend::default()
+                .parse(&naga::front::glsl::Options::from(stage), &composed.text)
+                .map_err(|errors| format!("{errors:?}"))
+        }
+        _ => naga::front::wgsl::parse_str(&composed.text)
+            .map_err(|error| error.emit_to_string(&composed.text)),
+    }
 }
 
 fn permutation(graph: &Graph, program: &Program, point: &Assignment) -> Result<usize, String> {
-    let text = composed(graph, program, point)?.text;
-    let module = naga::front::wgsl::parse_str(&text).map_err(|error| error.emit_to_string(&text))?;
-    let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module).map_err(|error| error.to_string())?;
-    let validated = Validated { language: Language::Wesl, module, info };
+    let composed = composed(graph, program, point)?;
+    let module = parsed(&composed)?;
+    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
+        .validate(&module)
+        .map_err(|error| error.to_string())?;
+    let validated = Validated { language: composed.language, module, info };
     let entries = validated.module.entry_points.iter();
-    let outputs = entries.flat_map(|entry| program.targets.iter().map(|target| (entry.name.as_str(), *target)));
-    outputs.map(|(entry, target)| Ok(emit(&validated, entry, target).map_err(|error| error.message)?.bytes.len())).sum()
+    let outputs = entries
+        .flat_map(|entry| program.targets.iter().map(|target| (entry.name.as_str(), *target)));
+    outputs
+        .map(|(entry, target)| {
+            Ok(emit(&validated, entry, target).map_err(|error| error.message)?.bytes.len())
+        })
+        .sum()
 }
 
 /// A compiler that takes one shader a start.
@@ -178,7 +249,13 @@ struct Tool {
 }
 
 const TOOLS: &[Tool] = &[
-    Tool { name: "naga", does: "WGSL to SPIR-V; optimises nothing", input: Target::WGSL, extension: "wgsl", arguments: &["IN", "OUT.spv"] },
+    Tool {
+        name: "naga",
+        does: "WGSL to SPIR-V; optimises nothing",
+        input: Target::WGSL,
+        extension: "wgsl",
+        arguments: &["IN", "OUT.spv"],
+    },
     Tool {
         name: "glslangValidator",
         does: "GLSL to SPIR-V; optimises nothing",
@@ -198,7 +275,10 @@ const TOOLS: &[Tool] = &[
         does: "GLSL to SPIR-V; optimises by default",
         input: Target::GLSL450,
         extension: "frag",
-        arguments: &["-lang", "glsl", "-stage", "fragment", "-entry", "main", "-target", "spirv", "IN", "-o", "OUT.spv"],
+        arguments: &[
+            "-lang", "glsl", "-stage", "fragment", "-entry", "main", "-target", "spirv", "IN",
+            "-o", "OUT.spv",
+        ],
     },
     Tool {
         name: "matc",
@@ -225,7 +305,13 @@ fn tools(program: &Program, points: &[Assignment]) -> Outcome {
 }
 
 fn installed(tool: &Tool) -> bool {
-    Command::new(tool.name).arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
+    Command::new(tool.name)
+        .arg("--version")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok()
 }
 
 fn measured(
@@ -238,8 +324,8 @@ fn measured(
     let step = (points.len() / SAMPLE).max(1);
     let mut inputs = Vec::new();
     for (index, point) in points.iter().step_by(step).take(SAMPLE).enumerate() {
-        let validated =
-            lamplight::validate::validate(&composed(graph, program, point)?).map_err(|diagnostics| format!("{diagnostics:?}"))?;
+        let validated = lamplight::validate::validate(&composed(graph, program, point)?)
+            .map_err(|diagnostics| format!("{diagnostics:?}"))?;
         let emitted = emit(&validated, "fs_main", tool.input).map_err(|error| error.message)?;
         let path = folder.join(format!("{}-{index}.{}", tool.name, tool.extension));
         std::fs::write(&path, emitted.bytes)?;
@@ -258,6 +344,11 @@ fn started(tool: &Tool, input: &std::path::Path) -> bool {
         "OUT.spv" => output.as_os_str().to_owned(),
         other => other.into(),
     });
-    let status = Command::new(tool.name).args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let status = Command::new(tool.name)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
     status.is_ok_and(|status| status.success())
 }

@@ -15,7 +15,14 @@ use wesl::syntax::PathOrigin;
 use crate::Outcome;
 
 /// Modules that stand for themselves: the root of each composition, kept whole.
-const ROOTS: [&str; 6] = ["lighting/light", "lighting/classic", "brdf/specular", "shadow/compare", "shadow/moments", "surface/normal"];
+const ROOTS: [&str; 6] = [
+    "lighting/light",
+    "lighting/classic",
+    "brdf/specular",
+    "shadow/compare",
+    "shadow/moments",
+    "surface/normal",
+];
 /// Programs without conditions.
 const PROGRAMS: [&str; 1] = ["programs/depth"];
 const ROUNDS: usize = 20;
@@ -23,8 +30,14 @@ const ROUNDS: usize = 20;
 /// Prints how often each composes the roots a second.
 pub fn run() -> Outcome {
     let (ours, theirs) = (ours()?, theirs()?);
-    let rate = |elapsed: Duration| (ROUNDS * (ROOTS.len() + PROGRAMS.len())) as f64 / elapsed.as_secs_f64();
-    println!("the library's modules to text: lamplight {:.1}/s, wesl {:.1}/s", rate(ours), rate(theirs));
+    let rate = |elapsed: Duration| {
+        (ROUNDS * (ROOTS.len() + PROGRAMS.len())) as f64 / elapsed.as_secs_f64()
+    };
+    println!(
+        "the library's modules to text: lamplight {:.1}/s, wesl {:.1}/s",
+        rate(ours),
+        rate(theirs)
+    );
     Ok(())
 }
 
@@ -34,7 +47,9 @@ fn roots() -> impl Iterator<Item = &'static str> {
 
 fn ours() -> Result<Duration, Box<dyn Error>> {
     let packages = lamplight::project::library();
-    let load = |root: &str| resolve::wesl::load(&mut SourceSet::default(), &packages, &format!("{root}.wesl"));
+    let load = |root: &str| {
+        resolve::wesl::load(&mut SourceSet::default(), &packages, &format!("{root}.wesl"))
+    };
     let graphs: Result<Vec<_>, _> = roots().map(load).collect();
     let graphs = graphs.map_err(|problems| format!("{problems:?}"))?;
     let options = Options { keep: Keep::EntryPoints, ..Options::default() };
@@ -49,7 +64,9 @@ fn ours() -> Result<Duration, Box<dyn Error>> {
 }
 
 fn theirs() -> Result<Duration, Box<dyn Error>> {
-    let path = |file: &str| ModulePath::new(PathOrigin::Absolute, file.split('/').map(str::to_owned).collect());
+    let path = |file: &str| {
+        ModulePath::new(PathOrigin::Absolute, file.split('/').map(str::to_owned).collect())
+    };
     let mut resolver = wesl::VirtualResolver::new();
     for file in Embedded.list(&["wesl"]) {
         let text = Embedded.read(&file).ok().flatten().unwrap_or_default();
@@ -61,7 +78,10 @@ fn theirs() -> Result<Duration, Box<dyn Error>> {
     for _ in 0..ROUNDS {
         for root in roots() {
             // A module without entry points is kept whole, as ours is.
-            compiler.set_options(wesl::CompileOptions { keep_root: ROOTS.contains(&root), ..options.clone() });
+            compiler.set_options(wesl::CompileOptions {
+                keep_root: ROOTS.contains(&root),
+                ..options.clone()
+            });
             black_box(compiler.compile(&path(root))?.to_string());
         }
     }

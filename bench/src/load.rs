@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use lamplight::bundle::{
-    Artifact, Axis, Bundle, Contents, EntryContents, Language, Native, ProgramContents, Reflection, Stage, Target, Unit, canonical,
-    write_file,
+    Artifact, Axis, Bundle, Contents, EntryContents, Language, Native, ProgramContents, Reflection,
+    Stage, Target, Unit, canonical, write_file,
 };
 
 use crate::Outcome;
@@ -24,7 +24,8 @@ const BATCH: usize = 500;
 /// Prints what opening, a lookup and a fetch take.
 pub fn run() -> Outcome {
     let (contents, keys) = contents()?;
-    let path = std::env::temp_dir().join(format!("lamplight-bench-{}.lamplight", std::process::id()));
+    let path =
+        std::env::temp_dir().join(format!("lamplight-bench-{}.lamplight", std::process::id()));
     write_file(&contents, &path)?;
     drop(contents);
     // In an order that no cache of the processor foresees, and copied in it: what is timed is the
@@ -34,10 +35,20 @@ pub fn run() -> Outcome {
     let bundle = Bundle::open(&path)?;
     let shader = bundle.program("forward")?.shader("fs_main")?;
     let first = median([timed(|| shader.find(&asked[0]).is_ok())].into_iter())?;
-    let lookup = median(asked.chunks(BATCH).map(|batch| timed(|| batch.iter().all(|key| shader.find(key).is_ok()))))?;
-    let fetch = median(asked.iter().take(FETCHES).map(|key| timed(|| black_box(shader.get(key, Target::SPIRV)).is_ok())))?;
+    let lookup = median(
+        asked.chunks(BATCH).map(|batch| timed(|| batch.iter().all(|key| shader.find(key).is_ok()))),
+    )?;
+    let fetch = median(
+        asked
+            .iter()
+            .take(FETCHES)
+            .map(|key| timed(|| black_box(shader.get(key, Target::SPIRV)).is_ok())),
+    )?;
     println!("load: {KEYS} permutations, {:.1} MB", std::fs::metadata(&path)?.len() as f64 / 1e6);
-    println!("load: open {open:.1?}, first lookup with its checksum {first:.1?}, lookup {:.0?}, fetch {fetch:.1?}", lookup / BATCH as u32);
+    println!(
+        "load: open {open:.1?}, first lookup with its checksum {first:.1?}, lookup {:.0?}, fetch {fetch:.1?}",
+        lookup / BATCH as u32
+    );
     Ok(std::fs::remove_file(&path)?)
 }
 
@@ -67,12 +78,22 @@ fn contents() -> Result<(Contents, Vec<String>), Box<dyn std::error::Error>> {
     let hashes = (0..UNITS).map(|index| entry.add(unit(index))).collect::<Result<Vec<_>, _>>()?;
     for index in 0..KEYS {
         let value = |axis: usize| index / VALUES.pow(axis as u32) % VALUES;
-        let key: Vec<String> = AXES.iter().enumerate().map(|(axis, name)| format!("{name}=value_{}", value(axis))).collect();
+        let key: Vec<String> = AXES
+            .iter()
+            .enumerate()
+            .map(|(axis, name)| format!("{name}=value_{}", value(axis)))
+            .collect();
         entry.keys.insert(canonical(&axes, &key.join(","))?, hashes[index % UNITS]);
     }
     let keys = entry.keys.keys().cloned().collect();
-    let languages = BTreeMap::from([(Language::Wesl, BTreeMap::from([("fs_main".to_owned(), entry)]))]);
-    Ok((Contents { programs: BTreeMap::from([("forward".to_owned(), ProgramContents { axes, languages })]) }, keys))
+    let languages =
+        BTreeMap::from([(Language::Wesl, BTreeMap::from([("fs_main".to_owned(), entry)]))]);
+    Ok((
+        Contents {
+            programs: BTreeMap::from([("forward".to_owned(), ProgramContents { axes, languages })]),
+        },
+        keys,
+    ))
 }
 
 /// As large as a shader of the library is: some 8 kB in each of two targets.
@@ -80,9 +101,21 @@ fn unit(index: usize) -> Unit {
     let reflection = Reflection::of(Stage::Fragment);
     let native = Arc::new(Native { entry_name: "main".into(), ..Native::default() });
     let artifact = |target: Target| {
-        let lines = (0..200).map(|line| format!("{target}: line {line} of {}, much like others\n", index * 31 % (line + 7)));
+        let lines = (0..200).map(|line| {
+            format!("{target}: line {line} of {}, much like others\n", index * 31 % (line + 7))
+        });
         let bytes = lines.collect::<String>() + &index.to_string();
-        (target.name().to_owned(), Artifact { bytes: bytes.into_bytes().into(), extension: "txt".into(), native: native.clone() })
+        (
+            target.name().to_owned(),
+            Artifact {
+                bytes: bytes.into_bytes().into(),
+                extension: "txt".into(),
+                native: native.clone(),
+            },
+        )
     };
-    Unit { reflection: Arc::new(reflection), targets: [Target::SPIRV, Target::WGSL].map(artifact).into() }
+    Unit {
+        reflection: Arc::new(reflection),
+        targets: [Target::SPIRV, Target::WGSL].map(artifact).into(),
+    }
 }

@@ -17,8 +17,13 @@ type Outcome = Result<(), Box<dyn Error>>;
 
 type Benchmark = (&'static str, fn() -> Outcome);
 
-const BENCHMARKS: &[Benchmark] =
-    &[("compose", compose::run), ("eval", eval::run), ("gen", generate::run), ("load", load::run), ("scale", scale::run)];
+const BENCHMARKS: &[Benchmark] = &[
+    ("compose", compose::run),
+    ("eval", eval::run),
+    ("gen", generate::run),
+    ("load", load::run),
+    ("scale", scale::run),
+];
 
 fn main() -> ExitCode {
     let asked = std::env::args().nth(1).unwrap_or_default();

@@ -21,18 +21,26 @@ pub fn run() -> Outcome {
     write(&folder)?;
     let start = Instant::now();
     let permutations = generated(&folder)?;
-    println!("scale: {permutations} permutations in {:.1} s, at most {:.0} MB", start.elapsed().as_secs_f64(), peak()? / 1e6);
+    println!(
+        "scale: {permutations} permutations in {:.1} s, at most {:.0} MB",
+        start.elapsed().as_secs_f64(),
+        peak()? / 1e6
+    );
     Ok(std::fs::remove_dir_all(&folder)?)
 }
 
 fn write(folder: &Path) -> Outcome {
     let values: Vec<String> = (1..=VALUES).map(|value| value.to_string()).collect();
-    let mut manifest = String::from("[program.large]\nwesl = \"large.wesl\"\ntargets = [\"spirv\", \"wgsl\"]\n\n[program.large.axis]\n");
+    let mut manifest = String::from(
+        "[program.large]\nwesl = \"large.wesl\"\ntargets = [\"spirv\", \"wgsl\"]\n\n[program.large.axis]\n",
+    );
     for axis in AXES {
         writeln!(manifest, "{axis} = {{ values = [{}], default = 1 }}", values.join(", "))?;
     }
     let imports = AXES.map(|axis| format!("import constants::{axis};\n")).join("");
-    let body = AXES.map(|axis| format!("    sum = sum * 0.5 + vec4<f32>(f32({axis}), sum.xyz);\n")).join("");
+    let body = AXES
+        .map(|axis| format!("    sum = sum * 0.5 + vec4<f32>(f32({axis}), sum.xyz);\n"))
+        .join("");
     let root = format!(
         "{imports}\n@fragment\nfn fs_main(@location(0) color: vec4<f32>) -> @location(0) vec4<f32> {{\n    var sum = color;\n{}    return sum;\n}}\n",
         body.repeat(8)
@@ -56,6 +64,9 @@ fn generated(folder: &Path) -> Result<usize, Box<dyn std::error::Error>> {
 /// The kernel's high-water mark, in bytes.
 fn peak() -> Result<f64, Box<dyn std::error::Error>> {
     let status = std::fs::read_to_string("/proc/self/status")?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).ok_or("the kernel does not say")?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))
+        .ok_or("the kernel does not say")?;
     Ok(line.trim().trim_end_matches(" kB").parse::<f64>()? * 1024.0)
 }

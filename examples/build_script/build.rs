@@ -18,7 +18,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
 /// Writes the bundle of a package that has a manifest; an error has the diagnostics as text.
 pub fn compile(package: &Path, bundle: &Path) -> Result<(), Box<dyn Error>> {
     let mut sources = SourceSet::default();
-    let generated = generated(package, &mut sources).map_err(|problems| render(&sources, &problems, Form::Human))?;
+    let generated = generated(package, &mut sources)
+        .map_err(|problems| render(&sources, &problems, Form::Human))?;
     Ok(bundle::write_file(&generated.contents, bundle)?)
 }
 

@@ -3,8 +3,8 @@
 //!
 //! `cargo xtask fuzz`, the tests of `tests/regressions/` and the targets of cargo-fuzz share this.
 
-use lamplight::bundle::{Bundle, Target};
-use lamplight::compose::{self, Keep, Language, Options};
+use lamplight::bundle::{Bundle, Language, Target};
+use lamplight::compose::{self, Keep, Options};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::{Manifest, Quoted, Setting, Settings, Space, cover, key, lock, manifest};
@@ -33,8 +33,18 @@ pub const KINDS: &[Kind] = &[
         words: WESL,
         run: wesl,
     },
-    Kind { name: "glsl", corpus: &[("tests/compose_glsl", ".glsl"), ("shaderlib", ".glsl")], words: GLSL, run: glsl },
-    Kind { name: "manifest", corpus: &[("tests/permute", ".toml"), ("shaderlib", "lamplight.toml")], words: MANIFEST, run: manifest },
+    Kind {
+        name: "glsl",
+        corpus: &[("tests/compose_glsl", ".glsl"), ("shaderlib", ".glsl")],
+        words: GLSL,
+        run: glsl,
+    },
+    Kind {
+        name: "manifest",
+        corpus: &[("tests/permute", ".toml"), ("shaderlib", "lamplight.toml")],
+        words: MANIFEST,
+        run: manifest,
+    },
     Kind { name: "key", corpus: &[("tests/regressions/key", "")], words: KEY, run: key },
     Kind { name: "lock", corpus: &[("tests/regressions/lock", "")], words: LOCK, run: lock },
     Kind { name: "bundle", corpus: &[("tests/regressions/bundle", "")], words: "", run: bundle },
@@ -103,10 +113,17 @@ fn composed(bytes: &[u8], root: &str, language: Language) -> String {
 
 /// A value for every name that a condition may ask for, and the axes of the library.
 fn settings(text: &str) -> Settings {
-    let mut settings = forward().map(|space| space.settings(&space.default_assignment())).unwrap_or_default();
+    let mut settings =
+        forward().map(|space| space.settings(&space.default_assignment())).unwrap_or_default();
     let word = |c: char| !(c.is_alphanumeric() || c == '_');
     for condition in text.split("if(").skip(1).take(1000) {
-        for name in condition.split(')').next().unwrap_or_default().split(word).filter(|name| !name.is_empty()) {
+        for name in condition
+            .split(')')
+            .next()
+            .unwrap_or_default()
+            .split(word)
+            .filter(|name| !name.is_empty())
+        {
             settings.values.entry(name.to_owned()).or_insert(Setting::Bool(name.len() % 2 == 0));
         }
     }
@@ -119,7 +136,9 @@ fn manifest(bytes: &[u8]) -> String {
     match manifest::parse(&sources, id) {
         Err(problems) => told(&sources, &problems),
         Ok(Manifest { programs, warnings }) => {
-            let spaces = programs.iter().map(|program| format!("{}: {}\n", program.name, space(&program.space)));
+            let spaces = programs
+                .iter()
+                .map(|program| format!("{}: {}\n", program.name, space(&program.space)));
             spaces.collect::<String>() + &told(&sources, &warnings)
         }
     }
@@ -155,7 +174,12 @@ fn key(bytes: &[u8]) -> String {
 fn shipped(axis: &lamplight::permute::Axis) -> lamplight::bundle::Axis {
     let values = axis.value_names();
     let default = values.get(axis.default).cloned().unwrap_or_default();
-    lamplight::bundle::Axis { name: axis.name.clone(), values, default, mode: axis.mode.name().to_owned() }
+    lamplight::bundle::Axis {
+        name: axis.name.clone(),
+        values,
+        default,
+        mode: axis.mode.name().to_owned(),
+    }
 }
 
 fn lock(bytes: &[u8]) -> String {
@@ -167,7 +191,11 @@ fn lock(bytes: &[u8]) -> String {
         Err(problems) => return told(&sources, &problems),
     };
     let dense = lock.dense("forward", &space, &space.default_assignment());
-    let points: Vec<_> = [0, 1, 7, u128::MAX].into_iter().chain(dense).map(|dense| lock.point("forward", &space, dense)).collect();
+    let points: Vec<_> = [0, 1, 7, u128::MAX]
+        .into_iter()
+        .chain(dense)
+        .map(|dense| lock.point("forward", &space, dense))
+        .collect();
     format!("{lock}{dense:?} {points:?}")
 }
 
@@ -181,7 +209,14 @@ fn bundle(bytes: &[u8]) -> String {
         let Ok(program) = bundle.program(name) else { continue };
         for (language, entry) in program.entries() {
             let Ok(shader) = program.entry(language, entry) else { continue };
-            for key in shader.keys().unwrap_or_default().iter().take(20).map(String::as_str).chain(["no=such", ""]) {
+            for key in shader
+                .keys()
+                .unwrap_or_default()
+                .iter()
+                .take(20)
+                .map(String::as_str)
+                .chain(["no=such", ""])
+            {
                 let bytes = shader.get(key, Target::SPIRV).map(|found| found.bytes.len());
                 answer += &format!("{name} {entry} {key} {bytes:?} {:?}\n", shader.targets(key));
             }

@@ -83,7 +83,8 @@ impl Unit {
         part(&json(&*self.reflection)?);
         let mut blobs = Vec::with_capacity(self.targets.len());
         for (target, artifact) in &self.targets {
-            let length = u32::try_from(artifact.bytes.len()).map_err(|_| Error::Io(format!("the shader for `{target}` is too large")))?;
+            let length = u32::try_from(artifact.bytes.len())
+                .map_err(|_| Error::Io(format!("the shader for `{target}` is too large")))?;
             let sum = checksum(&artifact.bytes);
             part(target.as_bytes());
             part(artifact.extension.as_bytes());
@@ -116,14 +117,19 @@ impl Contents {
     /// [`Error::Conflict`] where both have a key or a program's axes and disagree.
     pub fn merge(&mut self, other: Self) -> Result<(), Error> {
         for (name, program) in other.programs {
-            let mine =
-                self.programs.entry(name.clone()).or_insert_with(|| ProgramContents { axes: program.axes.clone(), ..Default::default() });
+            let mine = self.programs.entry(name.clone()).or_insert_with(|| ProgramContents {
+                axes: program.axes.clone(),
+                ..Default::default()
+            });
             if mine.axes != program.axes {
                 return Err(Error::Conflict(format!("the axes of program `{name}`")));
             }
             for (language, entries) in program.languages {
                 for (entry, contents) in entries {
-                    merge_entry(mine.languages.entry(language).or_default().entry(entry).or_default(), contents)?;
+                    merge_entry(
+                        mine.languages.entry(language).or_default().entry(entry).or_default(),
+                        contents,
+                    )?;
                 }
             }
         }
@@ -158,5 +164,9 @@ pub(super) fn checksum(bytes: &[u8]) -> Hash {
 
 /// Lower-case hexadecimal.
 pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]).filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
+    bytes
+        .iter()
+        .flat_map(|byte| [byte >> 4, byte & 15])
+        .filter_map(|digit| char::from_digit(u32::from(digit), 16))
+        .collect()
 }

@@ -39,14 +39,22 @@ pub fn diff(old: &Contents, new: &Contents) -> Difference {
     let mut difference = Difference::default();
     let programs: BTreeSet<&String> = old.programs.keys().chain(new.programs.keys()).collect();
     for program in programs {
-        let axes = |contents: &Contents| contents.programs.get(program).map(|program| program.axes.clone()).unwrap_or_default();
+        let axes = |contents: &Contents| {
+            contents.programs.get(program).map(|program| program.axes.clone()).unwrap_or_default()
+        };
         if axes(old) != axes(new) {
             difference.axes.push(program.clone());
         }
         let (before, after) = (entries(old, program), entries(new, program));
         let places: BTreeSet<_> = before.keys().chain(after.keys()).copied().collect();
         for place in places {
-            compare(program, place, before.get(&place).copied(), after.get(&place).copied(), &mut difference.permutations);
+            compare(
+                program,
+                place,
+                before.get(&place).copied(),
+                after.get(&place).copied(),
+                &mut difference.permutations,
+            );
         }
     }
     difference
@@ -54,13 +62,28 @@ pub fn diff(old: &Contents, new: &Contents) -> Difference {
 
 type EntryPlace<'a> = (Language, &'a str);
 
-fn entries<'a>(contents: &'a Contents, program: &str) -> BTreeMap<EntryPlace<'a>, &'a EntryContents> {
-    let languages = contents.programs.get(program).into_iter().flat_map(|program| &program.languages);
-    languages.flat_map(|(language, entries)| entries.iter().map(|(name, entry)| ((*language, name.as_str()), entry))).collect()
+fn entries<'a>(
+    contents: &'a Contents,
+    program: &str,
+) -> BTreeMap<EntryPlace<'a>, &'a EntryContents> {
+    let languages =
+        contents.programs.get(program).into_iter().flat_map(|program| &program.languages);
+    languages
+        .flat_map(|(language, entries)| {
+            entries.iter().map(|(name, entry)| ((*language, name.as_str()), entry))
+        })
+        .collect()
 }
 
-fn compare(program: &str, place: EntryPlace<'_>, old: Option<&EntryContents>, new: Option<&EntryContents>, changes: &mut Vec<Change>) {
-    let keys = |entry: Option<&EntryContents>| entry.map(|entry| entry.keys.clone()).unwrap_or_default();
+fn compare(
+    program: &str,
+    place: EntryPlace<'_>,
+    old: Option<&EntryContents>,
+    new: Option<&EntryContents>,
+    changes: &mut Vec<Change>,
+) {
+    let keys =
+        |entry: Option<&EntryContents>| entry.map(|entry| entry.keys.clone()).unwrap_or_default();
     let (before, after) = (keys(old), keys(new));
     let all: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
     for key in all {
@@ -68,11 +91,22 @@ fn compare(program: &str, place: EntryPlace<'_>, old: Option<&EntryContents>, ne
             (Some(one), Some(other)) if one == other => continue,
             (None, _) => ("added", Vec::new()),
             (_, None) => ("removed", Vec::new()),
-            (Some(one), Some(other)) => {
-                ("changed", parts(old.and_then(|entry| entry.units.get(one)), new.and_then(|entry| entry.units.get(other))))
-            }
+            (Some(one), Some(other)) => (
+                "changed",
+                parts(
+                    old.and_then(|entry| entry.units.get(one)),
+                    new.and_then(|entry| entry.units.get(other)),
+                ),
+            ),
         };
-        changes.push(Change { program: program.to_owned(), language: place.0, entry: place.1.to_owned(), key: key.clone(), kind, parts });
+        changes.push(Change {
+            program: program.to_owned(),
+            language: place.0,
+            entry: place.1.to_owned(),
+            key: key.clone(),
+            kind,
+            parts,
+        });
     }
 }
 
@@ -80,6 +114,9 @@ fn parts(old: Option<&Unit>, new: Option<&Unit>) -> Vec<String> {
     let (Some(old), Some(new)) = (old, new) else { return Vec::new() };
     let reflection = (old.reflection != new.reflection).then(|| "reflection".to_owned());
     let targets: BTreeSet<&String> = old.targets.keys().chain(new.targets.keys()).collect();
-    let targets = targets.into_iter().filter(|target| old.targets.get(*target) != new.targets.get(*target)).cloned();
+    let targets = targets
+        .into_iter()
+        .filter(|target| old.targets.get(*target) != new.targets.get(*target))
+        .cloned();
     reflection.into_iter().chain(targets).collect()
 }

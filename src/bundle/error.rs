@@ -2,12 +2,16 @@
 
 use std::fmt;
 
+use crate::output::{self, Foreign};
+
 /// Why a bundle, or something of it, cannot be had.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
     /// The operating system's words.
     Io(String),
+    /// Something that is no bundle of ours is where one would be written.
+    Foreign(Foreign),
     /// Bytes are not what was written: which part, and what is wrong with it.
     Corrupt { part: String, reason: String },
     /// The bundle was written in a format that this loader does not read.
@@ -49,10 +53,18 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Io(reason) => write!(f, "the bundle cannot be read or written: {reason}"),
+            Self::Foreign(foreign) => foreign.fmt(f),
             Self::Corrupt { part, reason } => write!(f, "the bundle is damaged: {part}: {reason}"),
-            Self::Version { found, known } => write!(f, "the bundle has format version {found}, this loader reads version {known}"),
-            Self::NotFound { what, name, known } => write!(f, "the bundle has no {what} `{name}`; it has: {}", known.join(", ")),
-            Self::BadKey { key, reason } => write!(f, "`{key}` is not a key of this program: {reason}"),
+            Self::Version { found, known } => write!(
+                f,
+                "the bundle has format version {found}, this loader reads version {known}"
+            ),
+            Self::NotFound { what, name, known } => {
+                write!(f, "the bundle has no {what} `{name}`; it has: {}", known.join(", "))
+            }
+            Self::BadKey { key, reason } => {
+                write!(f, "`{key}` is not a key of this program: {reason}")
+            }
             Self::Miss(miss) => {
                 write!(f, "the bundle has no permutation `{}`", miss.asked)?;
                 match &miss.nearest {
@@ -70,5 +82,14 @@ impl std::error::Error for Error {}
 impl From<std::io::Error> for Error {
     fn from(error: std::io::Error) -> Self {
         Self::Io(error.to_string())
+    }
+}
+
+impl From<output::Error> for Error {
+    fn from(error: output::Error) -> Self {
+        match error {
+            output::Error::Foreign(foreign) => Self::Foreign(foreign),
+            error => Self::Io(error.to_string()),
+        }
     }
 }

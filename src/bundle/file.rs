@@ -1,7 +1,6 @@
 //! Reads the single file where it lies: only its header and META are parsed on opening.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -13,6 +12,7 @@ use super::contents::{Hash, checksum};
 use super::layout::*;
 use super::store::{Artifact, Program, Programs, Store, Unit};
 use super::{Error, Reflection, VERSION};
+use crate::input;
 use crate::packing;
 
 /// Decompressed groups that are kept: what a level's worth of similar shaders needs.
@@ -49,7 +49,7 @@ impl std::ops::Deref for Bytes {
 /// Maps the file. It must not be changed in place while it is open: replace it by renaming, as
 /// [`super::write_file`] does.
 pub fn open(path: &Path) -> Result<Packed, Error> {
-    let file = File::open(path)?;
+    let file = input::open(path)?;
     if file.metadata()?.len() < HEADER_BYTES as u64 {
         return Err(Error::corrupt("header", "the file is too short"));
     }
@@ -71,7 +71,8 @@ fn parse(bytes: Bytes) -> Result<Packed, Error> {
     if checksum(text) != expected {
         return Err(Error::corrupt("meta", "the checksum does not match"));
     }
-    let meta: Meta = serde_json::from_slice(text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
+    let meta: Meta =
+        serde_json::from_slice(text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
     let mut programs = Programs::new();
     let mut entries = Vec::new();
     for (name, program) in &meta.programs {
@@ -82,7 +83,15 @@ fn parse(bytes: Bytes) -> Result<Packed, Error> {
         }
         programs.insert(name.clone(), Program { axes: program.axes.clone(), entries: numbers });
     }
-    Ok(Packed { bytes, sections, checked: Default::default(), meta, programs, entries, groups: Mutex::default() })
+    Ok(Packed {
+        bytes,
+        sections,
+        checked: Default::default(),
+        meta,
+        programs,
+        entries,
+        groups: Mutex::default(),
+    })
 }
 
 /// Where the sections are, from a header that is what was written.
@@ -95,25 +104,40 @@ fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error>
     if version != VERSION {
         return Err(Error::Version { found: version, known: VERSION });
     }
-    if hash_at(bytes, HEADER_BYTES - 16, part)? != checksum(slice(bytes, 0, HEADER_BYTES - 16, part)?) {
+    if hash_at(bytes, HEADER_BYTES - 16, part)?
+        != checksum(slice(bytes, 0, HEADER_BYTES - 16, part)?)
+    {
         return Err(Error::corrupt(part, "the checksum does not match"));
     }
-    if u32_at(bytes, 12, part)? as usize != SECTIONS.len() || u64_at(bytes, 16, part)? != bytes.len() as u64 {
-        return Err(Error::corrupt(part, format!("the file has {} bytes, not those it was written with", bytes.len())));
+    if u32_at(bytes, 12, part)? as usize != SECTIONS.len()
+        || u64_at(bytes, 16, part)? != bytes.len() as u64
+    {
+        return Err(Error::corrupt(
+            part,
+            format!("the file has {} bytes, not those it was written with", bytes.len()),
+        ));
     }
     let mut sections = [(0, 0, [0; 16]); SECTIONS.len()];
     let mut next = HEADER_BYTES;
     for (index, section) in sections.iter_mut().enumerate() {
         let at = 24 + index * 32;
-        let (offset, length) = (u64_at(bytes, at, part)? as usize, u64_at(bytes, at + 8, part)? as usize);
+        let (offset, length) =
+            (u64_at(bytes, at, part)? as usize, u64_at(bytes, at + 8, part)? as usize);
         slice(bytes, offset, length, SECTIONS[index])?;
         if offset != next {
-            return Err(Error::corrupt(SECTIONS[index], "the section is not where the one before ends"));
+            return Err(Error::corrupt(
+                SECTIONS[index],
+                "the section is not where the one before ends",
+            ));
         }
         next = offset + length;
         *section = (offset, length, hash_at(bytes, at + 16, part)?);
     }
-    if next == bytes.len() { Ok(sections) } else { Err(Error::corrupt("data", "bytes follow the last section")) }
+    if next == bytes.len() {
+        Ok(sections)
+    } else {
+        Err(Error::corrupt("data", "bytes follow the last section"))
+    }
 }
 
 impl Packed {
@@ -122,8 +146,13 @@ impl Packed {
         let (offset, length, expected) = self.sections[index];
         let section = slice(&self.bytes, offset, length, SECTIONS[index])?;
         if index != DATA {
-            let check =
-                || if checksum(section) == expected { Ok(()) } else { Err(Error::corrupt(SECTIONS[index], "the checksum does not match")) };
+            let check = || {
+                if checksum(section) == expected {
+                    Ok(())
+                } else {
+                    Err(Error::corrupt(SECTIONS[index], "the checksum does not match"))
+                }
+            };
             if let Err(error) = self.checked[index].get_or_init(check) {
                 return Err(error.clone());
             }
@@ -132,12 +161,19 @@ impl Packed {
     }
 
     fn entry(&self, entry: usize) -> Result<&EntryMeta, Error> {
-        self.entries.get(entry).ok_or_else(|| Error::corrupt("meta", "an entry point is out of range"))
+        self.entries
+            .get(entry)
+            .ok_or_else(|| Error::corrupt("meta", "an entry point is out of range"))
     }
 
     fn key<'a>(&self, keys: &'a [u8], set: &KeySet, index: usize) -> Result<&'a [u8], Error> {
         let record = set.records as usize + index * RECORD_BYTES;
-        slice(keys, u32_at(keys, record, "keys")? as usize, u32_at(keys, record + 4, "keys")? as usize, "keys")
+        slice(
+            keys,
+            u32_at(keys, record, "keys")? as usize,
+            u32_at(keys, record + 4, "keys")? as usize,
+            "keys",
+        )
     }
 
     fn unit_of(&self, keys: &[u8], entry: &EntryMeta, index: usize) -> Result<u32, Error> {
@@ -154,7 +190,12 @@ impl Packed {
         }
         let texts = self.section(TEXTS)?;
         let record = index as usize * RECORD_BYTES;
-        let text = slice(texts, u32_at(texts, record, "texts")? as usize, u32_at(texts, record + 4, "texts")? as usize, "texts")?;
+        let text = slice(
+            texts,
+            u32_at(texts, record, "texts")? as usize,
+            u32_at(texts, record + 4, "texts")? as usize,
+            "texts",
+        )?;
         serde_json::from_slice(text).map_err(|error| Error::corrupt("texts", error.to_string()))
     }
 
@@ -162,8 +203,13 @@ impl Packed {
     fn unit_record(&self, unit: u32) -> Result<(u32, u32, u32), Error> {
         let units = self.section(UNITS)?;
         let at = unit as usize * UNIT_BYTES;
-        let record = (u32_at(units, at, "units")?, u32_at(units, at + 4, "units")?, u32_at(units, at + 8, "units")?);
-        let in_range = unit < self.meta.units && record.1.checked_add(record.2).is_some_and(|end| end <= self.meta.artifacts);
+        let record = (
+            u32_at(units, at, "units")?,
+            u32_at(units, at + 4, "units")?,
+            u32_at(units, at + 8, "units")?,
+        );
+        let in_range = unit < self.meta.units
+            && record.1.checked_add(record.2).is_some_and(|end| end <= self.meta.artifacts);
         if in_range { Ok(record) } else { Err(Error::corrupt("units", "a number is out of range")) }
     }
 
@@ -202,7 +248,11 @@ impl Packed {
             ErrorKind::Unsupported => error.into(),
             _ => Error::corrupt(part.as_str(), error.to_string()),
         })?;
-        if bytes.len() == raw { Ok(bytes) } else { Err(Error::corrupt(part, "the length does not match")) }
+        if bytes.len() == raw {
+            Ok(bytes)
+        } else {
+            Err(Error::corrupt(part, "the length does not match"))
+        }
     }
 
     /// Offset in DATA, length there, length decompressed, checksum.
@@ -213,7 +263,12 @@ impl Packed {
         if group >= self.meta.groups || raw > MOST_GROUP_BYTES {
             return Err(Error::corrupt("blobs", "a group is out of range"));
         }
-        Ok((u64_at(table, at, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize, raw, hash_at(table, at + 16, "blobs")?))
+        Ok((
+            u64_at(table, at, "blobs")? as usize,
+            u32_at(table, at + 8, "blobs")? as usize,
+            raw,
+            hash_at(table, at + 16, "blobs")?,
+        ))
     }
 
     /// The groups fill DATA without a gap, so that their checksums cover it.
@@ -222,12 +277,19 @@ impl Packed {
         for group in 0..self.meta.groups {
             let (offset, packed, ..) = self.group_record(group)?;
             if offset != next {
-                return Err(Error::corrupt(format!("group {group}"), "it is not where the one before ends"));
+                return Err(Error::corrupt(
+                    format!("group {group}"),
+                    "it is not where the one before ends",
+                ));
             }
             next = offset.saturating_add(packed);
             self.decompress(group)?;
         }
-        if next == self.section(DATA)?.len() { Ok(()) } else { Err(Error::corrupt("data", "bytes follow the last group")) }
+        if next == self.section(DATA)?.len() {
+            Ok(())
+        } else {
+            Err(Error::corrupt("data", "bytes follow the last group"))
+        }
     }
 
     /// Keys are sorted, found by their hashes, and have units.
@@ -237,8 +299,15 @@ impl Packed {
             let mut outcome = Ok(());
             self.each_key(number, &mut |key, unit| {
                 let is_sorted = previous.as_deref().is_none_or(|previous| previous < key);
-                if outcome.is_ok() && (!is_sorted || unit >= self.meta.units || self.find(number, key) != Ok(Some(unit))) {
-                    outcome = Err(Error::corrupt("keys", format!("`{key}` of `{}` is not where it belongs", entry.name)));
+                if outcome.is_ok()
+                    && (!is_sorted
+                        || unit >= self.meta.units
+                        || self.find(number, key) != Ok(Some(unit)))
+                {
+                    outcome = Err(Error::corrupt(
+                        "keys",
+                        format!("`{key}` of `{}` is not where it belongs", entry.name),
+                    ));
                 }
                 previous = Some(key.to_owned());
             })?;
@@ -260,7 +329,9 @@ impl Store for Packed {
         if !set.slot_count.is_power_of_two() {
             return Err(Error::corrupt("meta", "a number of slots is no power of two"));
         }
-        let slots = slice(keys, set.slots as usize, set.slot_count as usize * SLOT_BYTES, "keys")?.as_chunks::<SLOT_BYTES>().0;
+        let slots = slice(keys, set.slots as usize, set.slot_count as usize * SLOT_BYTES, "keys")?
+            .as_chunks::<SLOT_BYTES>()
+            .0;
         let hash = hash(key.as_bytes());
         let mask = slots.len() - 1;
         for step in 0..slots.len() {
@@ -279,7 +350,8 @@ impl Store for Packed {
         let entry = self.entry(entry)?;
         let keys = self.section(KEYS)?;
         for index in 0..entry.keys.count as usize {
-            let key = std::str::from_utf8(self.key(keys, &entry.keys, index)?).map_err(|_| Error::corrupt("keys", "a key is not UTF-8"))?;
+            let key = std::str::from_utf8(self.key(keys, &entry.keys, index)?)
+                .map_err(|_| Error::corrupt("keys", "a key is not UTF-8"))?;
             visit(key, self.unit_of(keys, entry, index)?);
         }
         Ok(())
@@ -290,8 +362,14 @@ impl Store for Packed {
         let mut targets = BTreeMap::new();
         for artifact in first..first + count {
             let (target, native, blob) = self.artifact_record(artifact)?;
-            targets
-                .insert(target.name.clone(), Artifact { extension: target.extension.clone(), native: Arc::new(self.text(native)?), blob });
+            targets.insert(
+                target.name.clone(),
+                Artifact {
+                    extension: target.extension.clone(),
+                    native: Arc::new(self.text(native)?),
+                    blob,
+                },
+            );
         }
         Ok(Unit { reflection: Arc::new(self.text(reflection)?), targets })
     }
@@ -302,7 +380,11 @@ impl Store for Packed {
         for artifact in first..first + count {
             let (found, native, blob) = self.artifact_record(artifact)?;
             if found.name == target {
-                let artifact = Artifact { extension: found.extension.clone(), native: Arc::new(self.text(native)?), blob };
+                let artifact = Artifact {
+                    extension: found.extension.clone(),
+                    native: Arc::new(self.text(native)?),
+                    blob,
+                };
                 return Ok((Arc::new(self.text(reflection)?), artifact));
             }
             known.push(found.name.clone());
@@ -316,7 +398,8 @@ impl Store for Packed {
         }
         let table = self.section(BLOBS)?;
         let at = blob as usize * BLOB_BYTES;
-        let (offset, length) = (u32_at(table, at + 4, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize);
+        let (offset, length) =
+            (u32_at(table, at + 4, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize);
         let group = self.group(u32_at(table, at, "blobs")?)?;
         slice(&group, offset, length, "blobs").map(<[u8]>::to_vec)
     }
@@ -331,7 +414,9 @@ impl Store for Packed {
         (0..self.meta.units).try_for_each(|unit| self.unit(unit).map(|_| ()))?;
         let table = self.section(BLOBS)?;
         for blob in 0..self.meta.blobs {
-            if checksum(&self.blob(blob)?) != hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs")? {
+            if checksum(&self.blob(blob)?)
+                != hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs")?
+            {
                 return Err(Error::corrupt(format!("blob {blob}"), "the checksum does not match"));
             }
         }

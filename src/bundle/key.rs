@@ -1,49 +1,143 @@
 //! Keys as text: `shadow=pcf_3x3,two_sided`.
+//!
+//! A key lists the axes that differ from their defaults, sorted by name. An axis whose value is
+//! `true` stands alone. The permutation without a difference is [`DEFAULT`]. This is the one place
+//! that reads and writes keys: the loader, the tools and the command line all use it.
 
 use super::{Axis, Error};
 
 /// The key of the permutation with every axis at its default.
 pub const DEFAULT: &str = "default";
 
-/// The key with its axes sorted and every default left out; `axis` alone means `axis=true`.
-pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
-    let bad = |reason: String| Error::BadKey { key: key.to_owned(), reason };
-    let mut parts: Vec<(&str, &str)> = Vec::new();
-    for part in parts_of(key) {
-        let (name, value) = split(part);
-        let axis = axes
-            .iter()
-            .find(|axis| axis.name == name)
-            .ok_or_else(|| bad(format!("there is no axis `{name}`{}", list(axes.iter().map(|axis| &axis.name)))))?;
-        if !axis.values.iter().any(|known| known == value) {
-            return Err(bad(format!("axis `{name}` has no value `{value}`{}", list(axis.values.iter()))));
-        }
-        if parts.iter().any(|(other, _)| *other == name) {
-            return Err(bad(format!("axis `{name}` is named twice")));
-        }
-        parts.push((name, value));
+/// The value that an axis has where a key names it alone.
+pub const IMPLIED: &str = "true";
+
+/// The mode of axes that permutations do not differ in.
+const DYNAMIC: &str = "dynamic";
+
+/// A word of a key, without the blanks around it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Word<'k> {
+    pub text: &'k str,
+    /// Bytes of the key before it.
+    pub start: usize,
+}
+
+/// What stands between two commas of a key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part<'k> {
+    /// The name of an axis; empty where there is none, which is a mistake.
+    pub axis: Word<'k>,
+    /// What stands behind `=`; empty where nothing does, which is a mistake. `None` without `=`.
+    pub value: Option<Word<'k>>,
+}
+
+impl<'k> Part<'k> {
+    /// The value it chooses: [`IMPLIED`] where it has none of its own.
+    pub fn chosen(&self) -> &'k str {
+        self.value.map_or(IMPLIED, |value| value.text)
     }
-    parts.retain(|(name, value)| !axes.iter().any(|axis| axis.name == *name && axis.default == *value));
+}
+
+/// Reads a key: its parts in order. The default permutation has none.
+pub fn parts(key: &str) -> impl Iterator<Item = Part<'_>> {
+    let is_default = matches!(key.trim(), "" | DEFAULT);
+    let mut rest = (!is_default).then_some(Word { text: key, start: 0 });
+    std::iter::from_fn(move || {
+        let Word { text, start } = rest?;
+        let (part, after) = match text.split_once(',') {
+            Some((part, after)) => (part, Some(after)),
+            None => (text, None),
+        };
+        rest = after.map(|text| Word { text, start: start + part.len() + 1 });
+        Some(match part.split_once('=') {
+            Some((axis, value)) => Part {
+                axis: trimmed(axis, start),
+                value: Some(trimmed(value, start + axis.len() + 1)),
+            },
+            None => Part { axis: trimmed(part, start), value: None },
+        })
+    })
+}
+
+fn trimmed(text: &str, start: usize) -> Word<'_> {
+    Word { text: text.trim(), start: start + text.len() - text.trim_start().len() }
+}
+
+/// Writes a key: axes that differ from their defaults with their values, in any order.
+pub fn write<'a>(differing: impl IntoIterator<Item = (&'a str, &'a str)>) -> String {
+    let mut parts: Vec<(&str, &str)> = differing.into_iter().collect();
+    if parts.is_empty() {
+        return DEFAULT.to_owned();
+    }
     parts.sort_unstable();
-    let parts = parts.iter().map(|(name, value)| if *value == "true" { (*name).to_owned() } else { format!("{name}={value}") });
-    let key = parts.collect::<Vec<_>>().join(",");
-    Ok(if key.is_empty() { DEFAULT.to_owned() } else { key })
+    let parts = parts.into_iter().map(|(axis, value)| match value {
+        IMPLIED => axis.to_owned(),
+        _ => format!("{axis}={value}"),
+    });
+    parts.collect::<Vec<_>>().join(",")
+}
+
+/// The key as it is written: axes sorted, defaults left out.
+///
+/// # Errors
+/// [`Error::BadKey`] where it names an axis or a value that there is not, or an axis twice.
+pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
+    let mut chosen: Vec<(&str, &str)> = Vec::new();
+    for part in parts(key) {
+        let found = choice(axes, part)
+            .and_then(|(axis, value)| match chosen.iter().any(|(other, _)| *other == axis.name) {
+                true => Err(format!("axis `{}` is named twice", axis.name)),
+                false => Ok((axis.name.as_str(), value)),
+            })
+            .map_err(|reason| Error::BadKey { key: key.to_owned(), reason })?;
+        chosen.push(found);
+    }
+    let differs = |(name, value): &(&str, &str)| {
+        !axes.iter().any(|axis| axis.name == *name && axis.default == *value)
+    };
+    Ok(write(chosen.into_iter().filter(differs)))
+}
+
+/// The axis and the value that a part names.
+fn choice<'a>(axes: &'a [Axis], part: Part<'a>) -> Result<(&'a Axis, &'a str), String> {
+    let name = part.axis.text;
+    if name.is_empty() {
+        return Err("expected `axis=value`".to_owned());
+    }
+    let axis = axes.iter().find(|axis| axis.name == name).ok_or_else(|| {
+        format!("there is no axis `{name}`{}", list(axes.iter().map(|axis| &axis.name)))
+    })?;
+    if axis.mode == DYNAMIC {
+        return Err(format!("axis `{name}` is dynamic: its value is chosen while running"));
+    }
+    let value = part.chosen();
+    if axis.values.iter().any(|known| known == value) {
+        return Ok((axis, value));
+    }
+    let known = list(axis.values.iter());
+    Err(match part.value {
+        Some(value) if !value.text.is_empty() => {
+            format!("axis `{name}` has no value `{}`{known}", value.text)
+        }
+        _ => format!("axis `{name}` needs a value{known}"),
+    })
 }
 
 /// The value that a canonical key gives an axis.
 pub fn value<'a>(key: &'a str, axis: &'a Axis) -> &'a str {
-    let chosen = parts_of(key).map(split).find(|(name, _)| *name == axis.name);
-    chosen.map_or(axis.default.as_str(), |(_, value)| value)
+    let chosen = parts(key).find(|part| part.axis.text == axis.name);
+    chosen.map_or(axis.default.as_str(), |part| part.chosen())
 }
 
 /// In how many axes two canonical keys differ.
 pub fn distance(a: &str, b: &str) -> usize {
-    let mut left = parts_of(a).peekable();
-    let mut right = parts_of(b).peekable();
+    let mut left = parts(a).peekable();
+    let mut right = parts(b).peekable();
     let mut differing = 0;
     // Both are sorted by axis: one walk over the two, as in merging.
     loop {
-        match (left.peek().copied(), right.peek().copied()) {
+        match (left.peek().map(words_of), right.peek().map(words_of)) {
             (None, None) => return differing,
             (Some(one), Some(other)) if one == other => {
                 left.next();
@@ -51,7 +145,7 @@ pub fn distance(a: &str, b: &str) -> usize {
             }
             (one, other) => {
                 differing += 1;
-                let (one, other) = (one.map(|part| split(part).0), other.map(|part| split(part).0));
+                let (one, other) = (one.map(|(axis, _)| axis), other.map(|(axis, _)| axis));
                 if other.is_none() || (one.is_some() && one <= other) {
                     left.next();
                 }
@@ -63,14 +157,8 @@ pub fn distance(a: &str, b: &str) -> usize {
     }
 }
 
-/// The parts between commas; none for the defaults.
-fn parts_of(key: &str) -> impl Iterator<Item = &str> {
-    let key = if key.trim() == DEFAULT { "" } else { key };
-    key.split(',').map(str::trim).filter(|part| !part.is_empty())
-}
-
-fn split(part: &str) -> (&str, &str) {
-    part.split_once('=').map_or((part, "true"), |(name, value)| (name.trim(), value.trim()))
+fn words_of<'k>(part: &Part<'k>) -> (&'k str, &'k str) {
+    (part.axis.text, part.chosen())
 }
 
 fn list<'a>(names: impl Iterator<Item = &'a String>) -> String {

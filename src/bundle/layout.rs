@@ -94,7 +94,12 @@ pub struct KeySet {
 /// all its bits count.
 pub fn hash(key: &[u8]) -> u128 {
     // Odd fractions of the square roots of 2, 3, 5 and 7.
-    const ROOTS: [u64; 4] = [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b, 0xa54f_f53a_5f1d_36f1];
+    const ROOTS: [u64; 4] = [
+        0x6a09_e667_f3bc_c909,
+        0xbb67_ae85_84ca_a73b,
+        0x3c6e_f372_fe94_f82b,
+        0xa54f_f53a_5f1d_36f1,
+    ];
     let fold = |a: u64, b: u64| {
         let product = u128::from(a) * u128::from(b);
         product as u64 ^ (product >> 64) as u64
@@ -110,13 +115,16 @@ pub fn hash(key: &[u8]) -> u128 {
     let mut last = [0; 8];
     last[..rest.len()].copy_from_slice(rest);
     mix(last);
-    let (low, high) = (fold(low ^ ROOTS[3], ROOTS[1] ^ high), fold(high ^ ROOTS[2], ROOTS[0] ^ low));
+    let (low, high) =
+        (fold(low ^ ROOTS[3], ROOTS[1] ^ high), fold(high ^ ROOTS[2], ROOTS[0] ^ low));
     u128::from(high) << 64 | u128::from(low)
 }
 
 /// `length` bytes from `at`.
 pub fn slice<'a>(bytes: &'a [u8], at: usize, length: usize, part: &str) -> Result<&'a [u8], Error> {
-    at.checked_add(length).and_then(|end| bytes.get(at..end)).ok_or_else(|| Error::corrupt(part, "a position is out of range"))
+    at.checked_add(length)
+        .and_then(|end| bytes.get(at..end))
+        .ok_or_else(|| Error::corrupt(part, "a position is out of range"))
 }
 
 pub fn u32_at(bytes: &[u8], at: usize, part: &str) -> Result<u32, Error> {

@@ -8,7 +8,8 @@ use super::contents::Contents;
 use super::store::{self, Store};
 use super::usage::{Recorder, Usage};
 use super::{
-    Artifact, Axis, EntryContents, Error, Language, Miss, Native, ProgramContents, Reflection, Target, Unit, directory, file, key,
+    Artifact, Axis, EntryContents, Error, Language, Miss, Native, ProgramContents, Reflection,
+    Target, Unit, directory, file, key,
 };
 
 /// An open bundle of either form. Cheap to share between threads.
@@ -73,7 +74,11 @@ impl Bundle {
     /// are verified on first use of what they cover; [`Bundle::verify`] checks all.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let store: Box<dyn Store> = if path.is_dir() { Box::new(directory::open(path)?) } else { Box::new(file::open(path)?) };
+        let store: Box<dyn Store> = if path.is_dir() {
+            Box::new(directory::open(path)?)
+        } else {
+            Box::new(file::open(path)?)
+        };
         Ok(Self { store, recorder: None })
     }
 
@@ -115,9 +120,13 @@ impl Bundle {
     pub fn contents(&self) -> Result<Contents, Error> {
         let mut contents = Contents::default();
         for (name, program) in self.store.programs() {
-            let mut copy = ProgramContents { axes: program.axes.clone(), ..ProgramContents::default() };
+            let mut copy =
+                ProgramContents { axes: program.axes.clone(), ..ProgramContents::default() };
             for ((language, entry), number) in &program.entries {
-                copy.languages.entry(*language).or_default().insert(entry.clone(), self.entry_contents(*number)?);
+                copy.languages
+                    .entry(*language)
+                    .or_default()
+                    .insert(entry.clone(), self.entry_contents(*number)?);
             }
             contents.programs.insert(name.clone(), copy);
         }
@@ -171,13 +180,21 @@ impl<'a> Program<'a> {
         let found = self.program.entries.get(&(language, name.to_owned()));
         let names = self.entries().filter(|(found, _)| *found == language).map(|(_, name)| name);
         let entry = *found.ok_or_else(|| not_found("entry point", name, names))?;
-        Ok(Shader { store: self.store, program: self.name, recorder: self.recorder, axes: &self.program.axes, entry })
+        Ok(Shader {
+            store: self.store,
+            program: self.name,
+            recorder: self.recorder,
+            axes: &self.program.axes,
+            entry,
+        })
     }
 
     /// An entry point in whichever language has it; WESL where both do, which prove alike.
     pub fn shader(&self, name: &str) -> Result<Shader<'a>, Error> {
-        let language = self.entries().find(|(_, found)| *found == name).map(|(language, _)| language);
-        let language = language.ok_or_else(|| not_found("entry point", name, self.entries().map(|(_, name)| name)))?;
+        let language =
+            self.entries().find(|(_, found)| *found == name).map(|(language, _)| language);
+        let language = language
+            .ok_or_else(|| not_found("entry point", name, self.entries().map(|(_, name)| name)))?;
         self.entry(language, name)
     }
 }
@@ -192,19 +209,32 @@ impl Shader<'_> {
         let unit = self.find(key)?;
         let (reflection, artifact) = self.store.artifact(unit, target.name())?;
         let constants = self.constants(key, &reflection)?;
-        Ok(Found { bytes: self.store.blob(artifact.blob)?, reflection, native: artifact.native, constants })
+        Ok(Found {
+            bytes: self.store.blob(artifact.blob)?,
+            reflection,
+            native: artifact.native,
+            constants,
+        })
     }
 
     /// What the key says of the axes that are overrides of the shader.
     fn constants(&self, key: &str, reflection: &Reflection) -> Result<Vec<Constant>, Error> {
-        let open =
-            |axis: &&Axis| axis.mode == "spec" && reflection.overrides.iter().any(|constant| constant.name.as_ref() == Some(&axis.name));
+        let open = |axis: &&Axis| {
+            axis.mode == "spec"
+                && reflection
+                    .overrides
+                    .iter()
+                    .any(|constant| constant.name.as_ref() == Some(&axis.name))
+        };
         let open: Vec<&Axis> = self.axes.iter().filter(open).collect();
         if open.is_empty() {
             return Ok(Vec::new());
         }
         let key = key::canonical(self.axes, key)?;
-        let constant = |axis: &&Axis| Constant { name: axis.name.clone(), value: key::value(&key, axis).to_owned() };
+        let constant = |axis: &&Axis| Constant {
+            name: axis.name.clone(),
+            value: key::value(&key, axis).to_owned(),
+        };
         Ok(open.iter().map(constant).collect())
     }
 
@@ -260,6 +290,14 @@ impl Shader<'_> {
     }
 }
 
-fn not_found<T: AsRef<str>>(what: &'static str, name: &str, known: impl Iterator<Item = T>) -> Error {
-    Error::NotFound { what, name: name.to_owned(), known: known.map(|name| name.as_ref().to_owned()).collect() }
+fn not_found<T: AsRef<str>>(
+    what: &'static str,
+    name: &str,
+    known: impl Iterator<Item = T>,
+) -> Error {
+    Error::NotFound {
+        what,
+        name: name.to_owned(),
+        known: known.map(|name| name.as_ref().to_owned()).collect(),
+    }
 }

@@ -1,8 +1,9 @@
 //! `manifest.json` of the directory form.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write as _};
 
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use super::contents::{checksum, hex, json, short};
@@ -69,19 +70,29 @@ pub struct ManifestArtifact {
 impl ManifestArtifact {
     /// The blob's file below `blobs/`, if the parts are what a writer writes.
     pub fn file(&self) -> Result<String, Error> {
-        let is_hex = self.blob.len() == 32 && self.blob.bytes().all(|byte| byte.is_ascii_hexdigit());
-        let parts = self.extension.split('.');
-        if is_hex && parts.clone().all(|part| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric())) {
-            return Ok(format!("{}.{}", &self.blob[..16], self.extension));
-        }
-        Err(Error::corrupt("manifest.json", format!("`{}` and `{}` do not name a blob", self.blob, self.extension)))
+        file(&self.blob, &self.extension).ok_or_else(|| {
+            let reason = format!("`{}` and `{}` do not name a blob", self.blob, self.extension);
+            Error::corrupt("manifest.json", reason)
+        })
     }
+}
+
+fn file(blob: &str, extension: &str) -> Option<String> {
+    let is_hex = blob.len() == 32 && blob.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let mut parts = extension.split('.');
+    let is_part =
+        |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric());
+    (is_hex && parts.all(is_part)).then(|| format!("{}.{extension}", &blob[..16]))
 }
 
 /// Writes the text of a manifest, the checksum of what came before it at its end.
 pub fn write(manifest: &Manifest, out: impl io::Write) -> Result<(), Error> {
-    let mut out = io::BufWriter::with_capacity(1 << 16, Sealing { out, hasher: blake3::Hasher::new(), held: Vec::new() });
-    serde_json::to_writer_pretty(&mut out, manifest).map_err(|error| Error::Io(error.to_string()))?;
+    let mut out = io::BufWriter::with_capacity(
+        1 << 16,
+        Sealing { out, hasher: blake3::Hasher::new(), held: Vec::new() },
+    );
+    serde_json::to_writer_pretty(&mut out, manifest)
+        .map_err(|error| Error::Io(error.to_string()))?;
     out.write_all(b"\n")?;
     out.into_inner().map_err(|error| Error::Io(error.to_string()))?.seal()
 }
@@ -128,13 +139,77 @@ pub fn read(text: &str) -> Result<Manifest, Error> {
     if manifest.version != VERSION {
         return Err(Error::Version { found: manifest.version, known: VERSION });
     }
-    let body = text.strip_suffix(END).and_then(|text| text.strip_suffix(manifest.checksum.as_str()));
-    let body = body.ok_or_else(|| damaged("the checksum is not at the end".to_owned()))?;
-    if hex(&checksum(format!("{body}{BLANK}{END}").as_bytes())) == manifest.checksum {
-        Ok(manifest)
-    } else {
-        Err(damaged("the checksum does not match".to_owned()))
+    match is_sealed(text, &manifest.checksum) {
+        Some(true) => Ok(manifest),
+        Some(false) => Err(damaged("the checksum does not match".to_owned())),
+        None => Err(damaged("the checksum is not at the end".to_owned())),
     }
+}
+
+/// Whether the checksum is that of the text; `None` where it is not at its end.
+fn is_sealed(text: &str, sum: &str) -> Option<bool> {
+    let body = text.strip_suffix(END)?.strip_suffix(sum)?;
+    Some(hex(&checksum(format!("{body}{BLANK}{END}").as_bytes())) == sum)
+}
+
+/// What a writer must know of the manifest that it is about to replace.
+pub enum Before {
+    /// A manifest as it was written: the files of its blobs.
+    Whole(BTreeSet<String>),
+    /// One of ours, of another version or damaged.
+    Unreadable,
+    /// A file of somebody else.
+    Foreign,
+}
+
+/// The parts of a manifest that every version has, and by which it is known.
+#[derive(Deserialize)]
+struct Mark {
+    #[serde(rename = "version")]
+    _version: u32,
+    #[serde(rename = "programs")]
+    _programs: BTreeMap<String, IgnoredAny>,
+    checksum: String,
+    #[serde(default)]
+    units: Option<BTreeMap<String, MarkUnit>>,
+}
+
+#[derive(Deserialize)]
+struct MarkUnit {
+    targets: BTreeMap<String, MarkArtifact>,
+}
+
+#[derive(Deserialize)]
+struct MarkArtifact {
+    blob: String,
+    extension: String,
+}
+
+/// What a text of that name is.
+pub fn before(text: &[u8]) -> Before {
+    let Ok(text) = std::str::from_utf8(text) else { return Before::Foreign };
+    let Ok(mark) = serde_json::from_str::<Mark>(text) else {
+        return if is_marked(text) { Before::Unreadable } else { Before::Foreign };
+    };
+    let is_hex = mark.checksum.len() == 32 && mark.checksum.bytes().all(|c| c.is_ascii_hexdigit());
+    match (is_sealed(text, &mark.checksum), mark.units) {
+        _ if !is_hex => Before::Foreign,
+        (Some(true), Some(units)) => {
+            let artifacts = units.values().flat_map(|unit| unit.targets.values());
+            let files = artifacts.filter_map(|found| file(&found.blob, &found.extension));
+            Before::Whole(files.collect())
+        }
+        _ => Before::Unreadable,
+    }
+}
+
+/// Whether a text begins or ends as a manifest does: one that was cut off, or edited badly.
+fn is_marked(text: &str) -> bool {
+    let begins = text.starts_with("{\n  \"version\": ") && text.contains("\n  \"programs\": {");
+    let ends = text.strip_suffix(END).is_some_and(|text| {
+        text.rsplit_once("\n  \"checksum\": \"").is_some_and(|(_, sum)| sum.len() == BLANK.len())
+    });
+    begins || ends
 }
 
 /// A manifest of another version need not have this one's fields.
@@ -170,12 +245,19 @@ impl Manifest {
     /// Sets the programs, and the keys with the units they refer to.
     pub fn outline(&mut self, contents: &Contents) -> Result<(), Error> {
         for (name, program) in &contents.programs {
-            let mut copy = ManifestProgram { axes: program.axes.clone(), ..ManifestProgram::default() };
+            let mut copy =
+                ManifestProgram { axes: program.axes.clone(), ..ManifestProgram::default() };
             for (language, entries) in &program.languages {
                 for (entry, contents) in entries {
-                    let keys = contents.keys.iter().map(|(key, hash)| Ok((key.clone(), self.known(hash)?)));
+                    let keys = contents
+                        .keys
+                        .iter()
+                        .map(|(key, hash)| Ok((key.clone(), self.known(hash)?)));
                     let keys = keys.collect::<Result<_, Error>>()?;
-                    copy.entries.entry(*language).or_default().insert(entry.clone(), ManifestEntry { keys });
+                    copy.entries
+                        .entry(*language)
+                        .or_default()
+                        .insert(entry.clone(), ManifestEntry { keys });
                 }
             }
             self.programs.insert(name.clone(), copy);
@@ -192,6 +274,10 @@ impl Manifest {
 
     fn known(&self, hash: &Hash) -> Result<String, Error> {
         let name = hex(hash);
-        if self.units.contains_key(&name) { Ok(name) } else { Err(Error::corrupt("contents", "a key refers to no unit")) }
+        if self.units.contains_key(&name) {
+            Ok(name)
+        } else {
+            Err(Error::corrupt("contents", "a key refers to no unit"))
+        }
     }
 }

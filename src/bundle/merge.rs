@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::path::Path;
 
-use super::directory::DirectoryWriter;
+use super::directory_writer::DirectoryWriter;
 use super::{Bundle, Contents, EntryContents, Error, ProgramContents};
 
 /// Everything of several bundles, every byte verified.
@@ -19,7 +19,11 @@ pub fn merge(bundles: &[Bundle]) -> Result<Contents, Error> {
 
 /// [`merge`] into the directory form, unit by unit: memory holds keys and hashes only.
 pub fn merge_directory(bundles: &[Bundle], path: impl AsRef<Path>) -> Result<(), Error> {
-    let writer = DirectoryWriter::create(path)?;
+    merge_into(bundles, DirectoryWriter::create(path)?)
+}
+
+/// [`merge_directory`] into a directory that is ready.
+pub fn merge_into(bundles: &[Bundle], writer: DirectoryWriter) -> Result<(), Error> {
     let mut all = Contents::default();
     for bundle in bundles {
         all.merge(copy(bundle, &writer)?)?;
@@ -31,8 +35,14 @@ pub fn merge_directory(bundles: &[Bundle], path: impl AsRef<Path>) -> Result<(),
 /// key refers to any more stay until it is written anew.
 pub fn patch_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
     let writer = DirectoryWriter::reopen(path)?;
-    let entries = contents.programs.values().flat_map(|program| program.languages.values()).flat_map(BTreeMap::values);
-    entries.flat_map(|entry| entry.units.values()).try_for_each(|unit| writer.add(unit).map(|_| ()))?;
+    let entries = contents
+        .programs
+        .values()
+        .flat_map(|program| program.languages.values())
+        .flat_map(BTreeMap::values);
+    entries
+        .flat_map(|entry| entry.units.values())
+        .try_for_each(|unit| writer.add(unit).map(|_| ()))?;
     writer.patch(contents)
 }
 
@@ -42,7 +52,8 @@ fn copy(bundle: &Bundle, writer: &DirectoryWriter) -> Result<Contents, Error> {
     let mut digests = BTreeMap::new();
     for name in bundle.programs() {
         let program = bundle.program(name)?;
-        let mut copied = ProgramContents { axes: program.axes().to_vec(), ..ProgramContents::default() };
+        let mut copied =
+            ProgramContents { axes: program.axes().to_vec(), ..ProgramContents::default() };
         for (language, entry) in program.entries() {
             let mut keys = BTreeMap::new();
             for (key, number) in program.entry(language, entry)?.numbered()? {
@@ -51,7 +62,11 @@ fn copy(bundle: &Bundle, writer: &DirectoryWriter) -> Result<Contents, Error> {
                 }
                 keys.extend(digests.get(&number).map(|unit| (key, *unit)));
             }
-            copied.languages.entry(language).or_default().insert(entry.to_owned(), EntryContents { units: BTreeMap::new(), keys });
+            copied
+                .languages
+                .entry(language)
+                .or_default()
+                .insert(entry.to_owned(), EntryContents { units: BTreeMap::new(), keys });
         }
         contents.programs.insert(name.to_owned(), copied);
     }

@@ -2,14 +2,16 @@
 //!
 //! The directory form is for reading and for version control: `manifest.json`, described by
 //! [`SCHEMA`], and `blobs/` named by content. The single file is for shipping: see [`pack`].
-//! Of the crate, this module uses the compression of the single file and nothing else.
+//! Of the crate, this module uses the compression of the single file, the one way to write files,
+//! and nothing else.
 
 mod contents;
 mod diff;
 mod directory;
+mod directory_writer;
 mod error;
 mod file;
-mod key;
+pub mod key;
 mod layout;
 mod loader;
 mod manifest;
@@ -22,14 +24,18 @@ mod usage;
 
 pub use contents::{Artifact, Axis, Contents, Digest, EntryContents, Hash, ProgramContents, Unit};
 pub use diff::{Change, Difference, diff};
-pub use directory::{BlobFile, DirectoryWriter, blob_files, write_directory};
+pub use directory::{BlobFile, blob_files};
+pub use directory_writer::{DirectoryWriter, write_directory};
 pub use error::{Error, Miss};
 pub use key::canonical;
 pub use loader::{Bundle, Constant, Found, Program, Shader};
 pub use manifest::SCHEMA;
-pub use merge::{merge, merge_directory, patch_directory};
-pub use pack::{pack, write_file};
-pub use reflection::{Binding, Choice, Combined, Kind, Language, Member, Native, Override, Pair, Place, Reflection, Slot, Stage, Varying};
+pub use merge::{merge, merge_directory, merge_into, patch_directory};
+pub use pack::{pack, replace_file, write_file};
+pub use reflection::{
+    Binding, BufferSizes, Choice, Combined, HeapSampler, Kind, Language, Member, Native, Override,
+    Pair, Place, Reflection, SamplerHeap, Semantic, Slot, Stage, Varying,
+};
 pub use target::Target;
 pub use usage::Usage;
 

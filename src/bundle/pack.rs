@@ -5,11 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::contents::{checksum, json};
-use super::directory::replace;
 use super::layout::{
-    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, ProgramMeta, RECORD_BYTES, SLOT_BYTES, TargetMeta, hash,
+    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, ProgramMeta, RECORD_BYTES,
+    SLOT_BYTES, TargetMeta, hash,
 };
 use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
+use crate::output::{self, Replace};
 use crate::packing;
 
 /// A group is closed at so many blobs or bytes: large enough for neighbours to share their
@@ -28,20 +29,35 @@ pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
         let mut sets = BTreeMap::new();
         let mut entries = Vec::new();
         for (language, entry, contents) in
-            program.languages.iter().flat_map(|(language, entries)| entries.iter().map(move |(name, entry)| (*language, name, entry)))
+            program.languages.iter().flat_map(|(language, entries)| {
+                entries.iter().map(move |(name, entry)| (*language, name, entry))
+            })
         {
             let keys = packer.key_set(&mut sets, contents)?;
             let units = packer.unit_numbers(contents)?;
             entries.push(EntryMeta { language, name: entry.clone(), keys, units });
         }
-        packer.meta.programs.insert(name.clone(), ProgramMeta { axes: program.axes.clone(), entries });
+        packer
+            .meta
+            .programs
+            .insert(name.clone(), ProgramMeta { axes: program.axes.clone(), entries });
     }
     packer.finish()
 }
 
-/// [`pack`] into a file, which is replaced as a whole.
+/// [`pack`] into a file, which is replaced as a whole if it is a bundle, absent or empty.
 pub fn write_file(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
-    replace(path.as_ref(), &pack(contents)?)
+    replace_file(contents, path, Replace::Ours)
+}
+
+/// [`write_file`] over what the caller says.
+pub fn replace_file(
+    contents: &Contents,
+    path: impl AsRef<Path>,
+    replace: Replace,
+) -> Result<(), Error> {
+    let is_bundle = |head: &[u8]| head.starts_with(MAGIC);
+    Ok(output::write_file(path.as_ref(), &pack(contents)?, is_bundle, replace)?)
 }
 
 #[derive(Default)]
@@ -60,14 +76,27 @@ struct Packer {
 impl Packer {
     /// Numbers the blobs so that similar ones are neighbours: by target, then by entry point.
     fn collect_blobs(&mut self, contents: &Contents) -> Result<(), Error> {
-        let entries = || contents.programs.values().flat_map(|program| program.languages.values()).flat_map(|entries| entries.values());
-        let artifacts = entries().flat_map(|entry| entry.units.values()).flat_map(|unit| &unit.targets);
-        let mut targets: Vec<TargetMeta> =
-            artifacts.map(|(name, artifact)| TargetMeta { name: name.clone(), extension: artifact.extension.clone() }).collect();
+        let entries = || {
+            contents
+                .programs
+                .values()
+                .flat_map(|program| program.languages.values())
+                .flat_map(|entries| entries.values())
+        };
+        let artifacts =
+            entries().flat_map(|entry| entry.units.values()).flat_map(|unit| &unit.targets);
+        let mut targets: Vec<TargetMeta> = artifacts
+            .map(|(name, artifact)| TargetMeta {
+                name: name.clone(),
+                extension: artifact.extension.clone(),
+            })
+            .collect();
         targets.sort();
         targets.dedup();
         for target in &targets {
-            for artifact in entries().flat_map(in_key_order).filter_map(|unit| unit.targets.get(&target.name)) {
+            for artifact in
+                entries().flat_map(in_key_order).filter_map(|unit| unit.targets.get(&target.name))
+            {
                 if artifact.extension == target.extension {
                     self.add_blob(&artifact.bytes)?;
                 }
@@ -79,7 +108,10 @@ impl Packer {
 
     fn add_blob(&mut self, bytes: &Arc<[u8]>) -> Result<(), Error> {
         if bytes.len() > MOST_GROUP_BYTES {
-            return Err(Error::Io(format!("a blob of {} bytes is larger than a bundle takes", bytes.len())));
+            return Err(Error::Io(format!(
+                "a blob of {} bytes is larger than a bundle takes",
+                bytes.len()
+            )));
         }
         let hash = checksum(bytes);
         let next = number(self.blobs.len())?;
@@ -90,7 +122,11 @@ impl Packer {
     }
 
     /// Writes the set of an entry point's keys, unless an earlier one has the same.
-    fn key_set<'a>(&mut self, sets: &mut BTreeMap<Vec<&'a str>, KeySet>, entry: &'a EntryContents) -> Result<KeySet, Error> {
+    fn key_set<'a>(
+        &mut self,
+        sets: &mut BTreeMap<Vec<&'a str>, KeySet>,
+        entry: &'a EntryContents,
+    ) -> Result<KeySet, Error> {
         let keys: Vec<&str> = entry.keys.keys().map(String::as_str).collect();
         if let Some(set) = sets.get(&keys) {
             return Ok(*set);
@@ -107,7 +143,9 @@ impl Packer {
             put(&mut self.keys, &[number(text_at)?, number(key.len())?]);
             text_at += key.len();
         }
-        slots(&keys, slot_count)?.iter().for_each(|slot| self.keys.extend_from_slice(&slot.to_le_bytes()));
+        slots(&keys, slot_count)?
+            .iter()
+            .for_each(|slot| self.keys.extend_from_slice(&slot.to_le_bytes()));
         keys.iter().for_each(|key| self.keys.extend_from_slice(key.as_bytes()));
         sets.insert(keys, set);
         Ok(set)
@@ -117,7 +155,10 @@ impl Packer {
     fn unit_numbers(&mut self, entry: &EntryContents) -> Result<u32, Error> {
         let start = number(self.keys.len())?;
         for hash in entry.keys.values() {
-            let unit = entry.units.get(hash).ok_or_else(|| Error::Io("a key refers to no unit".to_owned()))?;
+            let unit = entry
+                .units
+                .get(hash)
+                .ok_or_else(|| Error::Io("a key refers to no unit".to_owned()))?;
             let unit = self.unit(hash, unit)?;
             put(&mut self.keys, &[unit]);
         }
@@ -131,10 +172,12 @@ impl Packer {
         let reflection = self.text(json(&*unit.reflection)?)?;
         put(&mut self.units, &[reflection, self.meta.artifacts, number(unit.targets.len())?]);
         for (target, artifact) in &unit.targets {
-            let position = |known: &TargetMeta| known.name == *target && known.extension == artifact.extension;
+            let position =
+                |known: &TargetMeta| known.name == *target && known.extension == artifact.extension;
             let target = number(self.meta.targets.iter().position(position).unwrap_or_default())?;
             let native = self.text(json(&*artifact.native)?)?;
-            let blob = self.blob_numbers.get(&checksum(&artifact.bytes)).copied().unwrap_or_default();
+            let blob =
+                self.blob_numbers.get(&checksum(&artifact.bytes)).copied().unwrap_or_default();
             put(&mut self.artifacts, &[target, native, blob]);
             self.meta.artifacts += 1;
         }

@@ -160,6 +160,16 @@ pub struct Native {
     /// defaults.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<Choice>,
+    /// Semantics of a vertex stage's inputs, in targets that bind attributes by them (HLSL).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub semantics: Vec<Semantic>,
+    /// Where samplers are, in targets that take them from arrays of all samplers (HLSL): they
+    /// have no slot of their own there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sampler_heaps: Vec<SamplerHeap>,
+    /// The argument that takes lengths of buffers, where the entry point has one (MSL).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub buffer_sizes: Option<BufferSizes>,
 }
 
 /// How a target takes the value of an override: in WGSL as the pipeline constant of its `@id` or
@@ -189,6 +199,53 @@ pub struct Slot {
     /// The identifier in the output, where the API looks it up by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
+}
+
+/// The semantic of a vertex attribute: `LOC` and 3 for `LOC3`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Semantic {
+    /// As in the reflection.
+    pub location: u32,
+    pub name: String,
+    pub index: u32,
+}
+
+/// An array of samplers that the host binds once. A shader finds each of its samplers there by a
+/// number that the host wrote into a buffer.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct SamplerHeap {
+    /// The identifier in the output.
+    pub name: String,
+    /// Sampler register and register space of its first element.
+    pub register: u32,
+    pub space: u32,
+    /// Elements that the output declares.
+    pub size: u32,
+    /// Whether these are comparison samplers.
+    pub comparison: bool,
+    /// The samplers of the reflection that are found in it.
+    pub samplers: Vec<HeapSampler>,
+}
+
+/// A sampler of a heap: element `element` of a structured buffer of 32-bit numbers says where in
+/// the heap it is.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct HeapSampler {
+    pub group: u32,
+    pub binding: u32,
+    /// Shader resource register (`t`) and register space of the buffer of numbers.
+    pub buffer_register: u32,
+    pub buffer_space: u32,
+    pub element: u32,
+}
+
+/// An argument with the sizes of buffers whose last member is an array of unknown length.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct BufferSizes {
+    /// Its place in the table of buffers.
+    pub index: u32,
+    /// Group and binding of each buffer, in the order of its 32-bit sizes in bytes.
+    pub buffers: Vec<Place>,
 }
 
 /// A texture and its sampler as one object.

@@ -47,7 +47,11 @@ pub trait Store: Send + Sync {
         let mut unit = self.unit(unit)?;
         match unit.targets.remove(target) {
             Some(artifact) => Ok((unit.reflection, artifact)),
-            None => Err(Error::NotFound { what: "target", name: target.to_owned(), known: unit.targets.into_keys().collect() }),
+            None => Err(Error::NotFound {
+                what: "target",
+                name: target.to_owned(),
+                known: unit.targets.into_keys().collect(),
+            }),
         }
     }
 

@@ -14,9 +14,12 @@ use std::path::Path;
 use std::sync::{PoisonError, RwLock};
 
 use super::Error;
-use super::directory::replace;
+use crate::{input, output};
 
 const HEADER: &str = "# Permutations asked for: a program and a key, one a line.";
+
+/// Bytes of a list in a file.
+const MOST_BYTES: u64 = 256 << 20;
 
 /// Keys by program, in canonical form.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -45,15 +48,17 @@ impl Usage {
     /// [`Error::Corrupt`] where the file is no list: it is left alone.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        let mut all = match std::fs::read_to_string(path) {
-            Ok(text) => Self::parse(&text).map_err(|line| Error::corrupt("usage list", format!("line {line} is no program and key")))?,
+        let mut all = match input::read(path, MOST_BYTES) {
+            Ok(text) => Self::parse(&String::from_utf8_lossy(&text)).map_err(|line| {
+                Error::corrupt("usage list", format!("line {line} is no program and key"))
+            })?,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Self::default(),
             Err(error) => return Err(error.into()),
         };
         for (program, keys) in &self.keys {
             all.keys.entry(program.clone()).or_default().extend(keys.iter().cloned());
         }
-        replace(path, all.to_string().as_bytes())
+        Ok(output::write(path, all.to_string().as_bytes())?)
     }
 }
 
@@ -61,7 +66,9 @@ impl fmt::Display for Usage {
     /// The list.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{HEADER}")?;
-        self.keys.iter().try_for_each(|(program, keys)| keys.iter().try_for_each(|key| writeln!(f, "{program} {key}")))
+        self.keys.iter().try_for_each(|(program, keys)| {
+            keys.iter().try_for_each(|key| writeln!(f, "{program} {key}"))
+        })
     }
 }
 
@@ -71,7 +78,12 @@ pub struct Recorder(RwLock<BTreeMap<String, HashSet<String>>>);
 
 impl Recorder {
     pub fn note(&self, program: &str, key: &str) {
-        let known = self.0.read().unwrap_or_else(PoisonError::into_inner).get(program).is_some_and(|keys| keys.contains(key));
+        let known = self
+            .0
+            .read()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get(program)
+            .is_some_and(|keys| keys.contains(key));
         if !known {
             let mut all = self.0.write().unwrap_or_else(PoisonError::into_inner);
             all.entry(program.to_owned()).or_default().insert(key.to_owned());
@@ -81,6 +93,11 @@ impl Recorder {
     /// What was asked for so far.
     pub fn usage(&self) -> Usage {
         let seen = self.0.read().unwrap_or_else(PoisonError::into_inner);
-        Usage { keys: seen.iter().map(|(program, keys)| (program.clone(), keys.iter().cloned().collect())).collect() }
+        Usage {
+            keys: seen
+                .iter()
+                .map(|(program, keys)| (program.clone(), keys.iter().cloned().collect()))
+                .collect(),
+        }
     }
 }

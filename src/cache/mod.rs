@@ -7,17 +7,14 @@
 
 mod folder;
 mod record;
-mod trace;
 
 pub use folder::Folder;
-pub use trace::{Recorder, Run, Told, Trace};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::bundle::{Hash, Target};
+use crate::bundle::{Hash, Target, Unit};
 use crate::compose::{Composed, Options};
 use crate::diagnostic::Diagnostics;
-use crate::generate::Made;
 
 /// Changes with the sources of this crate, its dependencies' versions and the compiler's target.
 pub const BUILD: &str = env!("LAMPLIGHT_BUILD");
@@ -43,6 +40,9 @@ struct Counted {
     failures: AtomicUsize,
 }
 
+/// What names of records begin with.
+const KINDS: [&str; 4] = ["errors", "runs", "units", "warnings"];
+
 const MOST_FAILURES: usize = 8;
 
 /// What compiling a text depends on.
@@ -57,6 +57,13 @@ pub struct Job<'a> {
     pub targets: &'a [Target],
 }
 
+/// What comes of a text: a unit, and what its author can mend.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Made {
+    pub unit: Unit,
+    pub warnings: Diagnostics,
+}
+
 impl Cache {
     pub fn new(storages: Vec<Box<dyn Storage>>) -> Self {
         let counted = |storage| Counted { storage, failures: AtomicUsize::new(0) };
@@ -66,7 +73,10 @@ impl Cache {
     /// The result of an equal job, if there was one.
     pub fn find(&self, job: Job<'_>) -> Option<Result<Made, Diagnostics>> {
         let key = unit_key(job);
-        let told = |kind| self.get(kind, told_key(key, job.composed)).and_then(|bytes| record::decode_diagnostics(&bytes));
+        let told = |kind| {
+            self.get(kind, told_key(key, job.composed))
+                .and_then(|bytes| record::decode_diagnostics(&bytes))
+        };
         let found = match self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)) {
             Some((unit, false)) => Some(Ok(Made { unit, warnings: Vec::new() })),
             Some((unit, true)) => told("warnings").map(|warnings| Ok(Made { unit, warnings })),
@@ -79,7 +89,9 @@ impl Cache {
     /// Keeps a result.
     pub fn keep(&self, job: Job<'_>, result: &Result<Made, Diagnostics>) {
         let key = unit_key(job);
-        let tell = |kind, diagnostics| self.put(kind, told_key(key, job.composed), record::encode_diagnostics(diagnostics));
+        let tell = |kind, diagnostics| {
+            self.put(kind, told_key(key, job.composed), record::encode_diagnostics(diagnostics))
+        };
         match result {
             Ok(Made { unit, warnings }) => {
                 self.put("units", key, record::encode_unit(unit, !warnings.is_empty()));
@@ -101,7 +113,7 @@ impl Cache {
         self.storages.iter().map(|storage| storage.failures.load(Ordering::Relaxed)).sum()
     }
 
-    fn get(&self, kind: &str, key: Hash) -> Option<Vec<u8>> {
+    pub(crate) fn get(&self, kind: &str, key: Hash) -> Option<Vec<u8>> {
         let name = name(kind, key);
         for (index, storage) in self.storages.iter().enumerate() {
             let Some(record) = storage.get(&name) else { continue };
@@ -113,7 +125,7 @@ impl Cache {
         None
     }
 
-    fn put(&self, kind: &str, key: Hash, payload: Option<Vec<u8>>) {
+    pub(crate) fn put(&self, kind: &str, key: Hash, payload: Option<Vec<u8>>) {
         let Some(record) = payload.map(|payload| record::seal(&payload)) else { return };
         self.storages.iter().for_each(|storage| storage.put(&name(kind, key), &record));
     }
@@ -144,14 +156,19 @@ fn name(kind: &str, key: Hash) -> String {
     format!("{kind}/{}/{}", &hex[..2], &hex[2..])
 }
 
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]).filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes
+        .iter()
+        .flat_map(|byte| [byte >> 4, byte & 15])
+        .filter_map(|digit| char::from_digit(u32::from(digit), 16))
+        .collect()
 }
 
 fn unit_key(job: Job<'_>) -> Hash {
     let Job { text, composed, entry, options, targets } = job;
     let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
-    let rest = format!("{:?} {:?} {options:?} {entry:?} {names:?}", composed.language, composed.stage);
+    let rest =
+        format!("{:?} {:?} {options:?} {entry:?} {names:?}", composed.language, composed.stage);
     hash(&["unit", BUILD, &rest, text])
 }
 
@@ -161,7 +178,7 @@ fn told_key(unit: Hash, composed: &Composed) -> Hash {
 }
 
 /// 128 bits over parts that cannot run into each other.
-fn hash(parts: &[&str]) -> Hash {
+pub(crate) fn hash(parts: &[&str]) -> Hash {
     let mut hasher = blake3::Hasher::new();
     for part in parts {
         hasher.update(&(part.len() as u64).to_le_bytes());
@@ -170,7 +187,7 @@ fn hash(parts: &[&str]) -> Hash {
     short(&hasher.finalize())
 }
 
-fn short(hash: &blake3::Hash) -> Hash {
+pub(crate) fn short(hash: &blake3::Hash) -> Hash {
     let mut short = [0; 16];
     short.copy_from_slice(&hash.as_bytes()[..16]);
     short

@@ -11,11 +11,14 @@ use crate::bundle::{Artifact, Native, Reflection, Unit};
 use crate::diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
 use crate::source::{SourceId, Span};
 
-const MAGIC: &[u8; 4] = b"LLC2";
+pub const MAGIC: &[u8; 4] = b"LLC2";
 const SUM_BYTES: usize = 16;
 
 /// Bytes of a payload: bounds what damage can allocate.
 const MOST_BYTES: usize = 1 << 30;
+
+/// Bytes of a record.
+pub const MOST_RECORD_BYTES: u64 = MOST_BYTES as u64;
 
 /// A payload, packed, with its checksum.
 pub fn seal(payload: &[u8]) -> Vec<u8> {
@@ -30,7 +33,8 @@ pub fn open(record: &[u8]) -> Option<Vec<u8>> {
     if short(&blake3::hash(packed)) != *sum {
         return None;
     }
-    let (size, packed) = block::uncompressed_size(packed).ok().filter(|(size, _)| *size <= MOST_BYTES)?;
+    let (size, packed) =
+        block::uncompressed_size(packed).ok().filter(|(size, _)| *size <= MOST_BYTES)?;
     block::decompress(packed, size).ok()
 }
 
@@ -57,8 +61,11 @@ pub fn encode_unit(unit: &Unit, has_warnings: bool) -> Option<Vec<u8>> {
         native: (*artifact.native).clone(),
         bytes: artifact.bytes.len(),
     };
-    let targets = unit.targets.iter().map(|(target, artifact)| (target.clone(), part(artifact))).collect();
-    let head = serde_json::to_vec(&Head { has_warnings, reflection: (*unit.reflection).clone(), targets }).ok()?;
+    let targets =
+        unit.targets.iter().map(|(target, artifact)| (target.clone(), part(artifact))).collect();
+    let head =
+        serde_json::to_vec(&Head { has_warnings, reflection: (*unit.reflection).clone(), targets })
+            .ok()?;
     let mut payload = u32::try_from(head.len()).ok()?.to_le_bytes().to_vec();
     payload.extend_from_slice(&head);
     unit.targets.values().for_each(|artifact| payload.extend_from_slice(&artifact.bytes));
@@ -73,9 +80,17 @@ pub fn decode_unit(payload: &[u8]) -> Option<(Unit, bool)> {
     for (target, part) in head.targets {
         let (bytes, after) = rest.split_at_checked(part.bytes)?;
         rest = after;
-        targets.insert(target, Artifact { bytes: bytes.into(), extension: part.extension, native: Arc::new(part.native) });
+        targets.insert(
+            target,
+            Artifact {
+                bytes: bytes.into(),
+                extension: part.extension,
+                native: Arc::new(part.native),
+            },
+        );
     }
-    rest.is_empty().then_some((Unit { reflection: Arc::new(head.reflection), targets }, head.has_warnings))
+    rest.is_empty()
+        .then_some((Unit { reflection: Arc::new(head.reflection), targets }, head.has_warnings))
 }
 
 #[derive(Serialize, Deserialize)]
@@ -92,7 +107,13 @@ pub fn encode_diagnostics(errors: &Diagnostics) -> Option<Vec<u8>> {
         is_warning: error.severity == Severity::Warning,
         code: error.code.name.to_owned(),
         message: error.message.clone(),
-        labels: error.labels.iter().map(|label| (label.span.source.0, label.span.start, label.span.end, label.message.clone())).collect(),
+        labels: error
+            .labels
+            .iter()
+            .map(|label| {
+                (label.span.source.0, label.span.start, label.span.end, label.message.clone())
+            })
+            .collect(),
         notes: error.notes.clone(),
     });
     serde_json::to_vec(&errors.collect::<Vec<_>>()).ok()
@@ -104,15 +125,16 @@ pub fn decode_diagnostics(payload: &[u8]) -> Option<Diagnostics> {
 }
 
 fn decode_error(error: Told) -> Option<Diagnostic> {
-    let labels = error
-        .labels
-        .into_iter()
-        .map(|(source, start, end, message)| Label { span: Span { source: SourceId(source), start, end }, message });
+    let labels = error.labels.into_iter().map(|(source, start, end, message)| Label {
+        span: Span { source: SourceId(source), start, end },
+        message,
+    });
     Some(Diagnostic {
         severity: if error.is_warning { Severity::Warning } else { Severity::Error },
         code: codes::find(&error.code)?,
         message: error.message,
         labels: labels.collect(),
         notes: error.notes,
+        item: None,
     })
 }

@@ -10,7 +10,7 @@ pub mod pages;
 pub mod plot;
 pub mod preset;
 pub mod probe;
-mod reader;
+pub(crate) mod reader;
 
 use crate::diagnostic::Diagnostics;
 use crate::permute::Manifest;
@@ -80,16 +80,28 @@ impl Item {
 
     /// The paragraphs before the first section.
     pub fn paragraphs(&self) -> Vec<String> {
-        let lines: Vec<String> = self.doc.iter().take_while(|line| !is_heading(line)).cloned().collect();
+        let lines: Vec<String> =
+            self.doc.iter().take_while(|line| !is_heading(line)).cloned().collect();
         paragraphs(&lines)
     }
 
     /// The text under the heading `NAME:`, without that word.
     pub fn section(&self, name: &str) -> Option<String> {
-        let start = self.doc.iter().position(|line| line.strip_prefix(name).is_some_and(|rest| rest.starts_with(':')))?;
-        let rest = self.doc[start + 1..].iter().take_while(|line| !line.is_empty() && !is_heading(line));
+        let start = self
+            .doc
+            .iter()
+            .position(|line| line.strip_prefix(name).is_some_and(|rest| rest.starts_with(':')))?;
+        let rest =
+            self.doc[start + 1..].iter().take_while(|line| !line.is_empty() && !is_heading(line));
         let first = self.doc[start][name.len() + 1..].trim();
-        Some(std::iter::once(first).chain(rest.map(|line| line.trim())).collect::<Vec<_>>().join(" ").trim().to_owned())
+        Some(
+            std::iter::once(first)
+                .chain(rest.map(|line| line.trim()))
+                .collect::<Vec<_>>()
+                .join(" ")
+                .trim()
+                .to_owned(),
+        )
     }
 
     /// What to write in WESL to use it.
@@ -107,7 +119,9 @@ impl Item {
 pub const SECTIONS: &[&str] = &["Parameters", "Returns", "Source", "Edges", "Error model"];
 
 fn is_heading(line: &str) -> bool {
-    SECTIONS.iter().any(|section| line.strip_prefix(section).is_some_and(|rest| rest.starts_with(':')))
+    SECTIONS
+        .iter()
+        .any(|section| line.strip_prefix(section).is_some_and(|rest| rest.starts_with(':')))
 }
 
 /// Lines joined where no blank one is between them.
@@ -145,7 +159,10 @@ pub fn library() -> Vec<Module> {
 }
 
 /// The library's presets and light probes, each by name.
-pub fn examples(sources: &mut SourceSet, manifest: &Manifest) -> Result<(Vec<preset::Preset>, Vec<probe::Probe>), Diagnostics> {
+pub fn examples(
+    sources: &mut SourceSet,
+    manifest: &Manifest,
+) -> Result<(Vec<preset::Preset>, Vec<probe::Probe>), Diagnostics> {
     let probes = probe::library(sources)?;
     Ok((preset::library(sources, manifest, &probes)?, probes))
 }

@@ -24,7 +24,10 @@ pub fn glsl(text: &str) -> Vec<Declaration> {
 
 /// The comment that opens a module, without its marks.
 pub fn module_doc(text: &str) -> Vec<String> {
-    let lines = text.lines().skip_while(|line| line.trim().is_empty()).map_while(|line| line.strip_prefix("//!"));
+    let lines = text
+        .lines()
+        .skip_while(|line| line.trim().is_empty())
+        .map_while(|line| line.strip_prefix("//!"));
     lines.map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end().to_owned()).collect()
 }
 
@@ -60,17 +63,28 @@ fn declaration(kind: Kind, name: String, doc: Vec<String>, lines: &[&str]) -> De
         }
         Kind::Struct => {
             let body = code.split_inclusive('}').next().unwrap_or_default();
-            (body.lines().filter(|line| !line.trim().is_empty()).collect::<Vec<_>>().join("\n"), fields(lines))
+            (
+                body.lines().filter(|line| !line.trim().is_empty()).collect::<Vec<_>>().join("\n"),
+                fields(lines),
+            )
         }
-        Kind::Constant => (single_spaced(code.split_inclusive(';').next().unwrap_or_default()), Vec::new()),
+        Kind::Constant => {
+            (single_spaced(code.split_inclusive(';').next().unwrap_or_default()), Vec::new())
+        }
     };
-    let result = declaration.rsplit_once("-> ").filter(|_| kind == Kind::Function).map(|(_, ty)| ty.to_owned());
+    let result = declaration
+        .rsplit_once("-> ")
+        .filter(|_| kind == Kind::Function)
+        .map(|(_, ty)| ty.to_owned());
     Declaration { kind, name, doc, members, result, declaration }
 }
 
 /// `name: type` of each parameter; a comma within brackets belongs to a type.
 fn parameters(head: &str) -> Vec<Member> {
-    let list = head.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map_or("", |(list, _)| list);
+    let list = head
+        .split_once('(')
+        .and_then(|(_, rest)| rest.split_once(')'))
+        .map_or("", |(list, _)| list);
     let mut depth = 0i32;
     let parts = list.split(|letter: char| {
         depth += i32::from(letter == '<') - i32::from(letter == '>');
@@ -83,10 +97,15 @@ fn parameters(head: &str) -> Vec<Member> {
 fn fields(lines: &[&str]) -> Vec<Member> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
-    for line in lines.iter().skip(1).map(|line| line.trim()).take_while(|line| !line.starts_with('}')) {
+    for line in
+        lines.iter().skip(1).map(|line| line.trim()).take_while(|line| !line.starts_with('}'))
+    {
         match line.strip_prefix("///") {
             Some(comment) => doc.push(comment.trim().to_owned()),
-            None => found.extend(member(without_comment(line).trim_end_matches(','), std::mem::take(&mut doc))),
+            None => found.extend(member(
+                without_comment(line).trim_end_matches(','),
+                std::mem::take(&mut doc),
+            )),
         }
     }
     found
@@ -107,7 +126,10 @@ fn without_comment(line: &str) -> &str {
 }
 
 fn nesting(line: &str) -> i32 {
-    without_comment(line).chars().map(|letter| i32::from(letter == '{') - i32::from(letter == '}')).sum()
+    without_comment(line)
+        .chars()
+        .map(|letter| i32::from(letter == '{') - i32::from(letter == '}'))
+        .sum()
 }
 
 fn wesl_name(line: &str) -> Option<(Kind, String)> {
@@ -124,7 +146,10 @@ fn glsl_name(line: &str) -> Option<(Kind, String)> {
     }
     let (before, _) = line.split_once('(')?;
     let (result, name) = before.rsplit_once(' ')?;
-    let plain = |word: &str| !word.is_empty() && word.chars().all(|letter| letter.is_alphanumeric() || "_[] ".contains(letter));
+    let plain = |word: &str| {
+        !word.is_empty()
+            && word.chars().all(|letter| letter.is_alphanumeric() || "_[] ".contains(letter))
+    };
     (plain(result) && plain(name)).then(|| (Kind::Function, name.to_owned()))
 }
 

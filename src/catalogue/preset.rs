@@ -66,11 +66,23 @@ pub enum Number {
     Vector(Vec<f64>),
 }
 
+impl Number {
+    /// Its components.
+    pub fn to_vec(&self) -> Vec<f64> {
+        match self {
+            Self::Scalar(value) => vec![*value],
+            Self::Vector(values) => values.clone(),
+        }
+    }
+}
+
 impl std::fmt::Display for Number {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Scalar(value) => write!(f, "{value}"),
-            Self::Vector(values) => f.write_str(&values.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")),
+            Self::Vector(values) => {
+                f.write_str(&values.iter().map(f64::to_string).collect::<Vec<_>>().join(", "))
+            }
         }
     }
 }
@@ -115,9 +127,13 @@ struct PassEntry {
 pub const PATH: &str = "presets.toml";
 
 /// The library's presets, by name; its manifest comes from [`crate::project::library_manifest`].
-pub fn library(sources: &mut SourceSet, manifest: &Manifest, probes: &[Probe]) -> Result<Vec<Preset>, Diagnostics> {
+pub fn library(
+    sources: &mut SourceSet,
+    manifest: &Manifest,
+    probes: &[Probe],
+) -> Result<Vec<Preset>, Diagnostics> {
     let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
-    match source::read(sources, &package, PATH).map_err(|error| vec![error])? {
+    match source::read(sources, &package, PATH).map_err(|error| vec![error.into()])? {
         Some(id) => parse(sources, id, manifest, probes),
         None => Ok(Vec::new()),
     }
@@ -127,10 +143,16 @@ pub fn library(sources: &mut SourceSet, manifest: &Manifest, probes: &[Probe]) -
 ///
 /// Every mistake is reported: programs, scenes and probes that do not exist, keys that are not
 /// canonical, break a constraint or do not ship.
-pub fn parse(sources: &SourceSet, id: SourceId, manifest: &Manifest, probes: &[Probe]) -> Result<Vec<Preset>, Diagnostics> {
+pub fn parse(
+    sources: &SourceSet,
+    id: SourceId,
+    manifest: &Manifest,
+    probes: &[Probe],
+) -> Result<Vec<Preset>, Diagnostics> {
     let entries: Entries = reader::data(sources, id)?;
     let mut checker = Checker { sources, id, manifest, probes, problems: Vec::new() };
-    let presets: Vec<Preset> = entries.into_iter().map(|(name, entry)| checker.preset(name.into_inner(), entry)).collect();
+    let presets: Vec<Preset> =
+        entries.into_iter().map(|(name, entry)| checker.preset(name.into_inner(), entry)).collect();
     if checker.problems.is_empty() { Ok(presets) } else { Err(checker.problems) }
 }
 
@@ -169,23 +191,37 @@ impl Checker<'_> {
             scene: entry.scene.into_inner(),
             probe: entry.probe.map(Spanned::into_inner),
             passes: entry.passes.into_iter().map(Pass::from).collect(),
-            numbers: groups.into_iter().filter(|(_, group)| !group.is_empty()).map(|(name, group)| (name.to_owned(), group)).collect(),
+            numbers: groups
+                .into_iter()
+                .filter(|(_, group)| !group.is_empty())
+                .map(|(name, group)| (name.to_owned(), group))
+                .collect(),
         }
     }
 
-    fn known<'a>(&mut self, what: &str, name: &Spanned<String>, known: impl Iterator<Item = &'a str> + Clone) {
+    fn known<'a>(
+        &mut self,
+        what: &str,
+        name: &Spanned<String>,
+        known: impl Iterator<Item = &'a str> + Clone,
+    ) {
         if !known.clone().any(|known| known == name.get_ref()) {
             let wrong = name.get_ref();
-            self.problems.push(reader::invalid(self.span(name), format!("there is no {what} `{wrong}`")).suggest(wrong, known));
+            self.problems.push(
+                reader::invalid(self.span(name), format!("there is no {what} `{wrong}`"))
+                    .suggest(wrong, known),
+            );
         }
     }
 
     fn permutation(&mut self, program: &Spanned<String>, key: &Spanned<String>) {
         let name = program.get_ref();
         let Some(found) = self.manifest.program(name) else {
-            let unknown = Diagnostic::error(codes::UNKNOWN_PROGRAM, format!("there is no program `{name}`"));
+            let unknown =
+                Diagnostic::error(codes::UNKNOWN_PROGRAM, format!("there is no program `{name}`"));
             let known = self.manifest.programs.iter().map(|program| program.name.as_str());
-            self.problems.push(unknown.at(self.span(program), "not in the manifest").suggest(name, known));
+            self.problems
+                .push(unknown.at(self.span(program), "not in the manifest").suggest(name, known));
             return;
         };
         let quoted = Quoted::toml(self.sources, self.span(key), key.get_ref());
@@ -205,17 +241,23 @@ fn check_key(program: &Program, text: &Quoted) -> Diagnostics {
         Err(problems) => return problems,
     };
     let broken = program.space.broken(&point).map(|constraint| {
-        Diagnostic::error(codes::INVALID_PERMUTATION, format!("permutation `{}` breaks the constraint `{}`", text.text, constraint.text))
-            .at(text.span, "this permutation")
+        Diagnostic::error(
+            codes::INVALID_PERMUTATION,
+            format!("permutation `{}` breaks the constraint `{}`", text.text, constraint.text),
+        )
+        .at(text.span, "this permutation")
     });
     let mut problems: Diagnostics = broken.collect();
     let canonical = program.space.key(&point);
     if canonical.as_str() != text.text {
-        problems.push(reader::invalid(text.span, format!("the permutation's name is `{canonical}`")));
+        problems
+            .push(reader::invalid(text.span, format!("the permutation's name is `{canonical}`")));
     }
     if problems.is_empty() && !program.space.contains(&point) {
         let message = format!("permutation `{canonical}` of `{}` does not ship", program.name);
-        problems.push(reader::invalid(text.span, message).note("help: add it to `include` in the manifest"));
+        problems.push(
+            reader::invalid(text.span, message).note("help: add it to `include` in the manifest"),
+        );
     }
     problems
 }

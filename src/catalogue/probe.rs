@@ -39,14 +39,20 @@ struct Entry {
 /// The library's light probes, by name.
 pub fn library(sources: &mut SourceSet) -> Result<Vec<Probe>, Diagnostics> {
     let library = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
-    let Some(id) = source::read(sources, &library, PATH).map_err(|error| vec![error])? else { return Ok(Vec::new()) };
+    let Some(id) = source::read(sources, &library, PATH).map_err(|error| vec![error.into()])?
+    else {
+        return Ok(Vec::new());
+    };
     let entries: BTreeMap<toml::Spanned<String>, Entry> = reader::data(sources, id)?;
     let mut problems = Vec::new();
     let probes = entries.into_iter().filter_map(|(name, entry)| {
         let span = source::Span::new(id, name.span());
         let found = probe(name.into_inner(), &entry);
         if found.is_none() {
-            problems.push(reader::invalid(span, format!("a light probe has the rows {}", ORDER.join(", "))));
+            problems.push(reader::invalid(
+                span,
+                format!("a light probe has the rows {}", ORDER.join(", ")),
+            ));
         }
         found
     });
@@ -59,7 +65,12 @@ fn probe(name: String, entry: &Entry) -> Option<Probe> {
     for (place, row) in coefficients.iter_mut().zip(ORDER) {
         *place = *entry.rows.get(row)?;
     }
-    (entry.rows.len() == ORDER.len()).then(|| Probe { name, title: entry.title.clone(), source: entry.source.clone(), coefficients })
+    (entry.rows.len() == ORDER.len()).then(|| Probe {
+        name,
+        title: entry.title.clone(),
+        source: entry.source.clone(),
+        coefficients,
+    })
 }
 
 /// First lines of both modules.
@@ -73,7 +84,12 @@ const HEAD: &str = "\
 pub fn wesl(probes: &[Probe]) -> String {
     let mut text = HEAD.to_owned();
     for probe in probes {
-        let _ = write!(text, "\n{}fn probe_{}() -> array<vec3f, 9> {{\n    return array<vec3f, 9>(\n", doc(probe), probe.name);
+        let _ = write!(
+            text,
+            "\n{}fn probe_{}() -> array<vec3f, 9> {{\n    return array<vec3f, 9>(\n",
+            doc(probe),
+            probe.name
+        );
         for row in &probe.coefficients {
             let _ = writeln!(text, "        vec3f({}),", numbers(row));
         }
@@ -84,10 +100,21 @@ pub fn wesl(probes: &[Probe]) -> String {
 
 /// The same in GLSL.
 pub fn glsl(probes: &[Probe]) -> String {
-    let mut text = format!("{HEAD}\n#ifndef LAMPLIGHT_AMBIENT_PROBES_GLSL\n#define LAMPLIGHT_AMBIENT_PROBES_GLSL\n");
+    let mut text = format!(
+        "{HEAD}\n#ifndef LAMPLIGHT_AMBIENT_PROBES_GLSL\n#define LAMPLIGHT_AMBIENT_PROBES_GLSL\n"
+    );
     for probe in probes {
-        let _ = write!(text, "\n/// {}\nvec3[9] probe_{}() {{\n    return vec3[9](\n", summary(probe), probe.name);
-        let rows: Vec<String> = probe.coefficients.iter().map(|row| format!("        vec3({})", numbers(row))).collect();
+        let _ = write!(
+            text,
+            "\n/// {}\nvec3[9] probe_{}() {{\n    return vec3[9](\n",
+            summary(probe),
+            probe.name
+        );
+        let rows: Vec<String> = probe
+            .coefficients
+            .iter()
+            .map(|row| format!("        vec3({})", numbers(row)))
+            .collect();
         text.push_str(&rows.join(",\n"));
         text.push_str("\n    );\n}\n");
     }
@@ -101,7 +128,11 @@ pub fn cases(probes: &[Probe]) -> String {
     for probe in probes {
         let all: Vec<String> = probe.coefficients.iter().map(numbers).collect();
         let _ = write!(text, "\n[[case]]\nfunction = \"probe_{}\"\n", probe.name);
-        let _ = write!(text, "tolerance = {{ ulp = 0.5 }}\nrows = [{{ expect = [\n    {},\n] }}]\n", all.join(",\n    "));
+        let _ = write!(
+            text,
+            "tolerance = {{ ulp = 0.5 }}\nrows = [{{ expect = [\n    {},\n] }}]\n",
+            all.join(",\n    ")
+        );
     }
     text
 }

@@ -11,7 +11,10 @@ pub fn data<T: DeserializeOwned>(sources: &SourceSet, id: SourceId) -> Result<T,
     toml::from_str(text).map_err(|error| {
         let range = error.span().unwrap_or(0..0);
         let message = error.message().lines().collect::<Vec<_>>().join("; ");
-        vec![invalid(Span::new(id, range.start.min(text.len())..range.end.min(text.len())), message)]
+        vec![invalid(
+            Span::new(id, range.start.min(text.len())..range.end.min(text.len())),
+            message,
+        )]
     })
 }
 

@@ -8,7 +8,9 @@ use clap::{Args, Subcommand};
 use super::compile::target;
 use super::failure::Failure;
 use super::input::LanguageName;
+use super::overwrite::{Overwrite, unwritable};
 use crate::bundle::{self, Bundle, Error, Shader, Target};
+use crate::{input, output};
 
 /// List, fetch, verify, pack or compare bundles.
 #[derive(Args)]
@@ -34,6 +36,8 @@ enum Command {
         bundle: PathBuf,
         #[arg(short, long, value_name = "FILE")]
         out: PathBuf,
+        #[command(flatten)]
+        overwrite: Overwrite,
     },
     /// What differs between two bundles; exit code 3 if anything does.
     Diff {
@@ -63,6 +67,8 @@ struct Get {
     /// The file to write [default: standard output].
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
@@ -70,12 +76,16 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::List { bundle, program } => list(&open(&bundle)?, program.as_deref()),
         Command::Get(get) => fetch(&get),
         Command::Verify { bundle } => {
-            open(&bundle)?.verify().map_err(|error| Failure::check(format!("`{}`: {error}", bundle.display())))?;
+            verify(&bundle)?;
             Ok(writeln!(stdout(), "`{}` is whole", bundle.display())?)
         }
-        Command::Pack { bundle, out } => {
-            let contents = open(&bundle)?.contents().map_err(wrong)?;
-            bundle::write_file(&contents, &out).map_err(|error| Failure::environment(error.to_string()))
+        Command::Pack { bundle, out, overwrite } => {
+            let opened = open(&bundle)?;
+            let wrong = |error| Failure::input(format!("`{}`: {error}", bundle.display()));
+            opened.verify().map_err(wrong)?;
+            let contents = opened.contents().map_err(wrong)?;
+            bundle::replace_file(&contents, &out, overwrite.replace())
+                .map_err(|error| unwritable(&out, error))
         }
         Command::Diff { old, new, json } => compare(&open(&old)?, &open(&new)?, json),
     }
@@ -83,6 +93,24 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 
 fn open(path: &PathBuf) -> Result<Bundle, Failure> {
     Bundle::open(path).map_err(|error| Failure::input(format!("`{}`: {error}", path.display())))
+}
+
+/// Checks every byte. A directory that is written anew meanwhile is looked at again: its blobs
+/// are kept for one more run only.
+fn verify(path: &PathBuf) -> Result<(), Failure> {
+    const MOST_LOOKS: u32 = 16;
+    let state = || input::read(&path.join("manifest.json"), u64::MAX).ok();
+    for look in 1.. {
+        let before = state();
+        match open(path)?.verify() {
+            Ok(()) => return Ok(()),
+            Err(_) if path.is_dir() && look < MOST_LOOKS && state() != before => {}
+            Err(error) => {
+                return Err(Failure::check(format!("`{}`: {error}", path.display())));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn wrong(error: Error) -> Failure {
@@ -102,13 +130,22 @@ fn list(bundle: &Bundle, program: Option<&str>) -> Result<(), Failure> {
     for name in bundle.programs() {
         let program = bundle.program(name).map_err(wrong)?;
         for (language, entry) in program.entries() {
-            let keys = program.entry(language, entry).and_then(|shader| shader.keys()).map_err(wrong)?;
+            let keys =
+                program.entry(language, entry).and_then(|shader| shader.keys()).map_err(wrong)?;
             let targets = match keys.first() {
-                Some(key) => program.entry(language, entry).and_then(|shader| shader.targets(key)).map_err(wrong)?,
+                Some(key) => program
+                    .entry(language, entry)
+                    .and_then(|shader| shader.targets(key))
+                    .map_err(wrong)?,
                 None => Vec::new(),
             };
             let language = format!("{language:?}").to_lowercase();
-            writeln!(out, "{name:12} {entry:12} {language}  {:6} permutations  {}", keys.len(), targets.join(" "))?;
+            writeln!(
+                out,
+                "{name:12} {entry:12} {language}  {:6} permutations  {}",
+                keys.len(),
+                targets.join(" ")
+            )?;
         }
     }
     Ok(out.flush()?)
@@ -118,18 +155,26 @@ fn fetch(get: &Get) -> Result<(), Failure> {
     let bundle = open(&get.bundle)?;
     let program = bundle.program(&get.program).map_err(wrong)?;
     let shader: Shader<'_> = match get.lang {
-        Some(language) => program.entry(crate::compose::Language::from(language).into(), &get.entry),
+        Some(language) => program.entry(language.into(), &get.entry),
         None => program.shader(&get.entry),
     }
     .map_err(wrong)?;
     let found = shader.get(&get.key, get.target).map_err(wrong)?;
     if get.reflection {
-        return Ok(writeln!(stdout(), "{:#}", serde_json::json!({ "reflection": &*found.reflection, "native": &*found.native }))?);
+        return Ok(writeln!(
+            stdout(),
+            "{:#}",
+            serde_json::json!({ "reflection": &*found.reflection, "native": &*found.native })
+        )?);
     }
     match &get.out {
-        Some(path) => crate::output::write(path, &found.bytes)
-            .map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display()))),
-        None if get.target == Target::SPIRV && stdout().is_terminal() => Err(Failure::usage("SPIR-V is binary: name a file with `-o`")),
+        Some(path) => {
+            let replace = get.overwrite.replace();
+            Ok(output::write_file(path, &found.bytes, |_| false, replace)?)
+        }
+        None if get.target == Target::SPIRV && stdout().is_terminal() => {
+            Err(Failure::usage("SPIR-V is binary: name a file with `-o`"))
+        }
         None => Ok(stdout().write_all(&found.bytes)?),
     }
 }
@@ -141,7 +186,15 @@ fn compare(old: &Bundle, new: &Bundle, json: bool) -> Result<(), Failure> {
     } else {
         for change in &difference.permutations {
             let language = format!("{:?}", change.language).to_lowercase();
-            writeln!(stdout(), "{} {} {} {language} {} {}", change.kind, change.program, change.entry, change.key, change.parts.join(","))?;
+            writeln!(
+                stdout(),
+                "{} {} {} {language} {} {}",
+                change.kind,
+                change.program,
+                change.entry,
+                change.key,
+                change.parts.join(",")
+            )?;
         }
     }
     if difference.is_empty() { Ok(()) } else { Err(Failure::check("the bundles differ")) }

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::Failure;
-use crate::harness::catalogue::{self, Files};
-use crate::output;
+use super::overwrite::Overwrite;
+use crate::proof::catalogue::{self, Files};
+use crate::{input, output};
 
 /// Write the library's catalogue: a page for each module, with plots.
 #[derive(Args)]
@@ -21,6 +22,8 @@ pub struct Arguments {
     /// Write nothing; fail if anything would change.
     #[arg(long)]
     check: bool,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
@@ -33,14 +36,21 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     if arguments.check {
         return if changed.is_empty() { Ok(()) } else { Err(Failure::check(outdated(&changed))) };
     }
-    for (path, text) in &changed {
-        output::write(path, text.as_bytes())?;
-    }
-    Ok(writeln!(stdout(), "{}: {} files, {} changed", folder.display(), files.len(), changed.len())?)
+    let files_as_bytes = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
+    output::write_folder(folder, files_as_bytes, arguments.overwrite.replace())?;
+    Ok(writeln!(
+        stdout(),
+        "{}: {} files, {} changed",
+        folder.display(),
+        files.len(),
+        changed.len()
+    )?)
 }
 
 fn changed(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {
-    let differs = |(path, text): &(PathBuf, String)| std::fs::read(path).ok().as_deref() != Some(text.as_bytes());
+    let differs = |(path, text): &(PathBuf, String)| {
+        input::read(path, text.len() as u64).ok().as_deref() != Some(text.as_bytes())
+    };
     files.iter().map(|(path, text)| (folder.join(path), text.clone())).filter(differs).collect()
 }
 

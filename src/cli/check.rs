@@ -6,17 +6,17 @@ use std::sync::{Arc, Mutex};
 
 use clap::Args;
 
+use super::executor;
 use super::failure::Failure;
 use super::input::LanguageName;
-use crate::compose::Language;
+use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
-use crate::harness::check::{Open, Options, Report, failures, stricter, table};
-use crate::harness::executors;
-use crate::harness::library::Library;
-use crate::harness::on_thread;
-use crate::harness::ratchet::{FILE, Ratchet};
-use crate::output;
+use crate::execute::on_thread;
+use crate::output::{self, Replace};
 use crate::project;
+use crate::proof::check::{Open, Options, Report, failures, lacking, stricter, table};
+use crate::proof::library::Library;
+use crate::proof::ratchet::{FILE, Ratchet};
 use crate::report;
 use crate::source::{Disk, SourceSet};
 
@@ -28,7 +28,7 @@ pub struct Arguments {
     path: Vec<String>,
     /// What runs the cases; may be given several times.
     #[arg(long, value_name = "E", default_value = "eval")]
-    executor: Vec<String>,
+    pub executor: Vec<String>,
     /// Only one language [default: both].
     #[arg(long, value_enum)]
     lang: Option<LanguageName>,
@@ -38,8 +38,8 @@ pub struct Arguments {
     /// Lower the package's `tolerances.toml` to what was measured here.
     #[arg(long)]
     bless: bool,
-    /// With `--bless`, also raise it.
-    #[arg(long, requires = "bless")]
+    /// With `--bless`, also raise it. With `--report`, replace files that Lamplight did not write.
+    #[arg(long)]
     force: bool,
     /// List the cases that state less than WGSL allows.
     #[arg(long)]
@@ -57,35 +57,48 @@ struct Selection {
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let selections = selections(&arguments)?;
-    on_thread(|| check(&selections, &arguments)).unwrap_or_else(|| Err(Failure::environment("the check stopped with an internal error")))
+    on_thread(|| check(&selections, &arguments))
+        .unwrap_or_else(|| Err(Failure::environment("the check stopped with an internal error")))
 }
 
-/// Opens an executor by name.
-pub fn open(name: &str) -> Result<Open, Failure> {
-    let Some(entry) = executors::find(name) else {
-        let names: Vec<&str> = executors::ALL.iter().map(|entry| entry.name).collect();
-        return Err(Failure::usage(format!("there is no executor `{name}` (executors: {})", names.join(", "))));
-    };
-    let session = (entry.open)().map_err(|unavailable| Failure::environment(entry.missing(&unavailable)))?;
-    Ok(Open { executor: entry.name, session })
+impl Arguments {
+    fn replace(&self) -> Replace {
+        if self.force { Replace::Any } else { Replace::Ours }
+    }
+}
+
+fn opened(name: &str) -> Result<Open, Failure> {
+    let entry = executor::find(name)?;
+    Ok(Open { executor: entry.name, session: executor::open(entry)? })
 }
 
 fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure> {
-    let mut sessions = arguments.executor.iter().map(|name| open(name)).collect::<Result<Vec<_>, _>>()?;
+    let mut sessions =
+        arguments.executor.iter().map(|name| opened(name)).collect::<Result<Vec<_>, _>>()?;
     let mut report = Report::default();
     for selection in selections {
         let sources = Mutex::new(SourceSet::default());
         let found = one(selection, &sources, arguments, &mut sessions);
-        report.append(found.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))??);
+        report.append(found.map_err(|diagnostics| {
+            Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics)
+        })??);
     }
     write!(stdout(), "{}", table(&report))?;
     print_spec(&report, arguments.spec)?;
     let passed = report.outcomes.iter().filter(|outcome| outcome.passed()).count();
-    writeln!(stdout(), "{passed} of {} pass", report.outcomes.len())?;
+    write!(stdout(), "{passed} of {} pass", report.outcomes.len())?;
+    let lacking = lacking(&report);
+    match lacking.lines().count() {
+        0 => writeln!(stdout())?,
+        count => write!(stdout(), ", {count} cannot run on their executor:\n{lacking}")?,
+    }
     if let Some(folder) = &arguments.report {
+        let mut texts = Vec::new();
         for form in report::ALL {
-            output::write(&folder.join(form.file), (form.text)(&report).as_bytes())?;
+            texts.push((form.file, (form.text)(&report)));
         }
+        let files = texts.iter().map(|(name, text)| (*name, text.as_bytes()));
+        output::write_folder(folder, files, arguments.replace())?;
     }
     if report.passed() { Ok(()) } else { Err(Failure::check(failures(&report))) }
 }
@@ -99,23 +112,30 @@ fn one(
 ) -> Result<Result<Report, Failure>, Diagnostics> {
     let library = &selection.library;
     let ratchet = library.ratchet(sources)?;
-    let held = if arguments.bless { ratchet.as_ref().map(Ratchet::waivers_only) } else { ratchet.clone() };
+    let held =
+        if arguments.bless { ratchet.as_ref().map(Ratchet::waivers_only) } else { ratchet.clone() };
     let options = Options {
         references: library.has_references(),
         profile: arguments.report.is_some(),
         prove: !arguments.bless,
+        partners: true,
         ratchet: held.as_ref(),
     };
-    let report = library.check_with(sources, &selection.files, &selection.languages, sessions, &options)?;
+    let report =
+        library.check_with(sources, &selection.files, &selection.languages, sessions, &options)?;
     if !arguments.bless {
         return Ok(Ok(report));
     }
     let Some(root) = &selection.root else {
-        return Ok(Err(Failure::usage("`--bless` needs the package on disk, such as `lamplight check shaderlib --bless`")));
+        return Ok(Err(Failure::usage(
+            "`--bless` needs the package on disk, such as `lamplight check shaderlib --bless`",
+        )));
     };
     let mut ratchet = ratchet.unwrap_or_default();
     ratchet.bless(&report, arguments.force);
-    Ok(output::write(&root.join(FILE), ratchet.text().as_bytes()).map(|()| report).map_err(Failure::from))
+    Ok(output::write(&root.join(FILE), ratchet.text().as_bytes())
+        .map(|()| report)
+        .map_err(Failure::from))
 }
 
 /// What is stated below WGSL's own bounds: no failure, since a backend may well do better.
@@ -124,18 +144,26 @@ fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
     match (all, lines.lines().count()) {
         (_, 0) => {}
         (true, _) => write!(stdout(), "{lines}")?,
-        (false, count) => writeln!(stdout(), "{count} cases state less than WGSL allows for some input (`--spec` lists them)")?,
+        (false, count) => writeln!(
+            stdout(),
+            "{count} cases state less than WGSL allows for some input (`--spec` lists them)"
+        )?,
     }
     Ok(())
 }
 
 fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
-    let (own, of_library): (Vec<&String>, Vec<&String>) = arguments.path.iter().partition(|path| Path::new(path).exists());
+    let (own, of_library): (Vec<&String>, Vec<&String>) =
+        arguments.path.iter().partition(|path| Path::new(path).exists());
     let mut selections = Vec::new();
     if own.is_empty() || !of_library.is_empty() {
         let library = Library::embedded();
         let files = library_files(&library, &of_library)?;
-        let languages = LANGUAGES.iter().map(|(language, _)| *language).filter(|language| asked(arguments, *language)).collect();
+        let languages = LANGUAGES
+            .iter()
+            .map(|(language, _)| *language)
+            .filter(|language| asked(arguments, *language))
+            .collect();
         selections.push(Selection { library, root: None, files, languages });
     }
     for path in own {
@@ -147,7 +175,8 @@ fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
 }
 
 /// Each language with the extensions of its modules.
-const LANGUAGES: [(Language, &[&str]); 2] = [(Language::Wesl, &["wesl", "wgsl"]), (Language::Glsl, &["glsl"])];
+const LANGUAGES: [(Language, &[&str]); 2] =
+    [(Language::Wesl, &["wesl", "wgsl"]), (Language::Glsl, &["glsl"])];
 
 fn asked(arguments: &Arguments, language: Language) -> bool {
     arguments.lang.is_none_or(|name| Language::from(name) == language)
@@ -157,23 +186,43 @@ fn asked(arguments: &Arguments, language: Language) -> bool {
 fn case_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if path.is_dir() {
         let disk = Disk::new(path).map_err(|error| unreadable(path, &error))?;
-        let found: Vec<PathBuf> = Library::new("", Arc::new(disk), Vec::new()).case_files().iter().map(|file| path.join(file)).collect();
-        let none = || Failure::input(format!("there is no case file in `{}`: cases are in a `.toml` beside a module", path.display()));
+        let found: Vec<PathBuf> = Library::new("", Arc::new(disk), Vec::new())
+            .case_files()
+            .iter()
+            .map(|file| path.join(file))
+            .collect();
+        let none = || {
+            Failure::input(format!(
+                "there is no case file in `{}`: cases are in a `.toml` beside a module (guide: Numeric cases)",
+                path.display()
+            ))
+        };
         return if found.is_empty() { Err(none()) } else { Ok(found) };
     }
     let file = path.with_extension("toml");
     if file.is_file() {
         Ok(vec![file])
     } else {
-        Err(Failure::input(format!("`{}` has no cases: they are in `{}`, beside the module", path.display(), file.display())))
+        Err(Failure::input(format!(
+            "`{}` has no cases: they are in `{}`, beside the module",
+            path.display(),
+            file.display()
+        )))
     }
 }
 
 /// Adds a case file to the selection of its package and its languages.
-fn add_own(selections: &mut Vec<Selection>, file: &Path, arguments: &Arguments) -> Result<(), Failure> {
+fn add_own(
+    selections: &mut Vec<Selection>,
+    file: &Path,
+    arguments: &Arguments,
+) -> Result<(), Failure> {
     let root = project::root_of(file);
-    let path = project::relative(file, &root).map_err(|diagnostic| Failure::input(diagnostic.message))?;
-    let present = |extensions: &[&str]| extensions.iter().any(|extension| file.with_extension(extension).is_file());
+    let path =
+        project::relative(file, &root).map_err(|diagnostic| Failure::input(diagnostic.message))?;
+    let present = |extensions: &[&str]| {
+        extensions.iter().any(|extension| file.with_extension(extension).is_file())
+    };
     let languages: Vec<Language> = LANGUAGES
         .iter()
         .filter(|(language, extensions)| asked(arguments, *language) && present(extensions))
@@ -182,10 +231,17 @@ fn add_own(selections: &mut Vec<Selection>, file: &Path, arguments: &Arguments) 
     if languages.is_empty() {
         return Err(Failure::input(format!("`{}` has no module beside it", file.display())));
     }
-    let same = |selection: &&mut Selection| selection.root.as_ref() == Some(&root) && selection.languages == languages;
+    let same = |selection: &&mut Selection| {
+        selection.root.as_ref() == Some(&root) && selection.languages == languages
+    };
     match selections.iter_mut().find(same) {
         Some(selection) => selection.files.push(path),
-        None => selections.push(Selection { library: package(&root)?, root: Some(root), files: vec![path], languages }),
+        None => selections.push(Selection {
+            library: package(&root)?,
+            root: Some(root),
+            files: vec![path],
+            languages,
+        }),
     }
     Ok(())
 }
@@ -199,10 +255,15 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
     for path in asked {
         let wanted = path.trim_start_matches("lamplight::").replace("::", "/");
         let stem = |file: &str| file.trim_end_matches(".toml").to_owned();
-        let matching: Vec<String> =
-            files.iter().filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/"))).cloned().collect();
+        let matching: Vec<String> = files
+            .iter()
+            .filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/")))
+            .cloned()
+            .collect();
         if matching.is_empty() {
-            return Err(Failure::input(format!("`{path}` is no file, and no module of the library with numeric cases")));
+            return Err(Failure::input(format!(
+                "`{path}` is no file, and no module of the library with numeric cases"
+            )));
         }
         found.extend(matching);
     }
@@ -212,10 +273,12 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
 /// The user's package with what it may import.
 fn package(root: &Path) -> Result<Library, Failure> {
     let mut sources = SourceSet::default();
-    let packages = project::packages(root, &mut sources).map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+    let packages = project::packages(root, &mut sources)
+        .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
     let name = project::declared_name(root).unwrap_or(packages.root.name);
     let dependencies = packages.dependencies.into_iter().filter(|package| package.name != name);
-    let dependencies = dependencies.map(|package| (package.name, Arc::from(package.files))).collect();
+    let dependencies =
+        dependencies.map(|package| (package.name, Arc::from(package.files))).collect();
     Ok(Library::new(&name, Arc::from(packages.root.files), dependencies))
 }
 

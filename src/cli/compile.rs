@@ -7,10 +7,11 @@ use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::input::{Input, Ready};
+use super::overwrite::Overwrite;
 use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest};
 use crate::emit::{self, Emitted, targets};
-use crate::output;
+use crate::output::{self, Replace};
 use crate::validate::{self, validate};
 
 /// Compose, validate and write one shader, a file for each entry point and target.
@@ -24,13 +25,16 @@ pub struct Arguments {
     /// Folder for the files [default: standard output].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 /// A target by name, as an option's value.
 pub fn target(name: &str) -> Result<Target, String> {
     Target::find(name).ok_or_else(|| {
         let names: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
-        let hint = nearest(name, names.iter().copied()).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        let hint = nearest(name, names.iter().copied())
+            .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         format!("no such target{hint} (targets: {})", names.join(", "))
     })
 }
@@ -48,14 +52,18 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
         emit::check(&composed, &validated)?;
         files(&validated, &arguments)
     });
-    let files = files.map_err(|diagnostics| Failure::Input(project.sources, context.explain(diagnostics)))?;
+    let files = files
+        .map_err(|diagnostics| Failure::Input(project.sources, context.explain(diagnostics)))?;
     match &arguments.out {
-        Some(folder) => write(&files, folder),
+        Some(folder) => write(&files, folder, arguments.overwrite.replace()),
         None => print(&files),
     }
 }
 
-fn files(validated: &crate::validate::Validated, arguments: &Arguments) -> Result<Vec<File>, Diagnostics> {
+fn files(
+    validated: &crate::validate::Validated,
+    arguments: &Arguments,
+) -> Result<Vec<File>, Diagnostics> {
     let stem = arguments.input.file.file_name().unwrap_or_default().to_string_lossy();
     let stem = stem.split('.').next().unwrap_or_default();
     let mut files = Vec::new();
@@ -66,9 +74,14 @@ fn files(validated: &crate::validate::Validated, arguments: &Arguments) -> Resul
     for point in &validated.module.entry_points {
         let isolated = emit::isolate(validated, &point.name)?;
         for &target in &arguments.target {
-            let Emitted { bytes, .. } = emit::emit(&isolated, &point.name, target).map_err(|diagnostic| vec![diagnostic])?;
+            let Emitted { bytes, .. } = emit::emit(&isolated, &point.name, target)
+                .map_err(|diagnostic| vec![diagnostic])?;
             let Some(entry) = targets::find(target) else { continue };
-            let name = format!("{stem}.{}.{}", point.name, file_extension(point.stage, target, entry.extension));
+            let name = format!(
+                "{stem}.{}.{}",
+                point.name,
+                file_extension(point.stage, target, entry.extension)
+            );
             files.push(File { name, binary: entry.binary, bytes });
         }
     }
@@ -88,11 +101,11 @@ fn file_extension(stage: naga::ShaderStage, target: Target, extension: &str) -> 
     }
 }
 
-fn write(files: &[File], folder: &Path) -> Result<(), Failure> {
+fn write(files: &[File], folder: &Path, replace: Replace) -> Result<(), Failure> {
+    let named = files.iter().map(|file| (file.name.as_str(), &*file.bytes));
+    output::write_folder(folder, named, replace)?;
     for file in files {
-        let path = folder.join(&file.name);
-        output::write(&path, &file.bytes).map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display())))?;
-        writeln!(stdout(), "{}", path.display())?;
+        writeln!(stdout(), "{}", folder.join(&file.name).display())?;
     }
     Ok(())
 }

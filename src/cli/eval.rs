@@ -5,12 +5,12 @@ use std::sync::Mutex;
 
 use clap::Args;
 
-use super::check::open;
+use super::executor;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::input::LanguageName;
-use crate::harness::expression::evaluate;
-use crate::harness::library::Library;
-use crate::harness::{Session, on_thread};
+use crate::execute::{Session, on_thread};
+use crate::proof::expression::evaluate;
+use crate::proof::library::Library;
 use crate::source::SourceSet;
 
 /// Evaluate WGSL expressions, such as `lighting::spot::cone_exponent(0.9, 0.8, 4.0)`.
@@ -21,19 +21,20 @@ pub struct Arguments {
     lang: LanguageName,
     /// What runs it: `lamplight list executors`.
     #[arg(long, value_name = "E", default_value = "eval")]
-    executor: String,
+    pub executor: String,
     /// Expressions [default: one a line from standard input].
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     expressions: Vec<String>,
 }
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    on_thread(|| evaluate_all(&arguments, form))
-        .unwrap_or_else(|| Err(Failure::environment("the evaluation stopped with an internal error")))
+    on_thread(|| evaluate_all(&arguments, form)).unwrap_or_else(|| {
+        Err(Failure::environment("the evaluation stopped with an internal error"))
+    })
 }
 
 fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let mut session = open(&arguments.executor)?.session;
+    let mut session = executor::open(executor::find(&arguments.executor)?)?;
     let library = Library::embedded();
     let mut failed = false;
     let mut one = |text: &str, session: &mut dyn Session| -> Result<(), Failure> {
@@ -55,7 +56,13 @@ fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failu
 }
 
 /// One line out for each expression; what has no value gives an empty line, and diagnostics.
-fn print(library: &Library, text: &str, language: LanguageName, session: &mut dyn Session, form: DiagnosticForm) -> Result<bool, Failure> {
+fn print(
+    library: &Library,
+    text: &str,
+    language: LanguageName,
+    session: &mut dyn Session,
+    form: DiagnosticForm,
+) -> Result<bool, Failure> {
     let sources = Mutex::new(SourceSet::default());
     match evaluate(library, &sources, text.trim(), language.into(), session) {
         Ok(value) => {

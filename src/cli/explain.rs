@@ -5,7 +5,7 @@ use std::io::{Write, stdout};
 use clap::Args;
 
 use super::failure::Failure;
-use crate::diagnostic::{codes, nearest};
+use crate::diagnostic::{codes, guide, nearest};
 
 /// Explain a diagnostic's code; without one, list them all.
 #[derive(Args)]
@@ -23,10 +23,15 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 
 fn explain(name: &str) -> Result<(), Failure> {
     let Some(code) = codes::find(name) else {
-        let hint = nearest(name, codes::ALL.iter().map(|code| code.name)).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        let hint = nearest(name, codes::ALL.iter().map(|code| code.name))
+            .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         return Err(Failure::input(format!("no diagnostic has the code `{name}`{hint}")));
     };
-    Ok(writeln!(stdout(), "{}: {}\n\n{}", code.name, code.title, code.explanation)?)
+    writeln!(stdout(), "{}: {}\n\n{}", code.name, code.title, code.explanation)?;
+    match guide::page_of(code) {
+        Some(page) => Ok(writeln!(stdout(), "\nGuide: {}", page.title)?),
+        None => Ok(()),
+    }
 }
 
 fn list() -> Result<(), Failure> {

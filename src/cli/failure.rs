@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::ValueEnum;
 
+use super::guide;
 use crate::diagnostic::render::{Form, render};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;
@@ -42,19 +43,27 @@ impl Failure {
     pub fn report(self, form: DiagnosticForm) -> ExitCode {
         match self {
             // A bundle that cannot be written is the machine's fault, not the author's.
-            Self::Input(sources, diagnostics) if diagnostics.iter().any(|error| error.code == codes::BUNDLE_FAILED) => {
+            Self::Input(sources, diagnostics)
+                if diagnostics.iter().any(|error| error.code == codes::BUNDLE_FAILED) =>
+            {
                 warn(&sources, &diagnostics, form);
                 let _ = writeln!(io::stderr(), "error: cannot write the bundle");
                 ExitCode::from(4)
             }
             Self::Input(sources, diagnostics) => {
                 warn(&sources, &diagnostics, form);
+                let reading = guide::after_errors(&diagnostics);
+                if let (Some(reading), DiagnosticForm::Human) = (reading, form) {
+                    let _ = io::stderr().write_all(reading.as_bytes());
+                }
                 ExitCode::from(1)
             }
             Self::Message(code, message) => {
                 let _ = match form {
                     DiagnosticForm::Json => writeln!(io::stderr(), "{}", message_as_json(&message)),
-                    DiagnosticForm::Human | DiagnosticForm::Short => writeln!(io::stderr(), "error: {message}"),
+                    DiagnosticForm::Human | DiagnosticForm::Short => {
+                        writeln!(io::stderr(), "error: {message}")
+                    }
                 };
                 ExitCode::from(code)
             }

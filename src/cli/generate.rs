@@ -58,5 +58,10 @@ fn request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
         let id = sources.add("--only", key.as_str());
         Quoted::whole(sources, id)
     });
-    Request { program: arguments.program.clone(), only, targets: arguments.target.clone(), shard: arguments.shard }
+    Request {
+        program: arguments.program.clone(),
+        only,
+        targets: arguments.target.clone(),
+        shard: arguments.shard,
+    }
 }

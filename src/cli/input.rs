@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::failure::{DiagnosticForm, Failure, warn};
-use crate::compose::{self, Composed, Keep, Language, Mangle, Options};
+use crate::bundle::Language;
+use crate::compose::{self, Composed, Keep, Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::permute::{Assignment, Program, Quoted, Setting, Settings, key};
 use crate::project::{self, Project};
@@ -69,8 +70,13 @@ pub fn axis_value(text: &str) -> Result<(String, Setting), String> {
 }
 
 fn named(name: &str) -> Result<String, String> {
-    let fits = name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric()) && !name.starts_with(|c: char| c.is_ascii_digit());
-    if fits && !name.is_empty() { Ok(name.to_owned()) } else { Err(format!("`{name}` is not a name of letters, digits and `_`")) }
+    let fits = name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
+        && !name.starts_with(|c: char| c.is_ascii_digit());
+    if fits && !name.is_empty() {
+        Ok(name.to_owned())
+    } else {
+        Err(format!("`{name}` is not a name of letters, digits and `_`"))
+    }
 }
 
 fn feature(text: &str) -> Result<(String, Setting), String> {
@@ -82,10 +88,18 @@ fn feature(text: &str) -> Result<(String, Setting), String> {
 }
 
 /// What is wrong with a point that a source as a whole names.
-pub fn broken(program: &Program, point: &Assignment, sources: &SourceSet, id: SourceId) -> Diagnostics {
+pub fn broken(
+    program: &Program,
+    point: &Assignment,
+    sources: &SourceSet,
+    id: SourceId,
+) -> Diagnostics {
     let span = Span::new(id, 0..sources.get(id).text.len());
     let broken = program.space.broken(point).map(|constraint| {
-        let error = Diagnostic::error(codes::INVALID_KEY, format!("program `{}` has no such permutation", program.name));
+        let error = Diagnostic::error(
+            codes::INVALID_PERMUTATION,
+            format!("program `{}` has no such permutation", program.name),
+        );
         error.at(span, "these values").at(constraint.span, "break this constraint")
     });
     broken.collect()
@@ -139,8 +153,8 @@ impl Input {
         self.check_usage()?;
         let language = self.language()?;
         let root = self.root.clone().unwrap_or_else(|| project::root_of(&self.file));
-        let mut project =
-            project::open(&root, SourceSet::default()).map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
+        let mut project = project::open(&root, SourceSet::default())
+            .map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
         match self.compose_in(&mut project, &root, language) {
             Ok((composed, context)) => {
                 warn(&project.sources, &composed.warnings, form);
@@ -150,7 +164,12 @@ impl Input {
         }
     }
 
-    fn compose_in(&self, project: &mut Project, root: &Path, language: Language) -> Result<(Composed, Context), Diagnostics> {
+    fn compose_in(
+        &self,
+        project: &mut Project,
+        root: &Path,
+        language: Language,
+    ) -> Result<(Composed, Context), Diagnostics> {
         let path = project::relative(&self.file, root).map_err(|diagnostic| vec![diagnostic])?;
         let mut chosen = self.settings(project, root, &path)?;
         let graph = resolve::load(&mut project.sources, &project.packages, &path, language)?;
@@ -167,13 +186,20 @@ impl Input {
 
     /// The language asked for, or else what the extension says.
     pub fn language(&self) -> Result<Language, Failure> {
-        let extension = self.file.extension().map(|extension| extension.to_string_lossy().into_owned()).unwrap_or_default();
+        let extension = self
+            .file
+            .extension()
+            .map(|extension| extension.to_string_lossy().into_owned())
+            .unwrap_or_default();
         match (self.lang, extension.as_str()) {
             (Some(name), _) => Ok(name.into()),
             (None, "glsl" | "vert" | "frag" | "comp") => Ok(Language::Glsl),
             (None, "wesl" | "wgsl") => Ok(Language::Wesl),
             (None, _) if self.file.is_dir() => Ok(Language::Wesl),
-            (None, _) => Err(Failure::usage(format!("the name of `{}` does not tell its language: add `--lang`", self.file.display()))),
+            (None, _) => Err(Failure::usage(format!(
+                "the name of `{}` does not tell its language: add `--lang`",
+                self.file.display()
+            ))),
         }
     }
 
@@ -194,7 +220,11 @@ impl Input {
     /// Settings of the command line that are no axes and that nothing can ask for.
     fn unused(&self, graph: &Graph, axes: &[String]) -> Diagnostics {
         let unused = self.chosen().filter(|(name, _)| !axes.contains(name) && !graph.may_ask(name));
-        unused.map(|(name, _)| Diagnostic::warning(codes::UNUSED_SETTING, format!("nothing asks for `{name}`"))).collect()
+        unused
+            .map(|(name, _)| {
+                Diagnostic::warning(codes::UNUSED_SETTING, format!("nothing asks for `{name}`"))
+            })
+            .collect()
     }
 
     fn options(&self) -> Options {
@@ -207,10 +237,16 @@ impl Input {
 
     /// What the command line chooses, over the defaults of the program that the file belongs to
     /// where the package's manifest has one.
-    fn settings(&self, project: &mut Project, root: &Path, path: &str) -> Result<Chosen, Diagnostics> {
+    fn settings(
+        &self,
+        project: &mut Project,
+        root: &Path,
+        path: &str,
+    ) -> Result<Chosen, Diagnostics> {
         let manifest = project::manifest(root, &mut project.sources)?;
-        let program =
-            manifest.as_ref().and_then(|manifest| manifest.programs.iter().find(|program| program.files().any(|file| file.path == path)));
+        let program = manifest.as_ref().and_then(|manifest| {
+            manifest.programs.iter().find(|program| program.files().any(|file| file.path == path))
+        });
         match program {
             Some(program) => self.of_program(program, &mut project.sources),
             None => Ok(self.free()),
@@ -219,23 +255,40 @@ impl Input {
 
     fn free(&self) -> Chosen {
         let settings = Settings { values: self.chosen().cloned().collect(), ..Settings::default() };
-        let parts: Vec<String> = settings.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
-        let permutation = (!parts.is_empty()).then(|| format!("with the settings `{}`", parts.join(",")));
+        let parts: Vec<String> =
+            settings.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let permutation =
+            (!parts.is_empty()).then(|| format!("with the settings `{}`", parts.join(",")));
         Chosen { settings, permutation, declared: false, axes: Vec::new(), warnings: Vec::new() }
     }
 
     /// The point of the program's space that the options name; broken constraints are warnings,
     /// since the composition has a meaning all the same. A feature that is no axis is one more flag.
-    fn of_program(&self, program: &Program, sources: &mut SourceSet) -> Result<Chosen, Diagnostics> {
+    fn of_program(
+        &self,
+        program: &Program,
+        sources: &mut SourceSet,
+    ) -> Result<Chosen, Diagnostics> {
         let is_axis = |name: &str| program.space.axis(name).is_some();
         let features = self.feature.iter().filter(|(name, _)| is_axis(name));
-        let parts: Vec<String> = self.set.iter().chain(features).map(|(axis, value)| format!("{axis}={value}")).collect();
+        let parts: Vec<String> = self
+            .set
+            .iter()
+            .chain(features)
+            .map(|(axis, value)| format!("{axis}={value}"))
+            .collect();
         let id = sources.add("--set", parts.join(","));
         let point = key::parse(&program.space, &Quoted::whole(sources, id))?;
-        let broken = broken(program, &point, sources, id).into_iter().map(|error| Diagnostic { severity: Severity::Warning, ..error });
+        let broken = broken(program, &point, sources, id)
+            .into_iter()
+            .map(|error| Diagnostic { severity: Severity::Warning, ..error });
         let mut settings = program.space.settings(&point);
         settings.values.extend(self.feature.iter().filter(|(name, _)| !is_axis(name)).cloned());
-        let permutation = Some(format!("in permutation `{}` of program `{}`", program.space.key(&point), program.name));
+        let permutation = Some(format!(
+            "in permutation `{}` of program `{}`",
+            program.space.key(&point),
+            program.name
+        ));
         let axes = program.space.axes().iter().map(|axis| axis.name.clone()).collect();
         Ok(Chosen { settings, permutation, declared: true, axes, warnings: broken.collect() })
     }

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
+use super::overwrite::Overwrite;
+use crate::input;
 use crate::keys::{self, LANGUAGES, Language};
-use crate::output;
+use crate::output::{self, Replace};
 use crate::permute::{Lock, Manifest};
 use crate::project;
 use crate::source::SourceSet;
@@ -30,6 +32,8 @@ pub struct Arguments {
     /// Write nothing; exit code 3 if a file is not up to date.
     #[arg(long)]
     check: bool,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 fn language(name: &str) -> Result<&'static Language, String> {
@@ -45,19 +49,21 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
             Ok(lock) => extended(&lock, &manifest),
             Err(diagnostics) => return Err(Failure::Input(sources, diagnostics)),
         };
-        put(&project::lock_path(path), &lock.to_string(), arguments.check)?;
+        // What is there was read as a lock file.
+        put(&project::lock_path(path), &lock.to_string(), arguments.check, Replace::Any)?;
     }
     let Some(language) = arguments.lang else { return Ok(()) };
     let text = keys::write(&manifest, language);
     match &arguments.out {
-        Some(path) => put(path, &text, arguments.check),
+        Some(path) => put(path, &text, arguments.check, arguments.overwrite.replace()),
         None => Ok(stdout().write_all(text.as_bytes())?),
     }
 }
 
 fn open(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> {
     let Some(path) = path else {
-        return project::library_manifest().map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics));
+        return project::library_manifest()
+            .map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics));
     };
     let mut sources = SourceSet::default();
     match project::read_manifest(path, &mut sources) {
@@ -67,15 +73,21 @@ fn open(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> {
 }
 
 fn extended(lock: &Lock, manifest: &Manifest) -> Lock {
-    manifest.programs.iter().fold(lock.clone(), |lock, program| lock.extended(&program.name, &program.space))
+    manifest
+        .programs
+        .iter()
+        .fold(lock.clone(), |lock, program| lock.extended(&program.name, &program.space))
 }
 
-fn put(path: &Path, text: &str, check: bool) -> Result<(), Failure> {
-    let known = std::fs::read(path).is_ok_and(|known| known == text.as_bytes());
-    match (known, check) {
-        (true, _) => Ok(()),
-        (false, true) => Err(Failure::check(format!("`{}` is not up to date: run the command without `--check`", path.display()))),
-        (false, false) => output::write(path, text.as_bytes())
-            .map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display()))),
+fn put(path: &Path, text: &str, check: bool, replace: Replace) -> Result<(), Failure> {
+    if !check {
+        return Ok(output::write_file(path, text.as_bytes(), keys::is_written, replace)?);
     }
+    if input::read(path, text.len() as u64).is_ok_and(|known| known == text.as_bytes()) {
+        return Ok(());
+    }
+    Err(Failure::check(format!(
+        "`{}` is not up to date: run the command without `--check`",
+        path.display()
+    )))
 }

@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::text;
 use crate::catalogue::{self, Kind, probe};
 use crate::emit::targets;
-use crate::harness::executors;
+use crate::execute::executors;
 use crate::permute::{Manifest, Setting};
 use crate::project;
 use crate::source::SourceSet;
@@ -59,7 +59,11 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         What::Targets => targets(),
         What::Executors => executors(),
     };
-    let text = if arguments.json { format!("{:#}\n", Value::Array(table.things)) } else { as_text(&table) };
+    let text = if arguments.json {
+        format!("{:#}\n", Value::Array(table.things))
+    } else {
+        as_text(&table)
+    };
     Ok(stdout().write_all(text.as_bytes())?)
 }
 
@@ -73,11 +77,17 @@ fn modules() -> Table {
             "summary": module.summary(),
         })
     };
-    Table { shown: &["module", "functions", "structs", "summary"], things: catalogue::library().into_iter().map(thing).collect() }
+    Table {
+        shown: &["module", "functions", "structs", "summary"],
+        things: catalogue::library().into_iter().map(thing).collect(),
+    }
 }
 
 fn items(kind: Kind, shown: &'static [&'static str]) -> Table {
-    let items = catalogue::library().into_iter().flat_map(|module| module.items).filter(|item| item.kind == kind);
+    let items = catalogue::library()
+        .into_iter()
+        .flat_map(|module| module.items)
+        .filter(|item| item.kind == kind);
     let thing = |item: catalogue::Item| {
         json!({
             kind.name(): item.path(),
@@ -107,25 +117,33 @@ fn programs() -> Result<Table, Failure> {
 
 fn axes() -> Result<Table, Failure> {
     let programs = manifest()?.1.programs;
-    let things = programs.iter().flat_map(|program| program.space.axes().iter().map(|axis| super::show::axis_json(&program.name, axis)));
+    let things = programs.iter().flat_map(|program| {
+        program.space.axes().iter().map(|axis| super::show::axis_json(&program.name, axis))
+    });
     Ok(Table { shown: &["program", "axis", "mode", "default", "values"], things: things.collect() })
 }
 
 fn presets() -> Result<Table, Failure> {
     let (mut sources, manifest) = manifest()?;
-    let (presets, _) = catalogue::examples(&mut sources, &manifest).map_err(|problems| Failure::Input(sources, problems))?;
+    let (presets, _) = catalogue::examples(&mut sources, &manifest)
+        .map_err(|problems| Failure::Input(sources, problems))?;
     let things = presets.iter().map(super::show::preset_json).collect();
     Ok(Table { shown: &["preset", "program", "scene", "key"], things })
 }
 
 fn probes() -> Result<Table, Failure> {
     let mut sources = SourceSet::default();
-    let probes = probe::library(&mut sources).map_err(|problems| Failure::Input(sources, problems))?;
-    Ok(Table { shown: &["probe", "title"], things: probes.iter().map(super::show::probe_json).collect() })
+    let probes =
+        probe::library(&mut sources).map_err(|problems| Failure::Input(sources, problems))?;
+    Ok(Table {
+        shown: &["probe", "title"],
+        things: probes.iter().map(super::show::probe_json).collect(),
+    })
 }
 
 fn manifest() -> Result<(SourceSet, Manifest), Failure> {
-    project::library_manifest().map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))
+    project::library_manifest()
+        .map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))
 }
 
 fn targets() -> Table {
@@ -135,7 +153,9 @@ fn targets() -> Table {
 }
 
 fn executors() -> Table {
-    let things = executors::ALL.iter().map(|entry| json!({ "executor": entry.name, "needs": entry.needs, "summary": entry.about }));
+    let things = executors::ALL.iter().map(
+        |entry| json!({ "executor": entry.name, "needs": entry.needs, "draws": entry.samples.is_some(), "summary": entry.about }),
+    );
     Table { shown: &["executor", "summary", "needs"], things: things.collect() }
 }
 
@@ -154,7 +174,11 @@ pub fn setting(setting: &Setting) -> Value {
 }
 
 fn as_text(table: &Table) -> String {
-    let rows: Vec<Vec<String>> = table.things.iter().map(|thing| table.shown.iter().map(|key| cell(&thing[key])).collect()).collect();
+    let rows: Vec<Vec<String>> = table
+        .things
+        .iter()
+        .map(|thing| table.shown.iter().map(|key| cell(&thing[key])).collect())
+        .collect();
     text::table(table.shown, &rows)
 }
 

@@ -1,14 +1,15 @@
 //! `lamplight merge`: one bundle of several.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Write, stdout};
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::failure::Failure;
+use super::overwrite::{Overwrite, unwritable, waiting};
 use super::work::is_file;
-use crate::bundle::{self, Bundle, Error};
+use crate::bundle::{self, Bundle, DirectoryWriter, Error, Language};
 use crate::project;
 use crate::source::SourceSet;
 
@@ -23,40 +24,56 @@ pub struct Arguments {
     /// Fail unless every permutation of this manifest is there.
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
-    let inputs =
-        arguments.inputs.iter().map(|path| Bundle::open(path).map_err(|error| Failure::input(format!("`{}`: {error}", path.display()))));
+    let inputs = arguments.inputs.iter().map(|path| {
+        Bundle::open(path).map_err(|error| Failure::input(format!("`{}`: {error}", path.display())))
+    });
     let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
+    // Everything is checked before anything is written.
+    complete(&arguments, &inputs)?;
+    for (path, bundle) in arguments.inputs.iter().zip(&inputs) {
+        bundle
+            .verify()
+            .map_err(|error| Failure::check(format!("`{}`: {error}", path.display())))?;
+    }
     let failed = |error| match error {
         Error::Conflict(_) | Error::Corrupt { .. } => Failure::check(error.to_string()),
-        error => Failure::environment(format!("cannot write `{}`: {error}", arguments.out.display())),
+        error => unwritable(&arguments.out, error),
     };
+    let replace = arguments.overwrite.replace();
     if is_file(&arguments.out) {
-        bundle::merge(&inputs).and_then(|contents| bundle::write_file(&contents, &arguments.out)).map_err(failed)?;
+        bundle::merge(&inputs)
+            .and_then(|contents| bundle::replace_file(&contents, &arguments.out, replace))
+            .map_err(failed)?;
     } else {
-        bundle::merge_directory(&inputs, &arguments.out).map_err(failed)?;
+        DirectoryWriter::take_over(&arguments.out, replace, &|| waiting(&arguments.out))
+            .and_then(|writer| bundle::merge_into(&inputs, writer))
+            .map_err(failed)?;
     }
-    let merged = Bundle::open(&arguments.out).map_err(failed)?;
-    complete(&arguments, &merged)?;
     Ok(writeln!(stdout(), "{}: {} bundles merged", arguments.out.display(), inputs.len())?)
 }
 
-/// Every permutation of the manifest is in every entry point of its program.
-fn complete(arguments: &Arguments, merged: &Bundle) -> Result<(), Failure> {
+/// Every permutation of the manifest is in every entry point of its program, in one of the
+/// bundles.
+fn complete(arguments: &Arguments, inputs: &[Bundle]) -> Result<(), Failure> {
     let Some(path) = &arguments.manifest else { return Ok(()) };
     let mut sources = SourceSet::default();
-    let manifest = project::read_manifest(path, &mut sources).map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+    let manifest = project::read_manifest(path, &mut sources)
+        .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
     for program in &manifest.programs {
-        let wrong = |error: Error| Failure::check(format!("program `{}`: {error}", program.name));
-        let found = merged.program(&program.name).map_err(wrong)?;
-        let keys = program.space.enumerate();
-        for (language, entry) in found.entries() {
-            let found: BTreeSet<String> =
-                found.entry(language, entry).and_then(|shader| shader.keys()).map_err(wrong)?.into_iter().collect();
-            let missing = keys.iter().map(|point| program.space.key(point)).find(|key| !found.contains(key.as_str()));
-            if let Some(key) = missing {
+        let found = keys(inputs, &program.name)
+            .map_err(|error| Failure::check(format!("program `{}`: {error}", program.name)))?;
+        if found.is_empty() {
+            return Err(Failure::check(format!("no bundle has program `{}`", program.name)));
+        }
+        let all = program.space.enumerate();
+        for ((_, entry), found) in found {
+            let mut keys = all.iter().map(|point| program.space.key(point));
+            if let Some(key) = keys.find(|key| !found.contains(key.as_str())) {
                 return Err(Failure::check(format!(
                     "`{entry}` of program `{}` has no permutation `{key}`: a shard is missing",
                     program.name
@@ -65,4 +82,20 @@ fn complete(arguments: &Arguments, merged: &Bundle) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The keys of each entry point of a program, by language and name, over all bundles.
+fn keys(
+    inputs: &[Bundle],
+    program: &str,
+) -> Result<BTreeMap<(Language, String), BTreeSet<String>>, Error> {
+    let mut all: BTreeMap<_, BTreeSet<String>> = BTreeMap::new();
+    for bundle in inputs.iter().filter(|bundle| bundle.programs().any(|name| name == program)) {
+        let found = bundle.program(program)?;
+        for (language, entry) in found.entries() {
+            let keys = found.entry(language, entry)?.keys()?;
+            all.entry((language, entry.to_owned())).or_default().extend(keys);
+        }
+    }
+    Ok(all)
 }

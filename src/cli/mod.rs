@@ -9,15 +9,19 @@ mod check;
 mod compile;
 mod compose;
 mod eval;
+mod executor;
 mod explain;
 mod export;
 mod failure;
 mod generate;
+mod guide;
 mod input;
 mod keys;
 mod list;
 mod merge;
 mod mutate;
+mod overwrite;
+mod partial;
 mod progress;
 mod render;
 mod show;
@@ -28,9 +32,9 @@ mod work;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use crate::harness::executors::swiftshader;
+use crate::execute::executors;
 use failure::Failure;
 
 /// Lighting and shadow functions in WGSL and GLSL: composed, compiled, bundled, proven.
@@ -66,13 +70,25 @@ enum Command {
     Explain(explain::Arguments),
 }
 
+impl Command {
+    /// The executors that it asks for.
+    fn executors(&self) -> Vec<&'static executors::Entry> {
+        let names = match self {
+            Self::Check(arguments) => arguments.executor.as_slice(),
+            Self::Eval(arguments) => std::slice::from_ref(&arguments.executor),
+            Self::Render(arguments) => std::slice::from_ref(&arguments.executor),
+            _ => &[],
+        };
+        names.iter().filter_map(|name| executors::find(name)).collect()
+    }
+}
+
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
+    let matches = guide::in_help(Cli::command()).get_matches();
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     // While there is one thread.
-    if std::env::args_os().any(|argument| argument.to_string_lossy().contains(swiftshader::EXECUTOR.name)) {
-        swiftshader::announce();
-    }
-    let cli = Cli::parse();
+    executors::prepare(&cli.command.executors());
     match dispatch(cli.command, cli.diagnostics) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(cli.diagnostics),

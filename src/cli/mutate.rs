@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex};
 use clap::Args;
 
 use super::failure::Failure;
-use crate::harness::library::Library;
-use crate::harness::mutate::{coverage, mutate};
+use crate::proof::library::Library;
+use crate::proof::mutate::{coverage, mutate};
 use crate::source::{Disk, SourceSet};
 
 /// Put mistakes into functions, one at a time, and see whether the numeric cases notice.
@@ -32,27 +32,37 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 
 fn library(arguments: &Arguments) -> Result<Library, Failure> {
     let Some(root) = &arguments.root else { return Ok(Library::embedded()) };
-    let disk = Disk::new(root).map_err(|error| Failure::input(format!("cannot read `{}`: {error}", root.display())))?;
+    let disk = Disk::new(root)
+        .map_err(|error| Failure::input(format!("cannot read `{}`: {error}", root.display())))?;
     Ok(Library::new("lamplight", Arc::new(disk), Vec::new()))
 }
 
 /// The modules of those paths, or below them.
 fn modules(library: &Library, asked: &[String]) -> Result<Vec<String>, Failure> {
     let all = library.modules();
-    let below = |module: &str, path: &str| module.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"));
+    let below = |module: &str, path: &str| {
+        module.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+    };
     if let Some(unknown) = asked.iter().find(|path| !all.iter().any(|module| below(module, path))) {
         return Err(Failure::input(format!("there is no module `{unknown}`")));
     }
-    Ok(all.into_iter().filter(|module| asked.is_empty() || asked.iter().any(|path| below(module, path))).collect())
+    Ok(all
+        .into_iter()
+        .filter(|module| asked.is_empty() || asked.iter().any(|path| below(module, path)))
+        .collect())
 }
 
 fn survive(library: &Library, modules: &[String]) -> Result<(), Failure> {
     let sources = Mutex::new(SourceSet::default());
     let report = mutate(library, &sources, modules);
-    let report = report.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))?;
+    let report = report.map_err(|diagnostics| {
+        Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics)
+    })?;
     write!(stdout(), "{}", report.survivors())?;
     if modules.len() == library.modules().len() {
-        report.stale.iter().try_for_each(|entry| writeln!(stdout(), "listed as equivalent, but is none that survived: {entry}"))?;
+        report.stale.iter().try_for_each(|entry| {
+            writeln!(stdout(), "listed as equivalent, but is none that survived: {entry}")
+        })?;
     }
     writeln!(stdout(), "{} more are listed as equal to the code as written", report.equivalent())?;
     writeln!(stdout(), "{}", report.summary())?;
@@ -62,9 +72,13 @@ fn survive(library: &Library, modules: &[String]) -> Result<(), Failure> {
 fn cover(library: &Library, modules: &[String]) -> Result<(), Failure> {
     let sources = Mutex::new(SourceSet::default());
     let found = coverage(library, &sources, modules);
-    let found = found.map_err(|diagnostics| Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics))?;
+    let found = found.map_err(|diagnostics| {
+        Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics)
+    })?;
     found.iter().try_for_each(|module| write!(stdout(), "{module}"))?;
-    let (all, missed) = found.iter().fold((0, 0), |sum, module| (sum.0 + module.blocks, sum.1 + module.uncovered.len()));
+    let (all, missed) = found
+        .iter()
+        .fold((0, 0), |sum, module| (sum.0 + module.blocks, sum.1 + module.uncovered.len()));
     writeln!(stdout(), "reached {} of {all} blocks", all - missed)?;
     if missed == 0 { Ok(()) } else { Err(Failure::check("some statements are reached by no case")) }
 }

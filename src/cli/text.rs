@@ -5,7 +5,10 @@ pub const WIDTH: usize = 100;
 
 /// Words in lines of at most [`WIDTH`] columns, each after `indent` blanks; ends with a newline.
 pub fn wrapped(text: &str, indent: usize) -> String {
-    lines(text, WIDTH - indent.min(WIDTH / 2)).into_iter().map(|line| format!("{:indent$}{line}\n", "")).collect()
+    lines(text, WIDTH - indent.min(WIDTH / 2))
+        .into_iter()
+        .map(|line| format!("{:indent$}{line}\n", ""))
+        .collect()
 }
 
 /// Lines of code as they are, indented; ends with a newline.
@@ -36,22 +39,31 @@ pub fn rows(rows: &[Vec<String>], indent: usize) -> String {
 }
 
 fn widths(columns: &[&str], rows: &[Vec<String>]) -> Vec<usize> {
-    let widest = |column: usize| rows.iter().map(|row| row[column].chars().count()).chain([columns[column].len()]).max().unwrap_or(0);
+    let widest = |column: usize| {
+        rows.iter()
+            .map(|row| row[column].chars().count())
+            .chain([columns[column].len()])
+            .max()
+            .unwrap_or(0)
+    };
     (0..columns.len()).map(widest).collect()
 }
 
 fn row_text(row: &[String], widths: &[usize]) -> String {
     let Some((last, before)) = row.split_last() else { return String::new() };
-    let start = before.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}  ")).collect::<String>();
+    let start = before
+        .iter()
+        .zip(widths)
+        .map(|(cell, width)| format!("{cell:width$}  "))
+        .collect::<String>();
     let indent = start.chars().count();
     let wrapped = lines(last, WIDTH.saturating_sub(indent).max(WIDTH / 3));
     if wrapped.is_empty() {
         return format!("{}\n", start.trim_end());
     }
-    let lines = wrapped
-        .iter()
-        .enumerate()
-        .map(|(index, line)| if index == 0 { format!("{start}{line}\n") } else { format!("{:indent$}{line}\n", "") });
+    let lines = wrapped.iter().enumerate().map(|(index, line)| {
+        if index == 0 { format!("{start}{line}\n") } else { format!("{:indent$}{line}\n", "") }
+    });
     lines.collect()
 }
 

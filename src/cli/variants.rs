@@ -39,7 +39,8 @@ pub struct Arguments {
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let mut sources = SourceSet::default();
     let opened = open(arguments.manifest.as_deref(), &mut sources);
-    let (manifest, packages) = opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+    let (manifest, packages) =
+        opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
     warn(&sources, &manifest.warnings, form);
     if let Some(name) = &arguments.keys {
         return keys(&manifest, name);
@@ -52,7 +53,8 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
         }
         if arguments.compose || arguments.compile {
             let bar = Bar::new();
-            let composed = compose(&arguments, &mut sources, &packages, &manifest, program, &mut report, &bar);
+            let composed =
+                compose(&arguments, &mut sources, &packages, &manifest, program, &mut report, &bar);
             bar.clear();
             composed.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
         }
@@ -70,10 +72,11 @@ fn open(path: Option<&Path>, sources: &mut SourceSet) -> Result<(Manifest, Packa
     match path {
         Some(path) => project::declared(path, sources),
         None => {
-            let (library, manifest) = project::library_manifest().map_err(|(library, diagnostics)| {
-                *sources = library;
-                diagnostics
-            })?;
+            let (library, manifest) =
+                project::library_manifest().map_err(|(library, diagnostics)| {
+                    *sources = library;
+                    diagnostics
+                })?;
             *sources = library;
             Ok((manifest, project::library()))
         }
@@ -104,7 +107,8 @@ fn compose(
         let request = Request { program: Some(program.name.clone()), ..Request::default() };
         let tools = Tools { sink: &Discard, cache: None, progress: &progress };
         let compiled = generate::generate(sources, packages, manifest, &request, &tools)?;
-        report.unique_outputs = Some(compiled.summary.targets.iter().map(|target| target.outputs as u64).sum());
+        report.unique_outputs =
+            Some(compiled.summary.targets.iter().map(|target| target.outputs as u64).sum());
     }
     Ok(())
 }
@@ -112,7 +116,8 @@ fn compose(
 fn keys(manifest: &Manifest, name: &str) -> Result<(), Failure> {
     let program = manifest.program(name).ok_or_else(|| {
         let known = manifest.programs.iter().map(|program| program.name.as_str());
-        let hint = nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        let hint =
+            nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         Failure::input(format!("the manifest declares no program `{name}`{hint}"))
     })?;
     let mut out = std::io::BufWriter::new(stdout().lock());

@@ -10,7 +10,9 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure};
 use super::work::{Places, Work};
 use crate::generate::Request;
+use crate::input;
 use crate::permute::Quoted;
+use crate::source::LIMITS;
 
 /// Between looks at the files, which are compared by content: no service of the operating system
 /// is needed, and editors may write as they like.
@@ -61,7 +63,7 @@ fn told(outcome: Result<(), Failure>, form: DiagnosticForm) -> Result<(), Failur
 }
 
 fn text(path: &Path) -> Option<Vec<u8>> {
-    std::fs::read(path).ok()
+    input::read(path, LIMITS.file_bytes as u64).ok()
 }
 
 fn update(arguments: &Arguments, work: &mut Work, form: DiagnosticForm) -> Result<(), Failure> {
@@ -78,7 +80,11 @@ fn update(arguments: &Arguments, work: &mut Work, form: DiagnosticForm) -> Resul
     }
     let summary = work.run(&all, false, form)?;
     let compiled = summary.texts().saturating_sub(summary.cached);
-    say(&format!("{} permutations, {compiled} texts compiled, {:.2} s", summary.permutations(), start.elapsed().as_secs_f64()))
+    say(&format!(
+        "{} permutations, {compiled} texts compiled, {:.2} s",
+        summary.permutations(),
+        start.elapsed().as_secs_f64()
+    ))
 }
 
 fn say(line: &str) -> Result<(), Failure> {

@@ -6,10 +6,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
+use super::overwrite::{Overwrite, unwritable, waiting};
+use super::partial;
 use super::progress::Bar;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
-use crate::cache::{Cache, Folder, Recorder, Run, Storage, Told, Trace};
-use crate::generate::{Generated, Memory, Request, Sink, Summary, Tools, generate};
+use crate::cache::{Cache, Folder, Storage};
+use crate::generate::{
+    Generated, Memory, Recorder, Request, Run, Sink, Summary, Told, Tools, Trace, generate,
+};
+use crate::output::Replace;
 use crate::permute::Manifest;
 use crate::project;
 use crate::resolve::Packages;
@@ -35,6 +40,8 @@ pub struct Places {
     /// A cache that machines share, asked after the folder: `fs:/path` or `redis://host:port`.
     #[arg(long, value_name = "ADDRESS")]
     store: Option<String>,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 /// Everything a run needs, read and ready.
@@ -47,6 +54,7 @@ pub struct Work {
     manifest: Manifest,
     recorder: Recorder,
     cache: Option<Cache>,
+    replace: Replace,
     /// The manifest and what declares packages: all that is read before the packages are.
     declared: SourceSet,
 }
@@ -55,7 +63,8 @@ impl Work {
     pub fn open(places: &Places) -> Result<Self, Failure> {
         let mut sources = SourceSet::default();
         let opened = project::declared(&places.manifest, &mut sources);
-        let (manifest, packages) = opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+        let (manifest, packages) =
+            opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
         let recorder = Recorder::default();
         Ok(Self {
             declared: sources.clone(),
@@ -66,6 +75,7 @@ impl Work {
             manifest,
             recorder,
             cache: cache(places)?,
+            replace: places.overwrite.replace(),
         })
     }
 
@@ -73,7 +83,10 @@ impl Work {
     pub fn is_current(&self) -> bool {
         let mut sources = SourceSet::default();
         let declared = project::declared(&self.path, &mut sources).is_ok()
-            && sources.iter().map(|(_, source)| &source.text).eq(self.declared.iter().map(|(_, source)| &source.text));
+            && sources
+                .iter()
+                .map(|(_, source)| &source.text)
+                .eq(self.declared.iter().map(|(_, source)| &source.text));
         declared && self.recorder.is_current(&self.packages)
     }
 
@@ -85,9 +98,21 @@ impl Work {
     }
 
     /// Generates, and writes the bundle or compares with it.
-    pub fn run(&mut self, request: &Request, check: bool, form: DiagnosticForm) -> Result<Summary, Failure> {
+    pub fn run(
+        &mut self,
+        request: &Request,
+        check: bool,
+        form: DiagnosticForm,
+    ) -> Result<Summary, Failure> {
+        if !check && self.replace == Replace::Ours {
+            partial::refuse(&self.manifest, request, &self.out)?;
+        }
         let bar = Bar::new();
-        let outcome = if check || is_file(&self.out) { self.in_memory(request, check, &bar) } else { self.streamed(request, &bar) };
+        let outcome = if check || is_file(&self.out) {
+            self.in_memory(request, check, &bar)
+        } else {
+            self.streamed(request, &bar)
+        };
         bar.clear();
         let Generated { summary, warnings, .. } = outcome?;
         warn(&self.sources, &warnings, form);
@@ -101,7 +126,13 @@ impl Work {
     }
 
     fn as_run<'a>(&'a self, request: &'a Request) -> Run<'a> {
-        Run { manifest: &self.path, declared: &self.declared, request, packages: &self.packages, out: &self.out }
+        Run {
+            manifest: &self.path,
+            declared: &self.declared,
+            request,
+            packages: &self.packages,
+            out: &self.out,
+        }
     }
 
     /// One permutation into the bundle directory that is there, before all others.
@@ -109,32 +140,47 @@ impl Work {
         let memory = Memory::default();
         let mut generated = self.generate(request, &memory, &Bar::new())?;
         memory.fill(&mut generated.contents);
-        bundle::patch_directory(&generated.contents, &self.out).map_err(|error| unwritable(&self.out, &error))
+        bundle::patch_directory(&generated.contents, &self.out)
+            .map_err(|error| unwritable(&self.out, error))
     }
 
     /// Writes a directory as its units are made.
     fn streamed(&mut self, request: &Request, bar: &Bar) -> Result<Generated, Failure> {
-        let writer = DirectoryWriter::create(&self.out).map_err(|error| unwritable(&self.out, &error))?;
+        let writer = DirectoryWriter::take_over(&self.out, self.replace, &|| waiting(&self.out));
+        let writer = writer.map_err(|error| unwritable(&self.out, error))?;
         let generated = self.generate(request, &writer, bar)?;
-        writer.finish(&generated.contents).map_err(|error| unwritable(&self.out, &error))?;
+        writer.finish(&generated.contents).map_err(|error| unwritable(&self.out, error))?;
         Ok(generated)
     }
 
     /// Compares with what is there, or writes a single file, whose order is known at the end only.
-    fn in_memory(&mut self, request: &Request, check: bool, bar: &Bar) -> Result<Generated, Failure> {
+    fn in_memory(
+        &mut self,
+        request: &Request,
+        check: bool,
+        bar: &Bar,
+    ) -> Result<Generated, Failure> {
         let memory = Memory::default();
         let mut generated = self.generate(request, &memory, bar)?;
         memory.fill(&mut generated.contents);
         match check {
             true => compare(&generated.contents, &self.out)?,
-            false => bundle::write_file(&generated.contents, &self.out).map_err(|error| unwritable(&self.out, &error))?,
+            false => bundle::replace_file(&generated.contents, &self.out, self.replace)
+                .map_err(|error| unwritable(&self.out, error))?,
         }
         Ok(generated)
     }
 
-    fn generate(&mut self, request: &Request, sink: &dyn Sink, bar: &Bar) -> Result<Generated, Failure> {
-        let tools = Tools { sink, cache: self.cache.as_ref(), progress: &|progress| bar.show(progress) };
-        let generated = generate(&mut self.sources, &self.packages, &self.manifest, request, &tools);
+    fn generate(
+        &mut self,
+        request: &Request,
+        sink: &dyn Sink,
+        bar: &Bar,
+    ) -> Result<Generated, Failure> {
+        let tools =
+            Tools { sink, cache: self.cache.as_ref(), progress: &|progress| bar.show(progress) };
+        let generated =
+            generate(&mut self.sources, &self.packages, &self.manifest, request, &tools);
         generated.map_err(|diagnostics| {
             bar.clear();
             Failure::Input(self.sources.clone(), diagnostics)
@@ -147,7 +193,10 @@ fn cache(places: &Places) -> Result<Option<Cache>, Failure> {
         return Ok(None);
     }
     let folder = places.cache.clone().or_else(|| project::cache_folder(&places.manifest));
-    let mut storages: Vec<Box<dyn Storage>> = folder.into_iter().map(|folder| Box::new(Folder::new(folder)) as Box<dyn Storage>).collect();
+    let mut storages: Vec<Box<dyn Storage>> = Vec::new();
+    if let Some(folder) = folder {
+        storages.push(Box::new(Folder::new(folder)?));
+    }
     if let Some(address) = &places.store {
         storages.push(store::open(address).map_err(Failure::environment)?);
     }
@@ -157,17 +206,16 @@ fn cache(places: &Places) -> Result<Option<Cache>, Failure> {
 /// A cache that fails is no reason to fail, but its user wants to know.
 fn told_failures(cache: &Cache) {
     if cache.failures() > 0 {
-        let _ =
-            writeln!(stderr(), "warning: the cache or the store refused {} times; everything was computed all the same", cache.failures());
+        let _ = writeln!(
+            stderr(),
+            "warning: the cache or the store refused {} times; everything was computed all the same",
+            cache.failures()
+        );
     }
 }
 
 pub fn is_file(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "lamplight")
-}
-
-fn unwritable(out: &Path, error: &bundle::Error) -> Failure {
-    Failure::environment(format!("cannot write `{}`: {error}", out.display()))
 }
 
 fn compare(contents: &Contents, out: &Path) -> Result<(), Failure> {
@@ -178,8 +226,15 @@ fn compare(contents: &Contents, out: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let changes = difference.permutations.iter().take(20);
-    let lines: Vec<String> =
-        changes.map(|change| format!("  {} {} {} {}", change.kind, change.program, change.entry, change.key)).collect();
+    let lines: Vec<String> = changes
+        .map(|change| {
+            format!("  {} {} {} {}", change.kind, change.program, change.entry, change.key)
+        })
+        .collect();
     let count = difference.permutations.len();
-    Err(Failure::check(format!("`{}` is not up to date: {count} permutations differ\n{}", out.display(), lines.join("\n"))))
+    Err(Failure::check(format!(
+        "`{}` is not up to date: {count} permutations differ\n{}",
+        out.display(),
+        lines.join("\n")
+    )))
 }

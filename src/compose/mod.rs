@@ -1,30 +1,20 @@
 //! Weaves the modules that an entry point reaches into one text, with a map back to the authors'.
 
 pub mod glsl;
+pub mod lean;
+mod part;
 mod source_map;
 pub mod wesl;
 
+pub use lean::lean;
+pub use part::{Part, PartKind};
 pub use source_map::{Segment, SourceMap};
 
+use crate::bundle::{Language, Stage};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Setting, Settings};
 use crate::resolve::Graph;
 use crate::source::Span;
-
-/// The two source languages.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Language {
-    Wesl,
-    Glsl,
-}
-
-/// Stage of an entry point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Stage {
-    Vertex,
-    Fragment,
-    Compute,
-}
 
 /// How imported items are named in the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -63,6 +53,8 @@ pub struct Composed {
     pub stage: Option<Stage>,
     pub text: String,
     pub map: SourceMap,
+    /// The declarations of the text, in its order. Beside them it has only comments and blanks.
+    pub parts: Vec<Part>,
     /// The settings that were asked for, in the order of asking, with the answers: another
     /// permutation that answers alike composes to the same text.
     pub reads: Vec<(String, Setting)>,
@@ -71,6 +63,22 @@ pub struct Composed {
     /// GLSL: the conditions that asked for a setting, in the order of reading. WESL's are
     /// evaluated on their own.
     pub decisions: Vec<Decision>,
+}
+
+impl Composed {
+    /// A text that no composition wrote: nothing in it leads to an author's file.
+    pub fn of_text(language: Language, stage: Option<Stage>, text: String) -> Self {
+        Self {
+            language,
+            stage,
+            text,
+            map: SourceMap::default(),
+            parts: Vec::new(),
+            reads: Vec::new(),
+            warnings: Vec::new(),
+            decisions: Vec::new(),
+        }
+    }
 }
 
 /// A condition of an `#if` or `#elif`, and how it came out.
@@ -84,7 +92,11 @@ pub struct Decision {
 }
 
 /// Composes a graph's root for the settings. Pure: same input, same bytes.
-pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<Composed, Diagnostics> {
+pub fn compose(
+    graph: &Graph,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Composed, Diagnostics> {
     match graph {
         Graph::Wesl(graph) => wesl::compose(graph, settings, options),
         Graph::Glsl(graph) => glsl::compose(graph, settings, options),

@@ -32,7 +32,10 @@ impl SourceMap {
     ///
     /// A range over several segments ends where the author's contiguous text does.
     pub fn lookup(&self, range: Range<usize>) -> Option<Span> {
-        let first = self.segments.partition_point(|segment| segment.start as usize <= range.start).checked_sub(1)?;
+        let first = self
+            .segments
+            .partition_point(|segment| segment.start as usize <= range.start)
+            .checked_sub(1)?;
         let segment = self.segments[first];
         let span = segment.span?;
         if !segment.verbatim {
@@ -45,7 +48,10 @@ impl SourceMap {
 
     /// Where the last byte before `end` came from, if in the same source at or after segment `first`.
     fn end(&self, first: usize, end: usize, source: crate::source::SourceId) -> Option<u32> {
-        let last = self.segments.partition_point(|segment| (segment.start as usize) < end).checked_sub(1)?;
+        let last = self
+            .segments
+            .partition_point(|segment| (segment.start as usize) < end)
+            .checked_sub(1)?;
         let segment = self.segments[last.max(first)];
         let span = segment.span.filter(|span| span.source == source)?;
         if !segment.verbatim {

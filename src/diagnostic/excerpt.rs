@@ -68,7 +68,8 @@ impl<'a> Excerpts<'a> {
         ids.sort();
         ids.dedup();
         let page = |id: SourceId| {
-            let ranges: Vec<Range<usize>> = spans.iter().filter(|span| span.source == id).map(|span| span.range()).collect();
+            let ranges: Vec<Range<usize>> =
+                spans.iter().filter(|span| span.source == id).map(|span| span.range()).collect();
             Page::new(id, &sources.get(id).text, &ranges)
         };
         Self { sources, pages: ids.into_iter().map(page).collect() }
@@ -89,8 +90,15 @@ impl<'a> Excerpts<'a> {
 
 impl Page {
     fn new(source: SourceId, text: &str, ranges: &[Range<usize>]) -> Self {
-        let line_of = |byte: usize| text.as_bytes()[..byte.min(text.len())].iter().filter(|byte| **byte == b'\n').count();
-        let first = ranges.iter().map(|range| line_of(range.start)).min().unwrap_or(0).saturating_sub(AROUND);
+        let line_of = |byte: usize| {
+            text.as_bytes()[..byte.min(text.len())].iter().filter(|byte| **byte == b'\n').count()
+        };
+        let first = ranges
+            .iter()
+            .map(|range| line_of(range.start))
+            .min()
+            .unwrap_or(0)
+            .saturating_sub(AROUND);
         let last = ranges.iter().map(|range| line_of(range.end)).max().unwrap_or(0) + AROUND;
         let mut page = Self { source, first, lines: Vec::new(), text: String::new() };
         let mut origin = 0;
@@ -113,17 +121,26 @@ impl Page {
         self.text.extend(line[window.clone()].chars().map(harmless));
         self.text.push_str(tail);
         self.text.push('\n');
-        self.lines.push(Line { start, origin, shown: origin + window.start..origin + window.end, lead: lead.len() });
+        self.lines.push(Line {
+            start,
+            origin,
+            shown: origin + window.start..origin + window.end,
+            lead: lead.len(),
+        });
     }
 
     /// The byte of the page for one of the author's: the nearest that is shown.
     fn place(&self, byte: usize) -> usize {
         let index = self.lines.partition_point(|line| line.origin <= byte).saturating_sub(1);
-        self.lines.get(index).map_or(0, |line| line.start + line.lead + byte.clamp(line.shown.start, line.shown.end) - line.shown.start)
+        self.lines.get(index).map_or(0, |line| {
+            line.start + line.lead + byte.clamp(line.shown.start, line.shown.end) - line.shown.start
+        })
     }
 
     fn line(&self, index: usize) -> Result<&Line, Error> {
-        self.lines.get(index).ok_or(Error::LineTooLarge { given: index, max: self.lines.len().saturating_sub(1) })
+        self.lines
+            .get(index)
+            .ok_or(Error::LineTooLarge { given: index, max: self.lines.len().saturating_sub(1) })
     }
 }
 
@@ -134,7 +151,8 @@ fn window(origin: usize, line: &str, ranges: &[Range<usize>]) -> Range<usize> {
     }
     let bytes = origin..=origin + line.len();
     let ends = ranges.iter().flat_map(|range| [range.start, range.end]);
-    let focus = ends.filter(|byte| bytes.contains(byte)).map(|byte| byte - origin).next().unwrap_or(0);
+    let focus =
+        ends.filter(|byte| bytes.contains(byte)).map(|byte| byte - origin).next().unwrap_or(0);
     let start = line.floor_char_boundary(focus.saturating_sub(BEFORE));
     start..line.floor_char_boundary((start + WINDOW).min(line.len()))
 }
@@ -145,7 +163,9 @@ fn harmless(character: char) -> char {
         '\t' => character,
         '\0'..'\x20' | '\x7f' => '?',
         '\u{80}'..='\u{9f}' => '¿',
-        '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => char::REPLACEMENT_CHARACTER,
+        '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+            char::REPLACEMENT_CHARACTER
+        }
         _ => character,
     }
 }
@@ -175,11 +195,18 @@ impl<'a> Files<'a> for Excerpts<'a> {
         let page = self.page(id)?;
         let line = page.line(index)?;
         let byte = line.shown.start + byte.saturating_sub(line.start + line.lead);
-        Ok(self.sources.get(page.source).text.get(line.origin..byte).map_or(0, |before| before.chars().count()) + 1)
+        Ok(self
+            .sources
+            .get(page.source)
+            .text
+            .get(line.origin..byte)
+            .map_or(0, |before| before.chars().count())
+            + 1)
     }
 
     fn line_range(&self, id: usize, index: usize) -> Result<Range<usize>, Error> {
         let page = self.page(id)?;
-        Ok(page.line(index)?.start..page.lines.get(index + 1).map_or(page.text.len(), |next| next.start))
+        Ok(page.line(index)?.start
+            ..page.lines.get(index + 1).map_or(page.text.len(), |next| next.start))
     }
 }

@@ -4,6 +4,8 @@
 //! line the title, the rest what `lamplight explain` prints.
 
 mod excerpt;
+pub mod guide;
+mod read;
 pub mod render;
 
 use crate::source::Span;
@@ -53,6 +55,9 @@ pub struct Diagnostic {
     pub message: String,
     pub labels: Vec<Label>,
     pub notes: Vec<String>,
+    /// The item that it is about, where that was asked for by name and not in a text: whoever asked
+    /// knows the place.
+    pub item: Option<String>,
 }
 
 /// Several diagnostics, at least one of them an error.
@@ -61,7 +66,14 @@ pub type Diagnostics = Vec<Diagnostic>;
 impl Diagnostic {
     /// An error without a place yet.
     pub fn error(code: &'static Code, message: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, code, message: message.into(), labels: Vec::new(), notes: Vec::new() }
+        Self {
+            severity: Severity::Error,
+            code,
+            message: message.into(),
+            labels: Vec::new(),
+            notes: Vec::new(),
+            item: None,
+        }
     }
 
     /// A warning without a place yet.
@@ -72,6 +84,12 @@ impl Diagnostic {
     /// Adds a labelled place; the first one added is where the diagnostic stands.
     pub fn at(mut self, span: Span, message: impl Into<String>) -> Self {
         self.labels.push(Label { span, message: message.into() });
+        self
+    }
+
+    /// Names the item that the diagnostic is about.
+    pub fn about_item(mut self, name: impl Into<String>) -> Self {
+        self.item = Some(name.into());
         self
     }
 

@@ -38,7 +38,10 @@ pub fn render(sources: &SourceSet, diagnostics: &[Diagnostic], form: Form) -> St
 fn rest(diagnostics: &[Diagnostic]) -> Option<Diagnostic> {
     let hidden = diagnostics.get(SHOWN..).filter(|hidden| !hidden.is_empty())?;
     let severity = hidden.iter().map(|diagnostic| diagnostic.severity).min()?;
-    Some(Diagnostic { severity, ..Diagnostic::error(codes::NOT_SHOWN, format!("{} more are not shown", hidden.len())) })
+    Some(Diagnostic {
+        severity,
+        ..Diagnostic::error(codes::NOT_SHOWN, format!("{} more are not shown", hidden.len()))
+    })
 }
 
 fn human(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
@@ -46,7 +49,12 @@ fn human(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
     let excerpts = Excerpts::new(sources, &spans);
     let mut text = String::new();
     // Writing to a string fails only for spans outside the files; then the short form serves.
-    match term::emit_to_string(&mut text, &term::Config::default(), &excerpts, &to_codespan(diagnostic, &excerpts)) {
+    match term::emit_to_string(
+        &mut text,
+        &term::Config::default(),
+        &excerpts,
+        &to_codespan(diagnostic, &excerpts),
+    ) {
         Ok(()) => text,
         Err(_) => short(sources, diagnostic) + "\n",
     }
@@ -54,8 +62,13 @@ fn human(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
 
 fn to_codespan(diagnostic: &Diagnostic, excerpts: &Excerpts<'_>) -> codespan::Diagnostic<usize> {
     let labels = diagnostic.labels.iter().enumerate().map(|(index, label)| {
-        let style = if index == 0 { codespan::LabelStyle::Primary } else { codespan::LabelStyle::Secondary };
-        codespan::Label::new(style, label.span.source.0 as usize, excerpts.range(label.span)).with_message(tidy(&label.message))
+        let style = if index == 0 {
+            codespan::LabelStyle::Primary
+        } else {
+            codespan::LabelStyle::Secondary
+        };
+        codespan::Label::new(style, label.span.source.0 as usize, excerpts.range(label.span))
+            .with_message(tidy(&label.message))
     });
     codespan::Diagnostic::new(match diagnostic.severity {
         Severity::Error => codespan::Severity::Error,
@@ -72,7 +85,12 @@ fn short(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
         let (line, column) = sources.position(label.span.source, label.span.start as usize);
         format!("{}:{line}:{column}: ", sources.get(label.span.source).path)
     });
-    tidy(&format!("{place}{}[{}]: {}", severity_name(diagnostic.severity), diagnostic.code.name, diagnostic.message.replace('\n', " ")))
+    tidy(&format!(
+        "{place}{}[{}]: {}",
+        severity_name(diagnostic.severity),
+        diagnostic.code.name,
+        diagnostic.message.replace('\n', " ")
+    ))
 }
 
 fn json(sources: &SourceSet, diagnostic: &Diagnostic) -> serde_json::Value {
@@ -81,7 +99,8 @@ fn json(sources: &SourceSet, diagnostic: &Diagnostic) -> serde_json::Value {
         .iter()
         .map(|label| {
             let (line, column) = sources.position(label.span.source, label.span.start as usize);
-            let (end_line, end_column) = sources.position(label.span.source, label.span.end as usize);
+            let (end_line, end_column) =
+                sources.position(label.span.source, label.span.end as usize);
             serde_json::json!({
                 "file": sources.get(label.span.source).path,
                 "line": line, "column": column, "end_line": end_line, "end_column": end_column,

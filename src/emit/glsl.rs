@@ -9,19 +9,40 @@ use super::{Emitted, Source};
 use crate::bundle::{Combined, Kind, Native};
 
 /// Writes GLSL of one version.
-pub fn write(source: &Source<'_>, version: Version, numbering: Numbering) -> Result<Emitted, String> {
+pub fn write(
+    source: &Source<'_>,
+    version: Version,
+    numbering: Numbering,
+) -> Result<Emitted, String> {
     let options = options(source, version, numbering)?;
-    let pipeline = PipelineOptions { shader_stage: source.stage, entry_point: source.entry.to_owned(), multiview: None };
+    let pipeline = PipelineOptions {
+        shader_stage: source.stage,
+        entry_point: source.entry.to_owned(),
+        multiview: None,
+    };
     let mut text = String::new();
-    let mut info = Writer::new(&mut text, source.module, source.info, &options, &pipeline, BoundsCheckPolicies::default())
-        .and_then(|mut writer| writer.write())
-        .map_err(|error| error.to_string())?;
+    let mut info = Writer::new(
+        &mut text,
+        source.module,
+        source.info,
+        &options,
+        &pipeline,
+        BoundsCheckPolicies::default(),
+    )
+    .and_then(|mut writer| writer.write())
+    .map_err(|error| error.to_string())?;
+    // naga forgets the prefix of this one extension's name, without which no driver knows it.
+    text = text.replacen("#extension ARB_", "#extension GL_ARB_", 1);
     name_blocks(source, &mut text, &mut info);
     Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &info, numbering) })
 }
 
 fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Result<Options, String> {
-    let mut options = Options { version, writer_flags: WriterFlags::ADJUST_COORDINATE_SPACE, ..Options::default() };
+    let mut options = Options {
+        version,
+        writer_flags: WriterFlags::ADJUST_COORDINATE_SPACE,
+        ..Options::default()
+    };
     if numbering == Numbering::Explicit {
         for (binding, _, index) in assign(source, numbering) {
             let slot = index.and_then(|index| u8::try_from(index).ok()).ok_or_else(|| {
@@ -40,9 +61,12 @@ fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Resul
 /// else a permutation has.
 fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo) {
     for (handle, name) in &mut info.uniforms {
-        let numbered =
-            name.rsplit_once("_block_").map(|(ty, number)| (ty, number.trim_start_matches(|digit: char| digit.is_ascii_digit())));
-        if let (Some((ty, stage)), Some([group, binding])) = (numbered, place(source.module, *handle)) {
+        let numbered = name.rsplit_once("_block_").map(|(ty, number)| {
+            (ty, number.trim_start_matches(|digit: char| digit.is_ascii_digit()))
+        });
+        if let (Some((ty, stage)), Some([group, binding])) =
+            (numbered, place(source.module, *handle))
+        {
             let own = format!("{ty}_block_{group}_{binding}{stage}");
             *text = text.replacen(&format!(" {name} {{"), &format!(" {own} {{"), 1);
             *name = own;
@@ -60,7 +84,10 @@ fn reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Numbering) 
         .collect();
     native.slots.retain(|slot| !samplers.contains(&[slot.group, slot.binding]));
     native.combined = combined(source, info);
-    let blocks = info.uniforms.iter().filter_map(|(handle, name)| Some((place(source.module, *handle)?, name.clone())));
+    let blocks = info
+        .uniforms
+        .iter()
+        .filter_map(|(handle, name)| Some((place(source.module, *handle)?, name.clone())));
     let textures = native.combined.iter().map(|combined| (combined.texture, combined.name.clone()));
     let names: std::collections::BTreeMap<_, _> = blocks.chain(textures).collect();
     for slot in &mut native.slots {
@@ -75,7 +102,11 @@ fn combined(source: &Source<'_>, info: &ReflectionInfo) -> Vec<Combined> {
         .iter()
         .filter_map(|(name, mapping)| {
             let sampler = mapping.sampler.and_then(|sampler| place(source.module, sampler));
-            Some(Combined { texture: place(source.module, mapping.texture)?, sampler, name: name.clone() })
+            Some(Combined {
+                texture: place(source.module, mapping.texture)?,
+                sampler,
+                name: name.clone(),
+            })
         })
         .collect();
     found.sort();

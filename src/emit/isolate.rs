@@ -12,7 +12,9 @@ use crate::validate::{CAPABILITIES, Validated, guard, on_large_stack};
 /// `unknown-entry-point`, and `naga-internal` where naga panics or rejects its own work.
 pub fn isolate(validated: &Validated, entry: &str) -> Result<Validated, Diagnostics> {
     let index = super::find(validated, entry).map_err(|error| vec![error])?;
-    on_large_stack(|| guard("", || keep(validated, index))).and_then(|result| result).map_err(|error| vec![error])
+    on_large_stack(|| guard("", || keep(validated, index)))
+        .and_then(|result| result)
+        .map_err(|error| vec![error])
 }
 
 fn keep(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
@@ -20,8 +22,13 @@ fn keep(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
     module.entry_points = vec![module.entry_points.swap_remove(index)];
     compact(&mut module, KeepUnused::No);
     // The module is part of a valid one: only the analysis is needed again, not the checks.
-    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES)
-        .validate(&module)
-        .map_err(|error| Diagnostic::error(codes::NAGA_INTERNAL, format!("a compacted module is not valid: {error}")))?;
+    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(&module).map_err(
+        |error| {
+            Diagnostic::error(
+                codes::NAGA_INTERNAL,
+                format!("a compacted module is not valid: {error}"),
+            )
+        },
+    )?;
     Ok(Validated { language: validated.language, module, info })
 }

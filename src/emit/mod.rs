@@ -10,12 +10,15 @@
 //! - `msl`, `hlsl`, `wgsl`: the same conventions are native.
 
 mod glsl;
+mod header;
 mod isolate;
 mod names;
 mod reflect;
 mod slots;
 mod specialise;
+pub mod spirv;
 
+pub use header::is_header_line;
 pub use isolate::isolate;
 pub use names::type_name;
 pub use reflect::reflect;
@@ -24,7 +27,6 @@ pub use specialise::check;
 use naga::ShaderStage;
 
 use crate::bundle::{self, Native, Target};
-use crate::compose::Language;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::validate::{Validated, guard, on_large_stack};
 
@@ -80,7 +82,10 @@ pub struct Emitted {
 pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
     let index = find(validated, entry)?;
     let Some(writer) = targets::find(target) else {
-        return Err(Diagnostic::error(codes::EMIT_FAILED, format!("there is no writer for target `{target}`")));
+        return Err(Diagnostic::error(
+            codes::EMIT_FAILED,
+            format!("there is no writer for target `{target}`"),
+        ));
     };
     on_large_stack(|| guard("", || write(validated, index, writer)))
         .and_then(|result| result)
@@ -88,21 +93,47 @@ pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitte
 }
 
 fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted, Diagnostic> {
-    let failed = |reason: String| Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target));
+    let failed = |reason: String| {
+        Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target))
+    };
     let point = &validated.module.entry_points[index];
     specialise::refuse(&validated.module)?;
     if writer.target == Target::WGSL || validated.module.overrides.is_empty() {
-        let source = Source { module: &validated.module, info: &validated.info, stage: point.stage, entry: &point.name, index };
+        let source = Source {
+            module: &validated.module,
+            info: &validated.info,
+            stage: point.stage,
+            entry: &point.name,
+            index,
+        };
         return (writer.write)(&source).map_err(failed);
     }
-    let source = Source { module: &validated.module, info: &validated.info, stage: point.stage, entry: &point.name, index };
+    let source = Source {
+        module: &validated.module,
+        info: &validated.info,
+        stage: point.stage,
+        entry: &point.name,
+        index,
+    };
     if let Some(written) = specialise::write(&source, writer) {
         return written.map_err(failed);
     }
     let chosen = Some((point.stage, point.name.as_str()));
-    let (module, info) = naga::back::pipeline_constants::process_overrides(&validated.module, &validated.info, chosen, &Default::default())
-        .map_err(|error| failed(error.to_string()))?;
-    (writer.write)(&Source { module: &module, info: &info, stage: point.stage, entry: &point.name, index: 0 }).map_err(failed)
+    let (module, info) = naga::back::pipeline_constants::process_overrides(
+        &validated.module,
+        &validated.info,
+        chosen,
+        &Default::default(),
+    )
+    .map_err(|error| failed(error.to_string()))?;
+    (writer.write)(&Source {
+        module: &module,
+        info: &info,
+        stage: point.stage,
+        entry: &point.name,
+        index: 0,
+    })
+    .map_err(failed)
 }
 
 /// Index of the entry point of that name.
@@ -110,7 +141,11 @@ fn find(validated: &Validated, entry: &str) -> Result<usize, Diagnostic> {
     let points = &validated.module.entry_points;
     points.iter().position(|point| point.name == entry).ok_or_else(|| {
         let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
-        let list = if names.is_empty() { "there are none".to_owned() } else { format!("there are: {}", names.join(", ")) };
+        let list = if names.is_empty() {
+            "there are none".to_owned()
+        } else {
+            format!("there are: {}", names.join(", "))
+        };
         Diagnostic::error(codes::UNKNOWN_ENTRY_POINT, format!("no entry point is named `{entry}`"))
             .suggest(entry, names.iter().copied())
             .note(list)
@@ -124,14 +159,5 @@ fn stage(stage: ShaderStage) -> Option<bundle::Stage> {
         ShaderStage::Fragment => Some(bundle::Stage::Fragment),
         ShaderStage::Compute => Some(bundle::Stage::Compute),
         _ => None,
-    }
-}
-
-impl From<Language> for bundle::Language {
-    fn from(language: Language) -> Self {
-        match language {
-            Language::Wesl => Self::Wesl,
-            Language::Glsl => Self::Glsl,
-        }
     }
 }

@@ -22,10 +22,16 @@ fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagno
     let module = &validated.module;
     let point = &module.entry_points[index];
     let info = validated.info.get_entry_point(index);
-    let stage = super::stage(point.stage)
-        .ok_or_else(|| Diagnostic::error(codes::EMIT_FAILED, format!("`{}` has a stage that no target has", point.name)))?;
+    let stage = super::stage(point.stage).ok_or_else(|| {
+        Diagnostic::error(
+            codes::EMIT_FAILED,
+            format!("`{}` has a stage that no target has", point.name),
+        )
+    })?;
     let mut layouter = Layouter::default();
-    layouter.update(module.to_ctx()).map_err(|error| Diagnostic::error(codes::NAGA_INTERNAL, error.to_string()))?;
+    layouter
+        .update(module.to_ctx())
+        .map_err(|error| Diagnostic::error(codes::NAGA_INTERNAL, error.to_string()))?;
     Ok(Reflection {
         stage,
         workgroup_size: (point.stage == naga::ShaderStage::Compute).then_some(point.workgroup_size),
@@ -33,38 +39,68 @@ fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagno
         outputs: outputs(module, &point.function),
         bindings: bindings(module, info, &layouter),
         pairs: pairs(module, info),
-        overrides: module.overrides.iter().map(|(_, constant)| override_of(module, constant)).collect(),
+        overrides: module
+            .overrides
+            .iter()
+            .map(|(_, constant)| override_of(module, constant))
+            .collect(),
     })
 }
 
-fn inputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
+/// What enters an entry point, by location.
+pub fn inputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
     let arguments = function.arguments.iter();
-    sorted(arguments.flat_map(|argument| varyings(module, argument.name.as_deref(), argument.ty, argument.binding.as_ref())).collect())
+    sorted(
+        arguments
+            .flat_map(|argument| {
+                varyings(module, argument.name.as_deref(), argument.ty, argument.binding.as_ref())
+            })
+            .collect(),
+    )
 }
 
 fn outputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
     let result = function.result.iter();
-    sorted(result.flat_map(|result| varyings(module, None, result.ty, result.binding.as_ref())).collect())
+    sorted(
+        result
+            .flat_map(|result| varyings(module, None, result.ty, result.binding.as_ref()))
+            .collect(),
+    )
 }
 
 /// Locations first, by number; then built-ins, by name.
 fn sorted(mut varyings: Vec<Varying>) -> Vec<Varying> {
-    varyings.sort_by_key(|varying| (varying.location.is_none(), varying.location, varying.builtin.clone()));
+    varyings.sort_by_key(|varying| {
+        (varying.location.is_none(), varying.location, varying.builtin.clone())
+    });
     varyings
 }
 
 /// A bound value, or the bound members of a struct.
-fn varyings(module: &Module, name: Option<&str>, ty: Handle<Type>, binding: Option<&naga::Binding>) -> Vec<Varying> {
+fn varyings(
+    module: &Module,
+    name: Option<&str>,
+    ty: Handle<Type>,
+    binding: Option<&naga::Binding>,
+) -> Vec<Varying> {
     match (binding, &module.types[ty].inner) {
         (Some(binding), _) => vec![varying(module, name, ty, binding)],
-        (None, TypeInner::Struct { members, .. }) => {
-            members.iter().flat_map(|member| varyings(module, member.name.as_deref(), member.ty, member.binding.as_ref())).collect()
-        }
+        (None, TypeInner::Struct { members, .. }) => members
+            .iter()
+            .flat_map(|member| {
+                varyings(module, member.name.as_deref(), member.ty, member.binding.as_ref())
+            })
+            .collect(),
         _ => Vec::new(),
     }
 }
 
-fn varying(module: &Module, name: Option<&str>, ty: Handle<Type>, binding: &naga::Binding) -> Varying {
+fn varying(
+    module: &Module,
+    name: Option<&str>,
+    ty: Handle<Type>,
+    binding: &naga::Binding,
+) -> Varying {
     let blank = Varying {
         name: name.map(str::to_owned),
         location: None,
@@ -74,7 +110,9 @@ fn varying(module: &Module, name: Option<&str>, ty: Handle<Type>, binding: &naga
         sampling: None,
     };
     match *binding {
-        naga::Binding::BuiltIn(builtin) => Varying { builtin: Some(builtin_name(builtin)), ..blank },
+        naga::Binding::BuiltIn(builtin) => {
+            Varying { builtin: Some(builtin_name(builtin)), ..blank }
+        }
         naga::Binding::Location { location, interpolation, sampling, .. } => Varying {
             location: Some(location),
             interpolation: interpolation.map(interpolation_name),
@@ -85,8 +123,9 @@ fn varying(module: &Module, name: Option<&str>, ty: Handle<Type>, binding: &naga
 }
 
 fn bindings(module: &Module, info: &FunctionInfo, layouter: &Layouter) -> Vec<Binding> {
-    let mut found: Vec<Binding> =
-        used(module, info).filter_map(|(handle, variable)| binding(module, info[handle], variable, layouter)).collect();
+    let mut found: Vec<Binding> = used(module, info)
+        .filter_map(|(handle, variable)| binding(module, info[handle], variable, layouter))
+        .collect();
     found.sort_by_key(|binding| (binding.group, binding.binding));
     found
 }
@@ -99,7 +138,12 @@ pub(super) fn used<'a>(
     module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty())
 }
 
-fn binding(module: &Module, usage: GlobalUse, variable: &GlobalVariable, layouter: &Layouter) -> Option<Binding> {
+fn binding(
+    module: &Module,
+    usage: GlobalUse,
+    variable: &GlobalVariable,
+    layouter: &Layouter,
+) -> Option<Binding> {
     let place = variable.binding?;
     let kind = kind(module, variable)?;
     let ty = &module.types[variable.ty];
@@ -123,7 +167,9 @@ pub(super) fn kind(module: &Module, variable: &GlobalVariable) -> Option<Kind> {
         (AddressSpace::Storage { .. }, _) => Some(Kind::Storage),
         (_, TypeInner::Sampler { comparison: true }) => Some(Kind::ComparisonSampler),
         (_, TypeInner::Sampler { comparison: false }) => Some(Kind::Sampler),
-        (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => Some(Kind::StorageTexture),
+        (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => {
+            Some(Kind::StorageTexture)
+        }
         (_, TypeInner::Image { .. }) => Some(Kind::Texture),
         _ => None,
     }
@@ -132,7 +178,9 @@ pub(super) fn kind(module: &Module, variable: &GlobalVariable) -> Option<Kind> {
 /// Members of a struct, or of the elements of an array of structs.
 fn members(module: &Module, ty: Handle<Type>, layouter: &Layouter) -> Vec<Member> {
     match &module.types[ty].inner {
-        TypeInner::Struct { members, .. } => members.iter().map(|member| self::member(module, member, layouter)).collect(),
+        TypeInner::Struct { members, .. } => {
+            members.iter().map(|member| self::member(module, member, layouter)).collect()
+        }
         TypeInner::Array { base, .. } => self::members(module, *base, layouter),
         _ => Vec::new(),
     }
@@ -160,8 +208,11 @@ pub(super) fn place(module: &Module, handle: Handle<GlobalVariable>) -> Option<P
 
 fn pairs(module: &Module, info: &FunctionInfo) -> Vec<Pair> {
     let keys = info.sampling_set.iter();
-    let mut pairs: Vec<Pair> =
-        keys.filter_map(|key| Some(Pair { texture: place(module, key.image)?, sampler: place(module, key.sampler)? })).collect();
+    let mut pairs: Vec<Pair> = keys
+        .filter_map(|key| {
+            Some(Pair { texture: place(module, key.image)?, sampler: place(module, key.sampler)? })
+        })
+        .collect();
     pairs.sort();
     pairs
 }

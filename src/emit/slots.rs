@@ -23,13 +23,20 @@ pub enum Numbering {
 pub const EXPLICIT_LIMIT: u32 = 16;
 
 /// Every used binding, sorted, with its kind and its number in the target.
-pub fn assign(source: &Source<'_>, numbering: Numbering) -> Vec<(ResourceBinding, Kind, Option<u32>)> {
+pub fn assign(
+    source: &Source<'_>,
+    numbering: Numbering,
+) -> Vec<(ResourceBinding, Kind, Option<u32>)> {
     let globals = used(source.module, source.info.get_entry_point(source.index));
-    let mut found: Vec<(ResourceBinding, Kind)> =
-        globals.filter_map(|(_, variable)| Some((variable.binding?, kind(source.module, variable)?))).collect();
+    let mut found: Vec<(ResourceBinding, Kind)> = globals
+        .filter_map(|(_, variable)| Some((variable.binding?, kind(source.module, variable)?)))
+        .collect();
     found.sort();
     let mut next = [0; 3];
-    found.into_iter().map(|(binding, kind)| (binding, kind, number(numbering, binding, &mut next[table(kind)]))).collect()
+    found
+        .into_iter()
+        .map(|(binding, kind)| (binding, kind, number(numbering, binding, &mut next[table(kind)])))
+        .collect()
 }
 
 /// The reflection of a target without combined samplers.
@@ -44,15 +51,14 @@ pub fn native(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native 
             name: None,
         })
         .collect();
-    Native { entry_name: entry.to_owned(), slots, combined: Vec::new(), choices: Vec::new() }
+    Native { entry_name: entry.to_owned(), slots, ..Native::default() }
 }
 
 fn number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -> Option<u32> {
     match numbering {
         Numbering::Author => Some(binding.binding),
-        Numbering::Explicit => {
-            (binding.group < EXPLICIT_LIMIT && binding.binding < EXPLICIT_LIMIT).then(|| EXPLICIT_LIMIT * binding.group + binding.binding)
-        }
+        Numbering::Explicit => (binding.group < EXPLICIT_LIMIT && binding.binding < EXPLICIT_LIMIT)
+            .then(|| EXPLICIT_LIMIT * binding.group + binding.binding),
         Numbering::PerKind => {
             *next += 1;
             Some(*next - 1)

@@ -423,9 +423,20 @@ pub enum Level {
 /// What is asked of a texture.
 #[derive(Debug, Clone, Copy)]
 pub enum Ask {
-    Sample { sampler: Slot, gather: Option<u8>, level: Level, offset: Option<Slot>, reference: Option<Slot>, clamp_to_edge: bool },
-    Load { level: Option<Slot> },
-    Size { level: Option<Slot> },
+    Sample {
+        sampler: Slot,
+        gather: Option<u8>,
+        level: Level,
+        offset: Option<Slot>,
+        reference: Option<Slot>,
+        clamp_to_edge: bool,
+    },
+    Load {
+        level: Option<Slot>,
+    },
+    Size {
+        level: Option<Slot>,
+    },
     Levels,
     Layers,
     Samples,

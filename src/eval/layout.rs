@@ -51,7 +51,11 @@ impl<'m> Layout<'m> {
 
     /// Slots of a type of the module.
     pub fn size(&self, ty: Handle<Type>) -> Result<u32, Error> {
-        self.sizes.get(ty.index()).copied().flatten().ok_or_else(|| self.unsupported(&self.types[ty].inner))
+        self.sizes
+            .get(ty.index())
+            .copied()
+            .flatten()
+            .ok_or_else(|| self.unsupported(&self.types[ty].inner))
     }
 
     /// Slots of a value of this type.
@@ -72,14 +76,21 @@ impl<'m> Layout<'m> {
                 let times = slots as usize / element.len().max(1);
                 to.extend(element.iter().copied().cycle().take(element.len() * times));
             }
-            TypeInner::Struct { ref members, .. } => members.iter().try_for_each(|member| self.kinds(member.ty, to))?,
+            TypeInner::Struct { ref members, .. } => {
+                members.iter().try_for_each(|member| self.kinds(member.ty, to))?
+            }
             ref inner => to.extend(std::iter::repeat_n(leaf(inner), slots as usize)),
         }
         Ok(())
     }
 
     /// What each slot of an entry point's argument or result is bound to.
-    pub fn bindings(&self, ty: Handle<Type>, own: &Option<Binding>, to: &mut Vec<Option<Binding>>) -> Result<(), Error> {
+    pub fn bindings(
+        &self,
+        ty: Handle<Type>,
+        own: &Option<Binding>,
+        to: &mut Vec<Option<Binding>>,
+    ) -> Result<(), Error> {
         match (own, &self.types[ty].inner) {
             (None, TypeInner::Struct { members, .. }) => {
                 members.iter().try_for_each(|member| self.bindings(member.ty, &member.binding, to))
@@ -94,7 +105,9 @@ impl<'m> Layout<'m> {
     /// First slot of a component and its slots: member, element, column or scalar.
     pub fn component(&self, inner: &TypeInner, index: u32) -> Result<u32, Error> {
         match *inner {
-            TypeInner::Struct { ref members, .. } => members.iter().take(index as usize).map(|member| self.size(member.ty)).sum(),
+            TypeInner::Struct { ref members, .. } => {
+                members.iter().take(index as usize).map(|member| self.size(member.ty)).sum()
+            }
             _ => Ok(index.saturating_mul(self.element(inner)?.0)),
         }
     }
@@ -105,7 +118,9 @@ impl<'m> Layout<'m> {
             TypeInner::Vector { size, .. } => Ok((1, Some(size as u32))),
             TypeInner::ValuePointer { size: Some(size), .. } => Ok((1, Some(size as u32))),
             TypeInner::Matrix { columns, rows, .. } => Ok((rows as u32, Some(columns as u32))),
-            TypeInner::Array { base, size: ArraySize::Constant(count), .. } => Ok((self.size(base)?, Some(count.get()))),
+            TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
+                Ok((self.size(base)?, Some(count.get())))
+            }
             TypeInner::Array { base, size: ArraySize::Dynamic, .. } => Ok((self.size(base)?, None)),
             TypeInner::Pointer { base, .. } => self.element(&self.types[base].inner),
             _ => Err(self.unsupported(inner)),
@@ -117,16 +132,22 @@ impl<'m> Layout<'m> {
         match *inner {
             TypeInner::Scalar(scalar) => kind(scalar).map(|_| 1),
             TypeInner::Vector { size, scalar } => kind(scalar).map(|_| size as u32),
-            TypeInner::Matrix { columns, rows, scalar } => kind(scalar).map(|_| columns as u32 * rows as u32),
+            TypeInner::Matrix { columns, rows, scalar } => {
+                kind(scalar).map(|_| columns as u32 * rows as u32)
+            }
             TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
                 limit(u64::from(self.size(base).ok()?) * u64::from(count.get()))
             }
             TypeInner::Array { base, size: ArraySize::Dynamic, .. } => self.size(base).ok(),
             TypeInner::Struct { ref members, .. } => {
-                let sizes: Option<Vec<u64>> = members.iter().map(|member| self.size(member.ty).ok().map(u64::from)).collect();
+                let sizes: Option<Vec<u64>> =
+                    members.iter().map(|member| self.size(member.ty).ok().map(u64::from)).collect();
                 limit(sizes?.iter().sum())
             }
-            TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } | TypeInner::Image { .. } | TypeInner::Sampler { .. } => Some(1),
+            TypeInner::Pointer { .. }
+            | TypeInner::ValuePointer { .. }
+            | TypeInner::Image { .. }
+            | TypeInner::Sampler { .. } => Some(1),
             _ => None,
         }
     }
@@ -138,11 +159,19 @@ impl<'m> Layout<'m> {
 
 /// A buffer's bytes as slots: calls `write` with the kind and the four bytes of each scalar.
 /// Bytes that are not there read as zero.
-pub fn decode(types: &UniqueArena<Type>, ty: Handle<Type>, bytes: &[u8], write: &mut dyn FnMut(Kind, u32)) {
+pub fn decode(
+    types: &UniqueArena<Type>,
+    ty: Handle<Type>,
+    bytes: &[u8],
+    write: &mut dyn FnMut(Kind, u32),
+) {
     let mut scalars = |scalar: Scalar, count: u32, from: usize| {
         for index in 0..count as usize {
             let at = from.saturating_add(4 * index);
-            let word = bytes.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()).map_or(0, u32::from_le_bytes);
+            let word = bytes
+                .get(at..at + 4)
+                .and_then(|bytes| bytes.try_into().ok())
+                .map_or(0, u32::from_le_bytes);
             write(kind(scalar).unwrap_or(Kind::Uint), word);
         }
     };
@@ -154,11 +183,19 @@ pub fn decode(types: &UniqueArena<Type>, ty: Handle<Type>, bytes: &[u8], write: 
             (0..columns as usize).for_each(|column| scalars(scalar, rows as u32, column * stride));
         }
         TypeInner::Array { base, size, stride } => {
-            let count = if let ArraySize::Constant(count) = size { count.get() as usize } else { bytes.len() / stride.max(1) as usize };
-            (0..count).for_each(|index| decode(types, base, rest(bytes, index.saturating_mul(stride as usize)), write));
+            let count = if let ArraySize::Constant(count) = size {
+                count.get() as usize
+            } else {
+                bytes.len() / stride.max(1) as usize
+            };
+            (0..count).for_each(|index| {
+                decode(types, base, rest(bytes, index.saturating_mul(stride as usize)), write)
+            });
         }
         TypeInner::Struct { ref members, .. } => {
-            members.iter().for_each(|member| decode(types, member.ty, rest(bytes, member.offset as usize), write));
+            members.iter().for_each(|member| {
+                decode(types, member.ty, rest(bytes, member.offset as usize), write)
+            });
         }
         _ => {}
     }

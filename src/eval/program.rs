@@ -139,17 +139,26 @@ impl Program {
 
     /// The function or entry point of that name.
     pub fn function(&self, name: &str) -> Option<FunctionId> {
-        self.functions.iter().position(|function| function.name == name).map(|index| FunctionId(index as u32))
+        self.functions
+            .iter()
+            .position(|function| function.name == name)
+            .map(|index| FunctionId(index as u32))
     }
 
     /// The word that stands for a texture or sampler where a function takes one as argument.
     pub fn handle(&self, group: u32, binding: u32) -> Option<u32> {
-        self.globals.iter().position(|global| global.binding == Some((group, binding))).map(|index| index as u32)
+        self.globals
+            .iter()
+            .position(|global| global.binding == Some((group, binding)))
+            .map(|index| index as u32)
     }
 
     /// Every function and entry point.
     pub fn functions(&self) -> impl Iterator<Item = (FunctionId, &Function)> {
-        self.functions.iter().enumerate().map(|(index, function)| (FunctionId(index as u32), function))
+        self.functions
+            .iter()
+            .enumerate()
+            .map(|(index, function)| (FunctionId(index as u32), function))
     }
 
     /// What the caller must know of a function.

@@ -80,7 +80,9 @@ impl Texture {
     pub(super) fn is_complete(&self) -> bool {
         let filled = |level: &Level| {
             let size = u64::from(level.width) * u64::from(level.height) * u64::from(level.layers);
-            size > 0 && size == level.texels.len() as u64 && (self.shape != Shape::Cube || level.layers.is_multiple_of(6))
+            size > 0
+                && size == level.texels.len() as u64
+                && (self.shape != Shape::Cube || level.layers.is_multiple_of(6))
         };
         !self.levels.is_empty() && self.levels.iter().all(filled)
     }

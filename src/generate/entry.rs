@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::compose::{self, Keep, Language, Options};
+use crate::bundle::Language;
+use crate::compose::{self, Keep, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::manifest::File;
 use crate::permute::{Assignment, Program};
@@ -37,16 +38,21 @@ pub fn entries(
     let Some(point) = point else { return Ok(Vec::new()) };
     let mut entries = Vec::new();
     for (file, language) in roots(program) {
-        let graph = resolve::load(sources, packages, &file.path, language).map_err(|errors| named_by(errors, file))?;
+        let graph = resolve::load(sources, packages, &file.path, language)
+            .map_err(|errors| named_by(errors, file))?;
         let graph = Arc::new(graph);
         let here = |errors| of_permutation(graph.traced(errors), program, point);
         // Errors of the composer bring their chain of imports along.
-        let composed = compose::compose(&graph, &program.space.settings(point), &Options::default())
-            .map_err(|errors| of_permutation(errors, program, point))?;
-        let points = validate(&composed).map_err(here)?.module.entry_points;
+        let composed =
+            compose::compose(&graph, &program.space.settings(point), &Options::default())
+                .map_err(|errors| of_permutation(errors, program, point))?;
+        // As it is compiled; the text as its author wrote it tells what is wrong.
+        let validated = validate(&compose::lean(&composed)).or_else(|_| validate(&composed));
+        let points = validated.map_err(here)?.module.entry_points;
         if points.is_empty() {
             let message = format!("`{}` has no entry point", file.path);
-            let error = Diagnostic::error(codes::NO_ENTRY_POINT, message).at(file.span, "named here");
+            let error =
+                Diagnostic::error(codes::NO_ENTRY_POINT, message).at(file.span, "named here");
             return Err(of_permutation(vec![error], program, point));
         }
         for found in points {
@@ -57,7 +63,15 @@ pub fn entries(
             let options = Options { keep, ..Options::default() };
             let label = label(&entries, language, &found);
             let (program, graph) = (program.name.clone(), graph.clone());
-            entries.push(Entry { program, language, name: found.name, label, stage: found.stage, graph, options });
+            entries.push(Entry {
+                program,
+                language,
+                name: found.name,
+                label,
+                stage: found.stage,
+                graph,
+                options,
+            });
         }
     }
     Ok(entries)
@@ -76,12 +90,15 @@ impl Entry {
 
 /// A root that cannot be found is a mistake of the manifest.
 fn named_by(errors: Diagnostics, file: &File) -> Diagnostics {
-    let one = |error: Diagnostic| if error.labels.is_empty() { error.at(file.span, "named here") } else { error };
+    let one = |error: Diagnostic| {
+        if error.labels.is_empty() { error.at(file.span, "named here") } else { error }
+    };
     errors.into_iter().map(one).collect()
 }
 
 fn of_permutation(errors: Diagnostics, program: &Program, point: &Assignment) -> Diagnostics {
-    let note = format!("in permutation `{}` of program `{}`", program.space.key(point), program.name);
+    let note =
+        format!("in permutation `{}` of program `{}`", program.space.key(point), program.name);
     errors.into_iter().map(|error| error.note(note.as_str())).collect()
 }
 

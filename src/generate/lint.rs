@@ -28,7 +28,13 @@ pub struct Lints {
 
 impl Lints {
     /// Looks at a program with all its permutations.
-    pub fn see(&mut self, sources: &SourceSet, program: &Program, entries: &[Entry], points: &[Assignment]) {
+    pub fn see(
+        &mut self,
+        sources: &SourceSet,
+        program: &Program,
+        entries: &[Entry],
+        points: &[Assignment],
+    ) {
         let mut seen: Vec<*const Graph> = Vec::new();
         for entry in entries {
             if seen.contains(&Arc::as_ptr(&entry.graph)) {
@@ -44,7 +50,13 @@ impl Lints {
         }
     }
 
-    fn conditions(&mut self, sources: &SourceSet, program: &Program, mut outcomes: Outcomes<'_>, points: &[Assignment]) {
+    fn conditions(
+        &mut self,
+        sources: &SourceSet,
+        program: &Program,
+        mut outcomes: Outcomes<'_>,
+        points: &[Assignment],
+    ) {
         for point in points {
             if outcomes.is_settled() {
                 break;
@@ -58,12 +70,22 @@ impl Lints {
     }
 
     /// Looks at what the compositions of a program asked for, and what the answers decided.
-    pub fn see_woven(&mut self, sources: &SourceSet, program: &Program, entries: &[Entry], woven: &[Woven]) {
+    pub fn see_woven(
+        &mut self,
+        sources: &SourceSet,
+        program: &Program,
+        entries: &[Entry],
+        woven: &[Woven],
+    ) {
         for (entry, woven) in entries.iter().zip(woven) {
             for span in woven.decided.places() {
                 *self.conditions.entry(place(sources, span)).or_default() += 1;
             }
-            entry.graph.own(woven.decided.warnings()).into_iter().for_each(|warning| self.constant(sources, warning));
+            entry
+                .graph
+                .own(woven.decided.warnings())
+                .into_iter()
+                .for_each(|warning| self.constant(sources, warning));
         }
         self.see_reads(program, woven);
     }
@@ -77,17 +99,27 @@ impl Lints {
 
     fn see_reads(&mut self, program: &Program, woven: &[Woven]) {
         let asked = |name: &String| woven.iter().any(|woven| woven.reads.contains(name));
-        let unread = program.space.axes().iter().filter(|axis| axis.mode != Mode::Dynamic && !asked(&axis.name));
+        let unread = program
+            .space
+            .axes()
+            .iter()
+            .filter(|axis| axis.mode != Mode::Dynamic && !asked(&axis.name));
         self.found.extend(unread.map(|axis| {
-            let message = format!("no entry point of program `{}` asks for the axis `{}`", program.name, axis.name);
-            Diagnostic::warning(codes::UNREAD_AXIS, message).at(axis.span, "multiplies permutations and changes none")
+            let message = format!(
+                "no entry point of program `{}` asks for the axis `{}`",
+                program.name, axis.name
+            );
+            Diagnostic::warning(codes::UNREAD_AXIS, message)
+                .at(axis.span, "multiplies permutations and changes none")
         }));
     }
 
     /// Everything found: a condition only if it decides nothing wherever it is.
     pub fn finish(self) -> Diagnostics {
         let Self { conditions, constant, mut found } = self;
-        let everywhere = constant.into_iter().filter(|((place, _), (count, _))| conditions.get(place) == Some(count));
+        let everywhere = constant
+            .into_iter()
+            .filter(|((place, _), (count, _))| conditions.get(place) == Some(count));
         found.extend(everywhere.map(|(_, (_, warning))| warning));
         found
     }
@@ -123,7 +155,8 @@ impl Decided {
     }
 
     fn warnings(&self) -> Diagnostics {
-        let constant = self.outcomes.iter().filter(|(_, ways)| !(ways.held && (ways.failed || ways.later)));
+        let constant =
+            self.outcomes.iter().filter(|(_, ways)| !(ways.held && (ways.failed || ways.later)));
         constant.map(|(span, ways)| lint::constant(*span, ways.held)).collect()
     }
 }
@@ -131,9 +164,15 @@ impl Decided {
 /// Warnings without those that another program gave already, in the order of their places.
 pub fn distinct(sources: &SourceSet, warnings: Diagnostics) -> Diagnostics {
     let mut known = BTreeSet::new();
-    let key =
-        |warning: &Diagnostic| (warning.labels.first().map(|label| place(sources, label.span)), warning.code.name, warning.message.clone());
-    let mut kept: Diagnostics = warnings.into_iter().filter(|warning| known.insert(key(warning))).collect();
+    let key = |warning: &Diagnostic| {
+        (
+            warning.labels.first().map(|label| place(sources, label.span)),
+            warning.code.name,
+            warning.message.clone(),
+        )
+    };
+    let mut kept: Diagnostics =
+        warnings.into_iter().filter(|warning| known.insert(key(warning))).collect();
     kept.sort_by_cached_key(key);
     kept
 }

@@ -9,16 +9,17 @@
 
 mod compile;
 mod entry;
-pub mod lean;
 mod lint;
 mod shard;
 mod sink;
 mod summary;
+mod trace;
 mod weave;
 
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
-pub use summary::{EntrySummary, ProgramSummary, Summary};
+pub use summary::{EntrySummary, ProgramSummary, Summary, WholeSummary};
+pub use trace::{Recorder, Run, Told, Trace};
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -31,7 +32,6 @@ use crate::permute::{Assignment, Manifest, Program, Quoted, key};
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 use crate::validate::on_large_stack;
-pub use compile::Made;
 use compile::{Compiled, Compiler};
 use entry::Entry;
 use lint::Lints;
@@ -95,26 +95,41 @@ pub fn generate(
     tools: &Tools<'_>,
 ) -> Result<Generated, Diagnostics> {
     let start = Instant::now();
-    let mut generated = Generated { contents: Contents::default(), summary: Summary::default(), warnings: Vec::new() };
+    let mut generated = Generated {
+        contents: Contents::default(),
+        summary: Summary::default(),
+        warnings: Vec::new(),
+    };
     let mut outputs = Outputs::default();
     let mut lints = Lints::default();
     for program in chosen(manifest, request)? {
         let points = points(program, request)?;
         let entries = entry::entries(sources, packages, program, points.first())?;
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
-        let mut targets = if request.targets.is_empty() { program.targets.clone() } else { request.targets.clone() };
+        let mut targets = if request.targets.is_empty() {
+            program.targets.clone()
+        } else {
+            request.targets.clone()
+        };
         targets.sort();
         targets.dedup();
-        let compiler = Compiler { targets: &targets, sink: tools.sink, cache: tools.cache, linker: Linker::new(&targets) };
+        let compiler = Compiler {
+            targets: &targets,
+            sink: tools.sink,
+            cache: tools.cache,
+            linker: Linker::new(&targets),
+        };
         let make = |batch: &[(&Text, &Entry)]| compiler.make(batch);
-        let woven = on_large_stack(|| weave::weave(&entries, &program.space, points, &make, tools.progress))?;
+        let woven = on_large_stack(|| {
+            weave::weave(&entries, &program.space, points, &make, tools.progress)
+        })?;
         // One permutation says nothing about the others, and a part of them not enough.
         if request.only.is_none() && request.shard.is_none() {
             lints.see(sources, program, &entries, points);
             lints.see_woven(sources, program, &entries, &woven);
         }
         outputs.add(&targets, &woven);
-        generated.summary.linked += compiler.linker.linked();
+        generated.summary.add_reasons(&program.name, &woven);
         generated.summary.programs.push(summary::program(&program.name, points.len(), &woven));
         generated.warnings.extend(woven.iter().flat_map(|woven| woven.warnings.iter().cloned()));
         generated.contents.programs.insert(program.name.clone(), contents(program, points, &woven));
@@ -139,7 +154,13 @@ pub fn in_memory(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Generated, Diagnostics> {
     let sink = Memory::default();
-    let mut generated = generate(sources, packages, manifest, request, &Tools { sink: &sink, cache: None, progress })?;
+    let mut generated = generate(
+        sources,
+        packages,
+        manifest,
+        request,
+        &Tools { sink: &sink, cache: None, progress },
+    )?;
     sink.fill(&mut generated.contents);
     Ok(generated)
 }
@@ -157,9 +178,16 @@ pub fn survey(
 ) -> Result<ProgramSummary, Diagnostics> {
     let points = points(program, &Request::default())?;
     let entries = entry::entries(sources, packages, program, points.first())?;
-    let one = || Ok(Compiled { digest: Digest { unit: [0; 16], blobs: Box::default() }, warnings: Vec::new() });
+    let one = || {
+        Ok(Compiled {
+            digest: Digest { unit: [0; 16], blobs: Box::default() },
+            warnings: Vec::new(),
+            whole: Vec::new(),
+        })
+    };
     let nothing = |batch: &[(&Text, &Entry)]| batch.iter().map(|_| one()).collect();
-    let woven = on_large_stack(|| weave::weave(&entries, &program.space, &points, &nothing, progress))?;
+    let woven =
+        on_large_stack(|| weave::weave(&entries, &program.space, &points, &nothing, progress))?;
     Ok(summary::program(&program.name, points.len(), &woven))
 }
 
@@ -173,9 +201,10 @@ fn contents(program: &Program, points: &[Assignment], woven: &[weave::Woven]) ->
     let mut contents = ProgramContents { axes: axes.collect(), languages: BTreeMap::new() };
     for woven in woven {
         let unit_of = woven.text_of.iter().map(|text| woven.made[*text as usize].unit);
-        let keys = points.iter().map(|point| program.space.key(point).to_string()).zip(unit_of).collect();
+        let keys =
+            points.iter().map(|point| program.space.key(point).to_string()).zip(unit_of).collect();
         let entry = EntryContents { units: BTreeMap::new(), keys };
-        contents.languages.entry(woven.language.into()).or_default().insert(woven.label.clone(), entry);
+        contents.languages.entry(woven.language).or_default().insert(woven.label.clone(), entry);
     }
     contents
 }
@@ -184,7 +213,13 @@ fn chosen<'a>(manifest: &'a Manifest, request: &Request) -> Result<Vec<&'a Progr
     let Some(name) = &request.program else { return Ok(manifest.programs.iter().collect()) };
     let known = manifest.programs.iter().map(|program| program.name.as_str());
     manifest.program(name).map(|program| vec![program]).ok_or_else(|| {
-        vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, format!("the manifest declares no program `{name}`")).suggest(name, known)]
+        vec![
+            Diagnostic::error(
+                codes::UNKNOWN_PROGRAM,
+                format!("the manifest declares no program `{name}`"),
+            )
+            .suggest(name, known),
+        ]
     })
 }
 
@@ -202,7 +237,10 @@ fn asked(program: &Program, text: &Quoted) -> Result<Assignment, Diagnostics> {
         .space
         .broken(&point)
         .map(|constraint| {
-            let error = Diagnostic::error(codes::INVALID_KEY, format!("no permutation `{}` of program `{}`", text.text, program.name));
+            let error = Diagnostic::error(
+                codes::INVALID_PERMUTATION,
+                format!("no permutation `{}` of program `{}`", text.text, program.name),
+            );
             error.at(text.span, "asked for here").at(constraint.span, "breaks this constraint")
         })
         .collect();

@@ -18,7 +18,8 @@ impl Shard {
 
     /// The part of all `items`. Every item is in exactly one part.
     pub fn of<T>(self, items: &[T]) -> &[T] {
-        let bound = |index: usize| (items.len() as u128 * index as u128 / self.count as u128) as usize;
+        let bound =
+            |index: usize| (items.len() as u128 * index as u128 / self.count as u128) as usize;
         &items[bound(self.index - 1)..bound(self.index)]
     }
 }
@@ -27,7 +28,11 @@ impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
-        parts.and_then(|(index, count)| Self::new(index, count)).ok_or_else(|| "write `k/n` with 1 <= k <= n, as in `2/8`".to_owned())
+        let parts = text
+            .split_once('/')
+            .and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+        parts
+            .and_then(|(index, count)| Self::new(index, count))
+            .ok_or_else(|| "write `k/n` with 1 <= k <= n, as in `2/8`".to_owned())
     }
 }

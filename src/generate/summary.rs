@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::weave::Woven;
 use crate::bundle::{Hash, Language, Target};
+use crate::link::Reason;
 
 /// How much there was to do, how much was done, and what came out.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -15,9 +16,9 @@ pub struct Summary {
     pub targets: Vec<TargetSummary>,
     /// Texts whose results came from the cache; all others were compiled.
     pub cached: usize,
-    /// Texts put together from functions of others; naga did not see them.
+    /// What was compiled as a whole, and not from functions that are translated once.
     #[serde(default)]
-    pub linked: usize,
+    pub whole: Vec<WholeSummary>,
     /// Whether nothing was done, since neither the inputs nor the bundle changed since they were made.
     pub up_to_date: bool,
     pub seconds: f64,
@@ -44,6 +45,19 @@ pub struct EntrySummary {
     pub axes: Vec<String>,
 }
 
+/// Texts of one entry point that a target compiled as a whole for one reason.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct WholeSummary {
+    pub program: String,
+    pub entry: String,
+    pub language: Language,
+    pub target: String,
+    pub reason: Reason,
+    pub texts: usize,
+    /// The key of the first permutation with such a text.
+    pub example: String,
+}
+
 /// One target, over all programs.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct TargetSummary {
@@ -57,7 +71,7 @@ pub struct TargetSummary {
 pub(super) fn program(name: &str, permutations: usize, woven: &[Woven]) -> ProgramSummary {
     let entries = woven.iter().map(|woven| EntrySummary {
         entry: woven.label.clone(),
-        language: woven.language.into(),
+        language: woven.language,
         compositions: woven.compositions,
         unique: woven.made.len(),
         axes: woven.reads.iter().cloned().collect(),
@@ -89,6 +103,23 @@ impl Outputs {
 }
 
 impl Summary {
+    /// Adds what a program's entry points compiled as a whole.
+    pub(super) fn add_reasons(&mut self, program: &str, woven: &[Woven]) {
+        for woven in woven {
+            let whole =
+                woven.whole.iter().map(|((reason, target), (texts, example))| WholeSummary {
+                    program: program.to_owned(),
+                    entry: woven.label.clone(),
+                    language: woven.language,
+                    target: target.name().to_owned(),
+                    reason: *reason,
+                    texts: *texts,
+                    example: example.clone(),
+                });
+            self.whole.extend(whole);
+        }
+    }
+
     /// Permutations of all programs.
     pub fn permutations(&self) -> usize {
         self.programs.iter().map(|program| program.permutations).sum()
@@ -106,17 +137,47 @@ impl fmt::Display for Summary {
             writeln!(f, "{}: {} permutations", program.name, program.permutations)?;
             for entry in &program.entries {
                 let language = format!("{:?}", entry.language).to_lowercase();
-                writeln!(f, "  {:12} {language}  {:6} unique, {} axes seen", entry.entry, entry.unique, entry.axes.len())?;
+                writeln!(
+                    f,
+                    "  {:12} {language}  {:6} unique, {} axes seen",
+                    entry.entry,
+                    entry.unique,
+                    entry.axes.len()
+                )?;
             }
         }
         for target in &self.targets {
-            writeln!(f, "{:8} {:6} outputs {:8.1} MB", target.target, target.outputs, target.bytes as f64 / 1e6)?;
+            writeln!(
+                f,
+                "{:8} {:6} outputs {:8.1} MB",
+                target.target,
+                target.outputs,
+                target.bytes as f64 / 1e6
+            )?;
         }
         if self.up_to_date {
-            return writeln!(f, "{} permutations up to date, checked in {:.2} s", self.permutations(), self.seconds);
+            return writeln!(
+                f,
+                "{} permutations up to date, checked in {:.2} s",
+                self.permutations(),
+                self.seconds
+            );
         }
-        writeln!(f, "{} texts: {} from the cache, {} linked from functions of others", self.texts(), self.cached, self.linked)?;
+        writeln!(f, "{} texts: {} from the cache", self.texts(), self.cached)?;
+        for whole in &self.whole {
+            let WholeSummary { entry, target, reason, texts, example, .. } = whole;
+            let about = reason.about();
+            writeln!(
+                f,
+                "  {entry} {target}: {texts} compiled as a whole, such as `{example}`: {about}"
+            )?;
+        }
         let rate = self.permutations() as f64 / self.seconds.max(1e-9);
-        writeln!(f, "{} permutations in {:.2} s, {rate:.0} a second", self.permutations(), self.seconds)
+        writeln!(
+            f,
+            "{} permutations in {:.2} s, {rate:.0} a second",
+            self.permutations(),
+            self.seconds
+        )
     }
 }

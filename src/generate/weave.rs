@@ -6,12 +6,12 @@ use rayon::prelude::*;
 
 use super::compile::Compiled;
 use super::entry::Entry;
-use super::lean::lean;
 use super::lint::Decided;
 use super::{Progress, REPORTED};
-use crate::bundle::{Digest, Hash};
-use crate::compose::{self, Composed};
+use crate::bundle::{Digest, Hash, Language, Target};
+use crate::compose::{self, Composed, lean};
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::link::Reason;
 use crate::permute::{Assignment, Key, ReadTree, Space};
 
 /// Permutations composed before their new texts are compiled: bounds the memory that texts take.
@@ -21,7 +21,7 @@ const BATCH: usize = 1024;
 pub struct Woven {
     /// Its name in the bundle.
     pub label: String,
-    pub language: compose::Language,
+    pub language: Language,
     /// One for each distinct text, in the order of the first permutation that has it.
     pub made: Vec<Digest>,
     /// For each permutation, the index of its text.
@@ -33,6 +33,8 @@ pub struct Woven {
     /// How the conditions of GLSL came out.
     pub decided: Decided,
     pub warnings: Vec<Diagnostic>,
+    /// How many texts a target compiled as a whole for a reason, and the first one's permutation.
+    pub whole: BTreeMap<(Reason, Target), (usize, String)>,
 }
 
 /// Makes something of each text of a batch; all are new.
@@ -54,10 +56,19 @@ pub fn weave(
         let batch = start..points.len().min(start + BATCH);
         let jobs = compose_batch(&mut looms, space, &points[batch.clone()])?;
         let texts: Vec<_> = jobs.iter().map(|job| (&*job.text, &entries[job.entry])).collect();
-        let made = make(&texts).into_iter().zip(&jobs).map(|(made, job)| job.named(made, entries, space, &points[batch.clone()]));
-        for (entry, Compiled { digest, warnings }) in collect(made.collect())? {
-            looms[entry].woven.made.push(digest);
-            looms[entry].woven.warnings.extend(warnings);
+        let made = make(&texts)
+            .into_iter()
+            .zip(&jobs)
+            .map(|(made, job)| job.named(made, entries, space, &points[batch.clone()]));
+        let made = collect(made.collect())?;
+        for ((entry, Compiled { digest, warnings, whole }), job) in made.into_iter().zip(&jobs) {
+            let woven = &mut looms[entry].woven;
+            woven.made.push(digest);
+            woven.warnings.extend(warnings);
+            for (target, reason) in whole {
+                let example = || space.key(&points[start + job.point]).to_string();
+                woven.whole.entry((reason, target)).or_insert_with(|| (0, example())).0 += 1;
+            }
         }
         at(batch.end);
     }
@@ -88,15 +99,20 @@ impl Job {
         batch: &[Assignment],
     ) -> Result<(usize, Compiled), Diagnostics> {
         let entry = &entries[self.entry];
-        let named = |diagnostics| of_permutation(diagnostics, entry, &space.key(&batch[self.point]));
-        let Compiled { digest, warnings } = made.map_err(|errors| named(entry.graph.traced(errors)))?;
-        Ok((self.entry, Compiled { digest, warnings: named(entry.graph.own(warnings)) }))
+        let named =
+            |diagnostics| of_permutation(diagnostics, entry, &space.key(&batch[self.point]));
+        let made = made.map_err(|errors| named(entry.graph.traced(errors)))?;
+        Ok((self.entry, Compiled { warnings: named(entry.graph.own(made.warnings)), ..made }))
     }
 }
 
 /// Composes whatever earlier batches did not answer, in parallel; several permutations of a batch
 /// may compose to one text: to compose is cheaper than to wait for each other.
-fn compose_batch(looms: &mut [Loom<'_>], space: &Space, batch: &[Assignment]) -> Result<Vec<Job>, Diagnostics> {
+fn compose_batch(
+    looms: &mut [Loom<'_>],
+    space: &Space,
+    batch: &[Assignment],
+) -> Result<Vec<Job>, Diagnostics> {
     let answers = |looms: &[Loom<'_>], point: &Assignment| {
         let settings = space.settings(point);
         looms.iter().map(|loom| loom.find(&settings, space, point)).collect::<Result<Vec<_>, _>>()
@@ -139,16 +155,23 @@ impl<'a> Loom<'a> {
             compositions: 0,
             decided: Decided::default(),
             warnings: Vec::new(),
+            whole: BTreeMap::new(),
         };
         Self { entry, woven, tree: ReadTree::default(), texts: BTreeMap::new() }
     }
 
-    fn find(&self, settings: &crate::permute::Settings, space: &Space, point: &Assignment) -> Result<Found, Diagnostics> {
+    fn find(
+        &self,
+        settings: &crate::permute::Settings,
+        space: &Space,
+        point: &Assignment,
+    ) -> Result<Found, Diagnostics> {
         if let Some(text) = self.tree.get(settings) {
             return Ok(Found::Known(*text));
         }
         let composed = compose::compose(&self.entry.graph, settings, &self.entry.options);
-        let composed = composed.map_err(|errors| of_permutation(errors, self.entry, &space.key(point)))?;
+        let composed =
+            composed.map_err(|errors| of_permutation(errors, self.entry, &space.key(point)))?;
         let lean = lean(&composed);
         let mut hash = [0; 16];
         hash.copy_from_slice(&blake3::hash(lean.text.as_bytes()).as_bytes()[..16]);
@@ -179,7 +202,8 @@ impl<'a> Loom<'a> {
         if index < next {
             return None;
         }
-        let warnings = text.composed.warnings.iter().filter(|warning| !self.woven.warnings.contains(warning));
+        let warnings =
+            text.composed.warnings.iter().filter(|warning| !self.woven.warnings.contains(warning));
         let new: Vec<_> = warnings.cloned().collect();
         self.woven.warnings.extend(new);
         Some(text)
@@ -201,12 +225,17 @@ fn collect<T>(results: Vec<Result<T, Diagnostics>>) -> Result<Vec<T>, Diagnostic
 
 /// The same mistake in many permutations is one mistake: the first shows it.
 fn keep(errors: &mut Diagnostics, error: Diagnostic) {
-    let same = |known: &Diagnostic| known.code == error.code && known.message == error.message && known.labels == error.labels;
+    let same = |known: &Diagnostic| {
+        known.code == error.code && known.message == error.message && known.labels == error.labels
+    };
     if errors.len() < REPORTED && !errors.iter().any(same) {
         errors.push(error);
     }
 }
 
 fn of_permutation(errors: Diagnostics, entry: &Entry, key: &Key) -> Diagnostics {
-    errors.into_iter().map(|error| error.note(format!("in permutation `{key}` of {}", entry.title()))).collect()
+    errors
+        .into_iter()
+        .map(|error| error.note(format!("in permutation `{key}` of {}", entry.title())))
+        .collect()
 }

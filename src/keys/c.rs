@@ -109,14 +109,25 @@ impl Named<'_> {
 
 fn program(program: &Program, taken: &mut Taken) -> String {
     let name = taken.give(format!("lamplight_{}", program.name));
-    let [default, to_key, bytes] =
-        [format!("{name}_default"), format!("{name}_to_key"), format!("{}_KEY_BYTES", name.to_uppercase())].map(|name| taken.give(name));
+    let [default, to_key, bytes] = [
+        format!("{name}_default"),
+        format!("{name}_to_key"),
+        format!("{}_KEY_BYTES", name.to_uppercase()),
+    ]
+    .map(|name| taken.give(name));
     let mut fields = Taken::new(KEYWORDS);
-    let axes: Vec<Named<'_>> = axes(program).map(|axis| named(axis, &name, taken, &mut fields)).collect();
+    let axes: Vec<Named<'_>> =
+        axes(program).map(|axis| named(axis, &name, taken, &mut fields)).collect();
     let mut text = String::from("\n");
-    axes.iter().filter(|axis| axis.axis.kind != Kind::Bool).for_each(|axis| text.push_str(&enumeration(axis)));
+    axes.iter()
+        .filter(|axis| axis.axis.kind != Kind::Bool)
+        .for_each(|axis| text.push_str(&enumeration(axis)));
     text.push_str(&structure(program, &name, &axes));
-    let _ = writeln!(text, "\n/* Bytes of the longest key, its end included. */\n#define {bytes} {}", longest(&axes));
+    let _ = writeln!(
+        text,
+        "\n/* Bytes of the longest key, its end included. */\n#define {bytes} {}",
+        longest(&axes)
+    );
     let _ = writeln!(text, "\nstatic inline {name} {default}(void)\n{{\n    {name} key;");
     text.extend(axes.iter().map(|axis| format!("    key.{} = {};\n", axis.field, axis.default())));
     if axes.is_empty() {
@@ -135,13 +146,18 @@ fn named<'a>(axis: &'a Axis, program: &str, taken: &mut Taken, fields: &mut Take
     let prefix = format!("{program}_{}", axis.name).to_uppercase();
     let constants = match axis.kind {
         Kind::Bool => Vec::new(),
-        Kind::Enum | Kind::Int => axis.values.iter().map(|known| taken.give(format!("{prefix}_{}", value(known).to_uppercase()))).collect(),
+        Kind::Enum | Kind::Int => axis
+            .values
+            .iter()
+            .map(|known| taken.give(format!("{prefix}_{}", value(known).to_uppercase())))
+            .collect(),
     };
     Named { axis, field: fields.give(axis.name.clone()), ty, constants }
 }
 
 fn enumeration(Named { axis, ty, constants, .. }: &Named<'_>) -> String {
-    let mut text = axis.doc.as_deref().map_or(String::new(), |doc| format!("/*\n{} */\n", comment(" *", doc)));
+    let mut text =
+        axis.doc.as_deref().map_or(String::new(), |doc| format!("/*\n{} */\n", comment(" *", doc)));
     let _ = writeln!(text, "typedef enum {ty} {{");
     text.extend(constants.iter().map(|constant| format!("    {constant},\n")));
     let _ = writeln!(text, "}} {ty};\n");
@@ -149,29 +165,42 @@ fn enumeration(Named { axis, ty, constants, .. }: &Named<'_>) -> String {
 }
 
 fn structure(program: &Program, name: &str, axes: &[Named<'_>]) -> String {
-    let mut text = format!("/* One permutation of program `{}`: start from its default. */\ntypedef struct {name} {{\n", program.name);
+    let mut text = format!(
+        "/* One permutation of program `{}`: start from its default. */\ntypedef struct {name} {{\n",
+        program.name
+    );
     text.extend(axes.iter().map(|axis| format!("    {} {};\n", axis.ty, axis.field)));
     if axes.is_empty() {
-        text.push_str("    /* There is one permutation; C has no empty structures. */\n    char none;\n");
+        text.push_str(
+            "    /* There is one permutation; C has no empty structures. */\n    char none;\n",
+        );
     }
     let _ = writeln!(text, "}} {name};");
     text
 }
 
 fn longest(axes: &[Named<'_>]) -> usize {
-    let parts = axes.iter().map(|named| named.axis.values.iter().map(|value| part(named.axis, value).len() + 1).max().unwrap_or(0));
+    let parts = axes.iter().map(|named| {
+        named.axis.values.iter().map(|value| part(named.axis, value).len() + 1).max().unwrap_or(0)
+    });
     parts.sum::<usize>().max("default".len() + 1)
 }
 
 fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String {
-    let mut text =
-        format!("\n/* Writes the canonical key into {bytes} bytes; its length. A value that is no value counts as the default. */\n");
-    let _ = writeln!(text, "static inline size_t {to_key}(const {name} *key, char *text)\n{{\n    size_t length = 0;");
+    let mut text = format!(
+        "\n/* Writes the canonical key into {bytes} bytes; its length. A value that is no value counts as the default. */\n"
+    );
+    let _ = writeln!(
+        text,
+        "static inline size_t {to_key}(const {name} *key, char *text)\n{{\n    size_t length = 0;"
+    );
     if axes.is_empty() {
         text.push_str("    (void)key;\n");
     }
     axes.iter().for_each(|axis| text.push_str(&append(axis)));
-    text.push_str("    return length > 0 ? length : lamplight_key_part(text, 0, \"default\");\n}\n");
+    text.push_str(
+        "    return length > 0 ? length : lamplight_key_part(text, 0, \"default\");\n}\n",
+    );
     text
 }
 
@@ -188,9 +217,18 @@ fn append(named: &Named<'_>) -> String {
         };
         return other.map_or(String::new(), append);
     }
-    let parts: Vec<String> = axis.values.iter().map(|value| format!("\"{}\"", part(axis, value))).collect();
-    let mut text = format!("    {{\n        static const char *const parts[] = {{{}}};\n", parts.join(", "));
-    let _ = writeln!(text, "        if (key->{field} != {} && (size_t)key->{field} < sizeof parts / sizeof *parts)", named.default());
-    let _ = writeln!(text, "            length = lamplight_key_part(text, length, parts[key->{field}]);\n    }}");
+    let parts: Vec<String> =
+        axis.values.iter().map(|value| format!("\"{}\"", part(axis, value))).collect();
+    let mut text =
+        format!("    {{\n        static const char *const parts[] = {{{}}};\n", parts.join(", "));
+    let _ = writeln!(
+        text,
+        "        if (key->{field} != {} && (size_t)key->{field} < sizeof parts / sizeof *parts)",
+        named.default()
+    );
+    let _ = writeln!(
+        text,
+        "            length = lamplight_key_part(text, length, parts[key->{field}]);\n    }}"
+    );
     text
 }

@@ -30,6 +30,12 @@ pub fn find(name: &str) -> Option<&'static Language> {
     LANGUAGES.iter().find(|language| language.name == name)
 }
 
+/// Whether a text begins as one that [`write`] wrote, in any language.
+pub fn is_written(head: &[u8]) -> bool {
+    const MARK: &[u8] = b"Written by `lamplight keys";
+    head.windows(MARK.len()).take(16).any(|window| window == MARK)
+}
+
 /// One source file with the keys of every program. The same manifest gives the same bytes.
 pub fn write(manifest: &Manifest, language: &Language) -> String {
     (language.write)(manifest)

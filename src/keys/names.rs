@@ -6,7 +6,11 @@ use crate::permute::Setting;
 pub fn camel(name: &str) -> String {
     let words = name.split('_').filter(|word| !word.is_empty());
     let joined: String = words.map(|word| word[..1].to_ascii_uppercase() + &word[1..]).collect();
-    if joined.starts_with(|first: char| first.is_ascii_digit()) { format!("N{joined}") } else { joined }
+    if joined.starts_with(|first: char| first.is_ascii_digit()) {
+        format!("N{joined}")
+    } else {
+        joined
+    }
 }
 
 /// `depth_view` as `depthView`.
@@ -47,5 +51,7 @@ impl Taken {
 
 /// Lines of a comment, one for each of the text's.
 pub fn comment(prefix: &str, text: &str) -> String {
-    text.lines().map(|line| format!("{}\n", format!("{prefix} {}", line.replace("*/", "* /")).trim_end())).collect()
+    text.lines()
+        .map(|line| format!("{}\n", format!("{prefix} {}", line.replace("*/", "* /")).trim_end()))
+        .collect()
 }

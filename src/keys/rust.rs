@@ -6,19 +6,24 @@ use super::names::{Taken, camel, comment, value};
 use super::{Language, axes, default, part};
 use crate::permute::{Axis, Kind, Manifest, Program};
 
-pub const LANGUAGE: Language = Language { name: "rust", about: "a module a program, for any edition", write };
+pub const LANGUAGE: Language =
+    Language { name: "rust", about: "a module a program, for any edition", write };
 
 /// Keywords that an axis, which WGSL allows, may be called; `r#` would not do for all of them.
 const KEYWORDS: &[&str] = &[
-    "Self", "abstract", "as", "async", "await", "become", "box", "crate", "do", "dyn", "enum", "extern", "final", "gen", "impl", "in",
-    "macro", "match", "mod", "move", "mut", "priv", "pub", "ref", "self", "static", "super", "trait", "try", "type", "typeof", "unsafe",
-    "unsized", "use", "virtual", "where", "yield",
+    "Self", "abstract", "as", "async", "await", "become", "box", "crate", "do", "dyn", "enum",
+    "extern", "final", "gen", "impl", "in", "macro", "match", "mod", "move", "mut", "priv", "pub",
+    "ref", "self", "static", "super", "trait", "try", "type", "typeof", "unsafe", "unsized", "use",
+    "virtual", "where", "yield",
 ];
 
 fn write(manifest: &Manifest) -> String {
     let mut taken = Taken::new(KEYWORDS);
     let mut text = String::from("// Written by `lamplight keys --lang rust`; do not edit.\n");
-    manifest.programs.iter().for_each(|program| text.push_str(&module(program, &taken.give(program.name.clone()))));
+    manifest
+        .programs
+        .iter()
+        .for_each(|program| text.push_str(&module(program, &taken.give(program.name.clone()))));
     text
 }
 
@@ -47,7 +52,8 @@ fn named(program: &Program) -> Vec<Named<'_>> {
             Kind::Bool => "bool".to_owned(),
             Kind::Enum | Kind::Int => types.give(camel(&axis.name)),
         };
-        let variants = axis.values.iter().map(|known| variants.give(camel(&value(known)))).collect();
+        let variants =
+            axis.values.iter().map(|known| variants.give(camel(&value(known)))).collect();
         Named { axis, field: fields.give(axis.name.clone()), ty, variants }
     });
     named.collect()
@@ -56,9 +62,17 @@ fn named(program: &Program) -> Vec<Named<'_>> {
 fn module(program: &Program, name: &str) -> String {
     let axes = named(program);
     let mut text = format!("\n/// Keys of program `{}`.\n", program.name);
-    text.push_str(&program.doc.as_deref().map_or(String::new(), |doc| format!("///\n{}", comment("///", doc))));
-    let _ = writeln!(text, "#[allow(dead_code, non_camel_case_types, clippy::all)]\npub mod {name} {{");
-    axes.iter().filter(|axis| axis.axis.kind != Kind::Bool).for_each(|axis| text.push_str(&enumeration(axis)));
+    text.push_str(
+        &program
+            .doc
+            .as_deref()
+            .map_or(String::new(), |doc| format!("///\n{}", comment("///", doc))),
+    );
+    let _ =
+        writeln!(text, "#[allow(dead_code, non_camel_case_types, clippy::all)]\npub mod {name} {{");
+    axes.iter()
+        .filter(|axis| axis.axis.kind != Kind::Bool)
+        .for_each(|axis| text.push_str(&enumeration(axis)));
     text.push_str(&structure(&axes));
     text.push_str(&display(&axes));
     text.push_str("}\n");
@@ -67,21 +81,30 @@ fn module(program: &Program, name: &str) -> String {
 
 fn enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
     let mut text = axis.doc.as_deref().map_or(String::new(), |doc| comment("    ///", doc));
-    let _ = writeln!(text, "    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub enum {ty} {{");
+    let _ = writeln!(
+        text,
+        "    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub enum {ty} {{"
+    );
     text.extend(variants.iter().map(|variant| format!("        {variant},\n")));
     let all: Vec<String> = variants.iter().map(|variant| format!("Self::{variant}")).collect();
     let _ = writeln!(text, "    }}\n\n    impl {ty} {{");
     let _ = writeln!(text, "        /// Every value, in the manifest's order.");
     let _ = writeln!(text, "        pub const ALL: &'static [Self] = &[{}];\n", all.join(", "));
-    let _ = writeln!(text, "        /// As in keys.\n        pub const fn name(self) -> &'static str {{\n            match self {{");
+    let _ = writeln!(
+        text,
+        "        /// As in keys.\n        pub const fn name(self) -> &'static str {{\n            match self {{"
+    );
     let arms = variants.iter().zip(&axis.values);
-    text.extend(arms.map(|(variant, value)| format!("                Self::{variant} => \"{value}\",\n")));
+    text.extend(
+        arms.map(|(variant, value)| format!("                Self::{variant} => \"{value}\",\n")),
+    );
     text.push_str("            }\n        }\n    }\n\n");
     text
 }
 
 fn structure(axes: &[Named<'_>]) -> String {
-    let mut text = String::from("    /// One permutation: `Key { axis: value, ..Key::default() }`.\n");
+    let mut text =
+        String::from("    /// One permutation: `Key { axis: value, ..Key::default() }`.\n");
     text.push_str("    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub struct Key {\n");
     for Named { axis, field, ty, .. } in axes {
         let doc = axis.doc.as_deref().filter(|_| axis.kind == Kind::Bool);
@@ -89,17 +112,23 @@ fn structure(axes: &[Named<'_>]) -> String {
         let _ = writeln!(text, "        pub {field}: {ty},");
     }
     text.push_str("    }\n\n    impl ::core::default::Default for Key {\n        fn default() -> Self {\n            Self {\n");
-    text.extend(axes.iter().map(|axis| format!("                {}: {},\n", axis.field, axis.default())));
+    text.extend(
+        axes.iter().map(|axis| format!("                {}: {},\n", axis.field, axis.default())),
+    );
     text.push_str("            }\n        }\n    }\n\n");
     text
 }
 
 fn display(axes: &[Named<'_>]) -> String {
-    let mut text = String::from("    impl Key {\n        /// The canonical key, as a bundle's loader takes it.\n");
+    let mut text = String::from(
+        "    impl Key {\n        /// The canonical key, as a bundle's loader takes it.\n",
+    );
     text.push_str("        pub fn to_key(&self) -> ::std::string::String {\n");
     text.push_str("            ::std::string::ToString::to_string(self)\n        }\n    }\n\n");
     text.push_str("    impl ::core::fmt::Display for Key {\n");
-    text.push_str("        fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {\n");
+    text.push_str(
+        "        fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {\n",
+    );
     if !axes.is_empty() {
         text.push_str("            let mut separator = \"\";\n");
     }
@@ -124,6 +153,8 @@ fn written(Named { axis, field, .. }: &Named<'_>) -> String {
             Some(value) => format!("::core::write!(f, \"{{separator}}{}\")?;", part(axis, value)),
             None => String::new(),
         },
-        Kind::Enum | Kind::Int => format!("::core::write!(f, \"{{separator}}{}={{}}\", self.{field}.name())?;", axis.name),
+        Kind::Enum | Kind::Int => {
+            format!("::core::write!(f, \"{{separator}}{}={{}}\", self.{field}.name())?;", axis.name)
+        }
     }
 }

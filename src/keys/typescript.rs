@@ -6,7 +6,8 @@ use super::names::{Taken, camel, comment, lower_camel};
 use super::{Language, axes, default};
 use crate::permute::{Axis, Kind, Manifest, Program, Setting};
 
-pub const LANGUAGE: Language = Language { name: "ts", about: "a TypeScript module of erasable types", write };
+pub const LANGUAGE: Language =
+    Language { name: "ts", about: "a TypeScript module of erasable types", write };
 
 const START: &str = "// Written by `lamplight keys --lang ts`; do not edit.
 
@@ -31,14 +32,23 @@ fn write(manifest: &Manifest) -> String {
 fn program(program: &Program, taken: &mut Taken) -> String {
     let ty = taken.give(format!("{}Key", camel(&program.name)));
     let function = taken.give(format!("{}Key", lower_camel(&program.name)));
-    let mut text =
-        format!("\n/** One permutation of program `{}`; what is left out is at its default. */\nexport interface {ty} {{\n", program.name);
+    let mut text = format!(
+        "\n/** One permutation of program `{}`; what is left out is at its default. */\nexport interface {ty} {{\n",
+        program.name
+    );
     for axis in axes(program) {
-        text.push_str(&axis.doc.as_deref().map_or(String::new(), |doc| format!("  /**\n{}   */\n", comment("   *", doc))));
+        text.push_str(
+            &axis
+                .doc
+                .as_deref()
+                .map_or(String::new(), |doc| format!("  /**\n{}   */\n", comment("   *", doc))),
+        );
         let _ = writeln!(text, "  {}?: {};", axis.name, values(axis));
     }
     text.push_str("}\n");
-    let defaults: Vec<String> = axes(program).map(|axis| format!("  [\"{}\", {}],\n", axis.name, literal(default(axis)))).collect();
+    let defaults: Vec<String> = axes(program)
+        .map(|axis| format!("  [\"{}\", {}],\n", axis.name, literal(default(axis))))
+        .collect();
     let list = if defaults.is_empty() { String::new() } else { format!("\n{}", defaults.concat()) };
     let _ = writeln!(
         text,
@@ -47,7 +57,8 @@ fn program(program: &Program, taken: &mut Taken) -> String {
     let _ = writeln!(
         text,
         "  return keyText(key, [{}]);\n}}",
-        list.replace("\n  ", "\n    ").trim_end_matches(' ').to_owned() + if list.is_empty() { "" } else { "  " }
+        list.replace("\n  ", "\n    ").trim_end_matches(' ').to_owned()
+            + if list.is_empty() { "" } else { "  " }
     );
     text
 }

@@ -1,148 +1,181 @@
-//! Separate compilation: a text whose functions have all been written before is put together from
-//! them, and naga never sees it.
+//! Separate compilation: every function is translated once, by itself, and texts are put together
+//! from functions. This is the one way from a composed text to its outputs, for every command.
 //!
-//! Permutations differ in a few functions and share the others. [`Outline`] gives each function
-//! a key that covers all that its translation can depend on. What a text compiled as a whole
-//! gives is taken apart by functions ([`Linker::take`]), kept by their keys, and put together
-//! ([`Linker::link`]), also for that text itself: the bytes of a text are the same whether its
-//! functions come from its own translation or from those of others.
+//! # Why an output is a function of its text
 //!
-//! Whatever is not understood stays whole: a text with overrides or of a compute shader, a
-//! derivative where fragments may have parted, an output of an unknown shape.
+//! 1. [`outline`] takes the declarations of a text and their references from the composer, which
+//!    resolved every name.
+//! 2. [`canonical`] writes a text for each function: the function, the declarations that it
+//!    names, and a stub for each function that it calls. The key of a function is the hash of all
+//!    that this text is made of, and [`translate`] sees nothing else. So a translated function (a
+//!    *unit*) depends on its key alone: not on the program around it, on other permutations, other
+//!    targets, their order, or the cache.
+//! 3. A stub has the signature of its function, uses the same variables of the module, and
+//!    samples the same textures ([`summary`]). naga's own analysis must find in the stub what it
+//!    found in the function, or the text is compiled as a whole.
+//! 4. In the texts that naga writes, the author's names are marks ([`mark`]). [`cut`] divides an
+//!    output into declarations; marks are its only references to the author's declarations. All
+//!    declarations beside the author's functions come along with a unit, since its canonical text
+//!    needed them.
+//! 5. [`pool`] puts the units of a text together in an order that depends on their content. Each
+//!    name is written as naga writes it alone, or numbered where the text has that identifier with
+//!    another meaning ([`names`]). Two declarations of one name that differ are refused.
+//!
+//! Whatever is refused is compiled by naga as a whole, in that target only, and the [`Reason`] is
+//! told. The reason depends on the text and the target, so that those bytes too are a function of
+//! the text.
+//!
+//! # What this rests on in naga 30
+//!
+//! - A writer translates a function from its body, from the types, constants and variables that it
+//!   names, and from nothing of its callees but names, arguments, results, and the variables of the
+//!   module that they use (Metal passes those along, in the order of the module).
+//! - Names of types, constants, variables and functions are names and nothing else; the namer
+//!   leaves a mark as it is.
+//! - HLSL writes a structure that an entry point returns in another way, whatever function uses
+//!   it: the canonical text's entry point returns it too.
+//! - GLSL's own variables enter a module in the order in which its text names them: the canonical
+//!   text names them in an order of their own first, since Metal passes them along in that order.
+//! - GLSL takes a texture for a depth texture if a callee compares with it: stubs compare too.
+//!
+//! `link::whole_and_linked` in the tests compares what is linked with what naga writes of the whole
+//! text, declaration by declaration and up to names, for every target: it fails where a version of
+//! naga breaks one of these assumptions.
 
-mod local;
+mod canonical;
+mod compile;
+mod cut;
+mod mark;
+mod module;
+mod names;
 mod outline;
 mod pool;
-mod scan;
+mod reason;
 mod spirv;
-mod take;
+mod summary;
 mod text;
+mod translate;
 mod words;
 
-pub use local::marked;
-pub use outline::{Declaration, Key, Outline, Scans};
-pub use take::{Taken, Whole};
+pub use compile::{Made, Text, compile};
+pub use module::compile_module;
+pub use reason::Reason;
 
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError, RwLock};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, PoisonError, RwLock};
 
-use crate::bundle::{Target, Unit};
-use pool::Pool;
+use crate::bundle::Language;
+use crate::bundle::{Artifact, Reflection, Target};
+use crate::compose::Composed;
+use canonical::{Recipe, recipe};
+use outline::Outline;
+use pool::{Parts, Pool, Unit};
+use summary::Summary;
+use translate::translate;
 
-/// So many new functions are many.
-const MANY: usize = 16;
+/// Bytes of units after which all are forgotten. What is forgotten is translated again, to the
+/// same bytes.
+const SIZE: usize = 96 << 20;
 
-/// Bytes of pieces after which all is forgotten.
-const SIZE: usize = 128 << 20;
+/// The same where a quarter of the units were new: to keep what is not shared saves nothing.
+const SIZE_UNSHARED: usize = 2 << 20;
 
-/// The same where most texts had something new: to keep what is not shared saves nothing.
-const SIZE_UNSHARED: usize = 4 << 20;
-
-/// Functions in all targets of a program.
+/// Functions in some targets, each translated once.
 pub struct Linker<'a> {
     targets: &'a [Target],
-    names: take::Names,
-    scans: Scans,
-    /// Functions that some text is compiled for, whether or not it has been.
-    claimed: Mutex<BTreeSet<Key>>,
     pool: RwLock<Pool>,
-    /// Whether most texts of the last batch had something new.
-    unshared: AtomicBool,
-    /// Texts of which no function was compiled.
-    linked: AtomicUsize,
+    /// Units asked for since the last batch, and those of them that were new.
+    asked: AtomicUsize,
+    new: AtomicUsize,
+}
+
+/// A text in the targets that could be linked.
+pub struct Linked {
+    pub reflection: Arc<Reflection>,
+    /// For each target its output, or why it has to be compiled as a whole.
+    pub targets: Vec<Result<Artifact, Reason>>,
+    /// A derivative may be taken where neighbouring fragments took different branches: the lint of
+    /// the whole text decides.
+    pub suspect: bool,
 }
 
 impl<'a> Linker<'a> {
     pub fn new(targets: &'a [Target]) -> Self {
-        let names = take::Names::new(targets);
-        let pool = RwLock::new(Pool::new(&names));
-        Self {
-            targets,
-            names,
-            scans: Scans::default(),
-            claimed: Mutex::default(),
-            pool,
-            unshared: AtomicBool::new(false),
-            linked: AtomicUsize::new(0),
-        }
+        let (asked, new) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        Self { targets, pool: RwLock::new(Pool::new(targets)), asked, new }
     }
 
-    /// The functions of a lean text whose one entry point is `entry`; `None` where it is to stay whole.
-    pub fn outline<'t>(&self, text: &'t str, entry: &str) -> Option<Outline<'t>> {
-        Outline::read(text, entry, &self.scans)
-    }
-
-    /// For each text of a batch, the functions that it is to be compiled for, and taken apart: every
-    /// function is compiled once. Texts with many new ones go first, so that few are compiled.
-    pub fn claim(&self, batch: &[Option<Outline<'_>>]) -> Vec<BTreeSet<Key>> {
-        let mut claimed = self.claimed.lock().unwrap_or_else(PoisonError::into_inner);
-        let new = |outline: &Outline<'_>| outline.functions().map(|function| function.key).filter(|key| !claimed.contains(key)).collect();
-        let mut open: Vec<BTreeSet<Key>> = batch.iter().map(|outline| outline.as_ref().map(new).unwrap_or_default()).collect();
-        let mut claims = vec![BTreeSet::new(); batch.len()];
-        for least in (1..=MANY).rev() {
-            for (claim, open) in claims.iter_mut().zip(&mut open).filter(|(_, open)| open.len() >= least) {
-                open.retain(|key| !claimed.contains(key));
-                if open.len() >= least {
-                    claimed.extend(open.iter());
-                    *claim = std::mem::take(open);
-                }
-            }
-        }
-        let (texts, new) = (batch.iter().flatten().count(), claims.iter().filter(|claim| !claim.is_empty()).count());
-        self.unshared.store(2 * new > texts, Ordering::Relaxed);
-        claims
-    }
-
-    /// Takes apart what a text was compiled to, as far as the functions are wanted.
+    /// Puts a lean text together from its functions; those that are new are translated first.
     ///
     /// # Errors
-    /// Where something is not understood: the text stays as it is.
-    pub fn take(&self, outline: &Outline<'_>, whole: Whole, wanted: &BTreeSet<Key>) -> Result<Taken, String> {
-        take::take(outline, whole, self.targets, &self.names, &|key| wanted.contains(key), take::Overloads::Leave)
-    }
-
-    /// Keeps functions for all texts to come. What cannot be kept will be missing.
-    pub fn keep(&self, taken: impl IntoIterator<Item = Taken>) {
-        let mut pool = self.pool.write().unwrap_or_else(PoisonError::into_inner);
-        for taken in taken {
-            let _ = pool.keep(taken);
+    /// The reason why all targets of the text are compiled as a whole. It depends on the text
+    /// alone.
+    pub fn link(&self, lean: &Composed, entry: &str) -> Result<Linked, Reason> {
+        let outline = Outline::read(lean, entry)?;
+        let mut units: Vec<Option<Arc<Unit>>> = vec![None; outline.declarations.len()];
+        let mut functions = outline.functions.clone();
+        if outline.language == Language::Wesl {
+            functions.pop();
         }
-        pool.settle();
+        for function in &functions {
+            units[*function] =
+                Some(self.unit(&outline, canonical::Unit::Function(*function), &units)?);
+        }
+        let entry = self.unit(&outline, canonical::Unit::Entry, &units)?;
+        let suspect = entry.summary.parted;
+        let reflection = entry.reflection.clone().ok_or(Reason::EntryPoint)?;
+        let named = functions.iter().filter_map(|function| {
+            Some((outline.declarations[*function].name(), units[*function].clone()?))
+        });
+        let parts = Parts { functions: named.collect(), entry };
+        let pool = self.pool.read().unwrap_or_else(PoisonError::into_inner);
+        let targets = self.targets.iter().enumerate();
+        let targets = targets.map(|(index, target)| pool.link(&parts, index, *target)).collect();
+        Ok(Linked { reflection, targets, suspect })
     }
 
-    /// The text from functions that are kept, of which it was compiled for `claimed`; `None` where
-    /// one is missing.
-    pub fn link(&self, outline: &Outline<'_>, claimed: &BTreeSet<Key>) -> Option<Unit> {
-        let unit = self.pool.read().unwrap_or_else(PoisonError::into_inner).link(outline, self.targets)?;
-        self.linked.fetch_add(usize::from(claimed.is_empty()), Ordering::Relaxed);
-        Some(unit)
+    /// A unit, translated now if it never was.
+    fn unit(
+        &self,
+        outline: &Outline<'_>,
+        unit: canonical::Unit,
+        units: &[Option<Arc<Unit>>],
+    ) -> Result<Arc<Unit>, Reason> {
+        let summaries: Vec<Option<&Summary>> =
+            units.iter().map(|unit| unit.as_ref().map(|unit| &unit.summary)).collect();
+        let recipe: Recipe<'_> = recipe(outline, unit, &summaries)?;
+        let key = recipe.key(outline);
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        let known = self.pool.read().unwrap_or_else(PoisonError::into_inner).find(&key);
+        if let Some(known) = known {
+            return known;
+        }
+        self.new.fetch_add(1, Ordering::Relaxed);
+        let translated = translate(outline, &recipe, self.targets);
+        let function = match unit {
+            canonical::Unit::Function(function) => Some(outline.declarations[function].name()),
+            canonical::Unit::Entry => None,
+        };
+        let callees: BTreeSet<&str> = recipe
+            .stubs
+            .iter()
+            .map(|(stub, _)| outline.declarations[*stub].name())
+            .chain(function)
+            .collect();
+        let mut pool = self.pool.write().unwrap_or_else(PoisonError::into_inner);
+        pool.keep(key, translated, function, &callees)
     }
 
-    /// Ends a batch: bounds what is kept. A text's bytes do not depend on it.
+    /// Bounds what is kept. No output depends on it. To be called between batches: units that a
+    /// text is being put together from belong to the pool that they came from.
     pub fn forget(&self) {
+        let (asked, new) =
+            (self.asked.swap(0, Ordering::Relaxed), self.new.swap(0, Ordering::Relaxed));
+        let bound = if 4 * new > asked { SIZE_UNSHARED } else { SIZE };
         let mut pool = self.pool.write().unwrap_or_else(PoisonError::into_inner);
-        let bound = if self.unshared.load(Ordering::Relaxed) { SIZE_UNSHARED } else { SIZE };
         if pool.size() > bound {
-            *pool = Pool::new(&self.names);
-            self.claimed.lock().unwrap_or_else(PoisonError::into_inner).clear();
-            self.scans.clear();
+            *pool = Pool::new(self.targets);
         }
-    }
-
-    /// Texts that were linked so far and not compiled.
-    pub fn linked(&self) -> usize {
-        self.linked.load(Ordering::Relaxed)
-    }
-
-    /// The text from its own functions alone.
-    ///
-    /// # Errors
-    /// As of [`Linker::take`].
-    pub fn alone(&self, outline: &Outline<'_>, whole: Whole) -> Result<Unit, String> {
-        let mut pool = Pool::new(&self.names);
-        pool.keep(take::take(outline, whole, self.targets, &self.names, &|_| true, take::Overloads::Take)?)?;
-        pool.settle();
-        pool.link(outline, self.targets).ok_or_else(|| "a function was lost".to_owned())
     }
 }

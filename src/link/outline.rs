@@ -1,343 +1,310 @@
-//! The declarations of a lean WGSL text, and keys that say which functions are alike.
-//!
-//! A function's key covers its own text, all that its types, constants and variables are, and of
-//! each function that it calls what a caller can notice: the signature, the variables that are
-//! reached, and every function on the way that does more than compute. Functions of one key are
-//! written alike in every target, whatever module they are in.
+//! The declarations of a lean text, in the order in which its functions can be translated.
 
-use std::collections::HashMap;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::collections::{BTreeSet, HashMap};
 
-use super::scan::{Name, Scan, scan};
+use naga::ShaderStage;
+
+use super::mark;
+use super::reason::Reason;
 use super::words::words;
+use crate::bundle::{Language, Stage};
+use crate::compose::{Composed, Part, PartKind};
 
-/// Of a declaration and all that it depends on.
+/// Identifies content.
 pub type Key = [u8; 16];
 
-/// Declarations after which a text is left to be compiled as a whole.
-const DECLARATIONS: usize = 1024;
+/// Declarations after which a text is compiled as a whole.
+const DECLARATIONS: usize = 2048;
 
-/// Calls within each other after which a text is left to be compiled as a whole.
+/// Calls within each other after which a text is compiled as a whole.
 const DEPTH: usize = 64;
-
-/// How types begin that stand for something that is elsewhere.
-pub const HANDLES: [&str; 3] = ["texture", "sampler", "ptr"];
-
-/// What a declaration declares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    Function,
-    Entry,
-    Variable,
-    /// A structure, an alias or a constant.
-    Other,
-}
 
 /// One declaration.
 #[derive(Debug)]
 pub struct Declaration<'a> {
-    pub kind: Kind,
-    pub name: &'a str,
+    pub kind: PartKind,
+    pub names: &'a [String],
     pub text: &'a str,
-    /// Of functions and entry points.
-    pub key: Key,
+    /// Of a function: its text before the body. Of others: all of it.
+    pub head: &'a str,
+    /// Declarations that it names; those of its head alone.
+    pub uses: Vec<usize>,
+    pub head_uses: Vec<usize>,
+    pub hash: Key,
+}
+
+impl Declaration<'_> {
+    /// The name; the first of several.
+    pub fn name(&self) -> &str {
+        self.names.first().map_or("", String::as_str)
+    }
 }
 
 /// A text that can be put together from functions.
 #[derive(Debug)]
 pub struct Outline<'a> {
+    pub language: Language,
+    pub stage: ShaderStage,
+    /// Directives.
+    pub header: String,
     pub declarations: Vec<Declaration<'a>>,
-    /// Indices of the functions, each after those that it calls; the entry point last.
+    /// Indices of the functions, each after those that it calls. The last is the entry point: in
+    /// GLSL `main`, which naga wraps into a function of its own.
     pub functions: Vec<usize>,
-}
-
-/// What was found out about declarations by their text: most texts share most of theirs.
-#[derive(Debug, Default)]
-pub struct Scans(RwLock<HashMap<Box<str>, Option<Arc<Known>>>>);
-
-/// A declaration that was seen before.
-#[derive(Debug)]
-struct Known {
-    kind: Kind,
-    name: Box<str>,
-    /// Of the text alone, and of the signature alone.
-    text: Key,
-    head: Key,
-    scan: Scan,
-}
-
-impl Scans {
-    pub fn clear(&self) {
-        self.0.write().unwrap_or_else(PoisonError::into_inner).clear();
-    }
-
-    /// `None` for what no text may have that is taken apart.
-    fn find(&self, text: &str) -> Option<Arc<Known>> {
-        if let Some(known) = self.0.read().unwrap_or_else(PoisonError::into_inner).get(text) {
-            return known.clone();
-        }
-        let read = || {
-            let Part { kind, name } = part(text)?;
-            let scan = is_plain(name).then(|| scan(text, kind, name))??;
-            let head = hash(&text.as_bytes()[..scan.head], std::iter::empty());
-            Some(Arc::new(Known { kind, name: name.into(), text: hash(text.as_bytes(), std::iter::empty()), head, scan }))
-        };
-        let known = read();
-        self.0.write().unwrap_or_else(PoisonError::into_inner).insert(text.into(), known.clone());
-        known
-    }
+    /// The structure that the entry point returns.
+    pub interface: Option<usize>,
 }
 
 impl<'a> Outline<'a> {
-    /// Reads a text whose one entry point is `entry`. `None` where the parts of the text may not be
-    /// independent: the decision is the text's alone, so that the same text is always treated alike.
-    pub fn read(text: &'a str, entry: &str, scans: &Scans) -> Option<Self> {
-        let texts = split(text)?;
-        let known = texts.iter().map(|text| scans.find(text)).collect::<Option<Vec<Arc<Known>>>>()?;
-        let names: HashMap<&str, usize> = known.iter().enumerate().map(|(index, known)| (&*known.name, index)).collect();
-        let mut entries = (0..known.len()).filter(|index| known[*index].kind == Kind::Entry);
-        let (root, other) = (entries.next()?, entries.next());
-        if other.is_some() || &*known[root].name != entry || names.len() != known.len() || is_ambiguous(&known, root, &names) {
+    /// Reads a lean text whose one entry point is `entry`.
+    ///
+    /// # Errors
+    /// The reason why the text has to be compiled as a whole. It depends on the text alone.
+    pub fn read(lean: &'a Composed, entry: &str) -> Result<Self, Reason> {
+        if lean.parts.is_empty() {
+            return Err(Reason::NoParts);
+        }
+        if lean.parts.len() > DECLARATIONS || mark::occurs(&lean.text) {
+            return Err(Reason::MarkedName);
+        }
+        let stage = stage(lean, entry)?;
+        let text = |part: &Part| &lean.text[part.range.clone()];
+        let directives = lean.parts.iter().filter(|part| part.kind == PartKind::Directive);
+        let header = directives.map(text).collect::<Vec<_>>().concat();
+        let mut outline = Outline {
+            language: lean.language,
+            stage,
+            header,
+            declarations: declarations(lean)?,
+            functions: Vec::new(),
+            interface: None,
+        };
+        outline.functions = order(&outline.declarations, entry)?;
+        outline.interface = outline.returned();
+        Ok(outline)
+    }
+
+    pub fn entry(&self) -> usize {
+        self.functions.last().copied().unwrap_or_default()
+    }
+
+    /// Functions that a function calls, or may call, in the order of the text.
+    pub fn callees(&self, function: usize) -> impl Iterator<Item = usize> {
+        let declaration = &self.declarations[function];
+        declaration.uses.iter().copied().filter(move |used| {
+            *used != function && self.declarations[*used].kind == PartKind::Function
+        })
+    }
+
+    /// The declaration of a name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        let declares = |declaration: &Declaration<'_>| {
+            declaration.kind != PartKind::Function
+                && declaration.names.iter().any(|known| known == name)
+        };
+        self.declarations.iter().position(declares)
+    }
+
+    /// The structure that a WGSL entry point returns.
+    fn returned(&self) -> Option<usize> {
+        if self.language == Language::Glsl {
             return None;
         }
-        let stage = hash(if texts[root].contains("@vertex") { b"vertex" } else { b"fragment" }, std::iter::empty());
-        let facts = known.iter().map(|_| Facts::default()).collect();
-        let mut keys = Keys { stage, texts: &texts, known: &known, names: &names, facts, order: Vec::new() };
-        keys.visit(root, 0)?;
-        let Keys { facts, order, .. } = keys;
-        // What the entry point does not reach has no key, and no business to be here.
-        let whole = facts.iter().all(|facts| facts.state == State::Known);
-        let name = |text: &'a str, name: &str| text.find(name).map_or("", |start| &text[start..start + name.len()]);
-        let declared = texts.iter().zip(&known).zip(&facts).map(|((text, known), facts)| Declaration {
-            kind: known.kind,
-            name: name(text, &known.name),
-            text,
-            key: facts.key,
-        });
-        whole.then(|| Self { declarations: declared.collect(), functions: order })
-    }
-
-    /// The same declarations, variables first and in an order of their own, functions last: naga
-    /// numbers variables and their types in the order in which it comes to them, and passes them to
-    /// functions in that order.
-    pub fn sorted(&self) -> String {
-        let is_function = |declaration: &&Declaration<'_>| matches!(declaration.kind, Kind::Function | Kind::Entry);
-        let of = |kind: Kind| self.declarations.iter().filter(move |declaration| declaration.kind == kind);
-        let mut variables: Vec<&Declaration<'_>> = of(Kind::Variable).collect();
-        variables.sort_by_key(|variable| variable.text);
-        let functions = self.declarations.iter().filter(is_function);
-        variables.into_iter().chain(of(Kind::Other)).chain(functions).flat_map(|declaration| [declaration.text, "\n"]).collect()
-    }
-
-    /// The functions, each after those that it calls; the entry point last.
-    pub fn functions(&self) -> impl Iterator<Item = &Declaration<'a>> {
-        self.functions.iter().map(|index| &self.declarations[*index])
+        let entry = &self.declarations[self.entry()];
+        let (_, result) = entry.head.split_once("->")?;
+        let named = words(result).filter(|word| word.before != b'@').last()?.text;
+        self.find(named).filter(|found| self.declarations[*found].kind == PartKind::Struct)
     }
 }
 
-struct Part<'a> {
-    kind: Kind,
-    name: &'a str,
-}
-
-/// The texts of the declarations.
-fn split(text: &str) -> Option<Vec<&str>> {
-    if !text.is_ascii() || text.contains(super::local::MARK) {
-        return None;
-    }
-    let (mut depth, mut start, mut parts) = (0_usize, 0, Vec::new());
-    for (at, byte) in text.bytes().enumerate() {
-        match byte {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => depth = depth.checked_sub(1)?,
-            _ => {}
+/// The stage of the one entry point.
+fn stage(lean: &Composed, entry: &str) -> Result<ShaderStage, Reason> {
+    let stage = match lean.language {
+        Language::Glsl => lean.stage,
+        Language::Wesl => {
+            let stages = lean.parts.iter().filter_map(|part| {
+                let text = &lean.text[part.range.clone()];
+                let head = text.split('{').next().unwrap_or_default();
+                (part.kind == PartKind::Function).then(|| attribute(head)).flatten()
+            });
+            let found: Vec<Stage> = stages.collect();
+            let is_known = lean.parts.iter().any(|part| {
+                part.kind == PartKind::Function && part.names.iter().any(|name| name == entry)
+            });
+            found.first().copied().filter(|_| found.len() == 1 && is_known)
         }
-        if depth == 0 && matches!(byte, b';' | b'}') {
-            let declaration = text[start..=at].trim();
-            start = at + 1;
-            if declaration != ";" {
-                parts.push(declaration);
-            }
-        }
-    }
-    (text[start..].trim().is_empty() && parts.len() <= DECLARATIONS).then_some(parts)
-}
-
-/// What a text declares; `None` where it is of a kind that concerns the module as a whole.
-fn part(text: &str) -> Option<Part<'_>> {
-    let mut attributes = Vec::new();
-    let mut rest = text;
-    while let Some(after) = rest.strip_prefix('@') {
-        let name = words(after).next().filter(|word| word.start == 0)?.text;
-        attributes.push(name);
-        rest = after[name.len()..].trim_start();
-        if rest.starts_with('(') {
-            rest = rest.split_once(')')?.1.trim_start();
-        }
-    }
-    let mut words = words(rest);
-    let (keyword, mut name) = (words.next()?.text, words.next()?.text);
-    let is_entry = attributes.iter().any(|attribute| matches!(*attribute, "vertex" | "fragment"));
-    let kind = match keyword {
-        "fn" if attributes.contains(&"compute") => return None,
-        "fn" if is_entry => Kind::Entry,
-        "fn" => Kind::Function,
-        // An alias may hide what is passed on.
-        "alias" if HANDLES.iter().any(|handle| rest.contains(handle)) => return None,
-        "struct" | "const" | "alias" => Kind::Other,
-        "var" => {
-            let (_, after) = rest.split_once("var")?;
-            let space = after.trim_start().strip_prefix('<');
-            // Lengths of buffers are passed along by the number of the buffer.
-            if space.and_then(|space| self::words(space).next()).is_some_and(|space| space.text == "storage") {
-                return None;
-            }
-            let after = if space.is_some() { after.split_once('>')?.1 } else { after };
-            name = self::words(after).next()?.text;
-            Kind::Variable
-        }
-        _ => return None,
     };
-    Some(Part { kind, name })
+    match stage {
+        Some(Stage::Vertex) => Ok(ShaderStage::Vertex),
+        Some(Stage::Fragment) => Ok(ShaderStage::Fragment),
+        _ => Err(Reason::EntryPoint),
+    }
 }
 
-/// How names begin that naga gives to what it adds to a module.
-const ADDED: &[&str] = &[
-    "_",
-    "array_",
-    "gen_",
-    "naga",
-    "Naga",
-    "gl_",
-    "Construct",
-    "ZeroValue",
-    "GetMat",
-    "SetMat",
-    "ret_",
-    "VertexInput",
-    "VertexOutput",
-    "FragmentInput",
-    "FragmentOutput",
-];
-
-/// Whether naga writes the name as it is, but for an underscore where a language has taken it.
-fn is_plain(name: &str) -> bool {
-    let is_added = name == "member" || ADDED.iter().any(|prefix| name.starts_with(prefix));
-    !is_added && !name.ends_with('_') && !name.contains("__")
+/// The stage that an attribute before a function names.
+fn attribute(head: &str) -> Option<Stage> {
+    words(head).filter(|word| word.before == b'@').find_map(|word| match word.text {
+        "vertex" => Some(Stage::Vertex),
+        "fragment" => Some(Stage::Fragment),
+        "compute" => Some(Stage::Compute),
+        _ => None,
+    })
 }
 
-/// Whether a name means two things where they could be taken for each other: one of the entry
-/// point's arguments, or a member of their types, is called as a declaration; a member of any
-/// structure as a type or a constant; a declaration as what naga adds for the entry point.
-fn is_ambiguous(known: &[Arc<Known>], root: usize, names: &HashMap<&str, usize>) -> bool {
-    let scan = &known[root].scan;
-    let types = scan.names[..scan.signature].iter().filter_map(|name| names.get(&*name.text));
-    let border = types.flat_map(|index| &known[*index].scan.members).chain(&scan.members);
-    let is_shared = |name: &str| names.get(name).is_some_and(|index| known[*index].kind == Kind::Other);
-    let members = known.iter().filter(|known| known.kind == Kind::Other).flat_map(|known| &known.scan.members);
-    let is_added = |end: &str| names.contains_key(format!("{}{end}", known[root].name).as_str());
-    border.into_iter().any(|name| names.contains_key(&**name))
-        || members.into_iter().any(|name| is_shared(name))
-        || ["Input", "Output"].into_iter().any(is_added)
+fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
+    let mut numbers = vec![usize::MAX; lean.parts.len()];
+    let kept: Vec<(usize, &Part)> = lean
+        .parts
+        .iter()
+        .enumerate()
+        .filter(|(_, part)| part.kind != PartKind::Directive && !part.range.is_empty())
+        .collect();
+    for (number, (index, _)) in kept.iter().enumerate() {
+        numbers[*index] = number;
+    }
+    let mut functions = BTreeSet::new();
+    for (_, part) in &kept {
+        let text = &lean.text[part.range.clone()];
+        refuse(part, text, lean.language)?;
+        if part.kind == PartKind::Function && !part.names.iter().all(|name| functions.insert(name))
+        {
+            return Err(Reason::Overload);
+        }
+    }
+    let number = |used: &u32| match numbers[*used as usize] {
+        usize::MAX => all_of(lean, *used, &numbers),
+        number => vec![number],
+    };
+    let declared = kept.into_iter().map(|(_, part)| {
+        let text = &lean.text[part.range.clone()];
+        let is_function = part.kind == PartKind::Function;
+        let head = if is_function { text.split('{').next().unwrap_or(text) } else { text };
+        let mut uses: Vec<usize> = part.uses.iter().flat_map(number).collect();
+        uses.sort_unstable();
+        uses.dedup();
+        Declaration {
+            kind: part.kind,
+            names: &part.names,
+            text,
+            head,
+            uses,
+            head_uses: Vec::new(),
+            hash: hash([text.as_bytes()]),
+        }
+    });
+    let mut declared: Vec<Declaration<'_>> = declared.collect();
+    // What stands in a head is told by its words: a parameter that has the name of a declaration
+    // counts as a use too, and changes no more than the key.
+    for index in 0..declared.len() {
+        let heads: BTreeSet<&str> = words(declared[index].head).map(|word| word.text).collect();
+        let named = |used: &usize| declared[*used].names.iter().any(|name| heads.contains(&**name));
+        declared[index].head_uses = declared[index].uses.iter().copied().filter(named).collect();
+    }
+    if lean.language == Language::Glsl && initialised_by_variables(&declared) {
+        return Err(Reason::Initialiser);
+    }
+    Ok(declared)
 }
 
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
+/// What an alias that is no more stands for: the declarations that it names.
+fn all_of(lean: &Composed, alias: u32, numbers: &[usize]) -> Vec<usize> {
+    let (mut open, mut seen, mut found) = (vec![alias], BTreeSet::new(), Vec::new());
+    while let Some(part) = open.pop() {
+        match numbers[part as usize] {
+            usize::MAX if seen.insert(part) => open.extend(&lean.parts[part as usize].uses),
+            usize::MAX => {}
+            number => found.push(number),
+        }
+    }
+    found
+}
+
+/// Declarations with which no text is taken apart.
+fn refuse(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
+    let is_storage = |text: &str| match language {
+        Language::Wesl => {
+            let space =
+                text.split_once('<').filter(|(before, _)| before.trim_end().ends_with("var"));
+            space.is_some_and(|(_, space)| {
+                words(space).next().is_some_and(|word| word.text == "storage")
+            })
+        }
+        Language::Glsl => words(text).any(|word| word.text == "buffer"),
+    };
+    match part.kind {
+        PartKind::Override => Err(Reason::Override),
+        PartKind::Prototype => Err(Reason::Overload),
+        PartKind::Other => Err(Reason::Declaration),
+        // An alias is left only where it could not be expanded.
+        PartKind::Alias => Err(Reason::Declaration),
+        PartKind::Variable if is_storage(text) => Err(Reason::StorageBuffer),
+        PartKind::Variable if text.contains("binding_array") => Err(Reason::BindingArray),
+        _ if language == Language::Glsl && text.contains("__LINE__") => Err(Reason::Declaration),
+        _ => Ok(()),
+    }
+}
+
+/// Variables are put in an order of their own, so none may need another.
+fn initialised_by_variables(declared: &[Declaration<'_>]) -> bool {
+    let is_variable = |index: &usize| declared[*index].kind == PartKind::Variable;
+    let early = |declaration: &&Declaration<'_>| {
+        !matches!(declaration.kind, PartKind::Function | PartKind::Assertion)
+    };
+    declared.iter().filter(early).any(|declaration| declaration.uses.iter().any(is_variable))
+}
+
+/// The functions that the entry point reaches, callees first.
+fn order(declared: &[Declaration<'_>], entry: &str) -> Result<Vec<usize>, Reason> {
+    let is_function = |index: usize| declared[index].kind == PartKind::Function;
+    let names: HashMap<&str, usize> = (0..declared.len())
+        .filter(|index| is_function(*index))
+        .map(|index| (declared[index].name(), index))
+        .collect();
+    let root = *names.get(entry).ok_or(Reason::EntryPoint)?;
+    let mut walk = Walk { declared, state: vec![State::New; declared.len()], order: Vec::new() };
+    walk.visit(root, 0)?;
+    Ok(walk.order)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
-    #[default]
     New,
     Open,
-    Known,
+    Done,
 }
 
-#[derive(Default)]
-struct Facts {
-    state: State,
-    key: Key,
-    /// Of what others can notice: of a function, from outside; of everything else, all of it.
-    face: Key,
-    /// Of the variables, and of the acts of functions, that are reached; sorted.
-    reached: Vec<Key>,
-    /// Of the function's text and of the acts below it, if it acts.
-    act: Option<Key>,
-    /// Whether derivatives are taken, here or below.
-    derives: bool,
-}
-
-struct Keys<'a> {
-    /// The stages of one program are written differently.
-    stage: Key,
-    texts: &'a [&'a str],
-    known: &'a [Arc<Known>],
-    names: &'a HashMap<&'a str, usize>,
-    facts: Vec<Facts>,
+struct Walk<'w, 'a> {
+    declared: &'w [Declaration<'a>],
+    state: Vec<State>,
     order: Vec<usize>,
 }
 
-impl Keys<'_> {
-    /// Finds the facts of a declaration after those of all that it refers to.
-    fn visit(&mut self, index: usize, depth: usize) -> Option<()> {
-        match self.facts[index].state {
-            State::Known => return Some(()),
-            State::Open => return None,
-            State::New => {}
+impl Walk<'_, '_> {
+    fn visit(&mut self, function: usize, depth: usize) -> Result<(), Reason> {
+        match self.state[function] {
+            State::Done => return Ok(()),
+            State::Open => return Err(Reason::Recursion),
+            State::New if depth == DEPTH => return Err(Reason::Recursion),
+            State::New => self.state[function] = State::Open,
         }
-        self.facts[index].state = State::Open;
-        let known = self.known[index].clone();
-        let found = known.scan.names.iter().map(|name| (name, self.names.get(&*name.text).copied()));
-        let names: Vec<(&Name, Option<usize>)> = found.collect();
-        for reference in names.iter().filter_map(|(_, index)| *index) {
-            (depth < DEPTH).then(|| self.visit(reference, depth + 1))??;
+        for used in &self.declared[function].uses {
+            if *used != function && self.declared[*used].kind == PartKind::Function {
+                self.visit(*used, depth + 1)?;
+            }
         }
-        let facts = match known.kind {
-            Kind::Function | Kind::Entry => self.function(&known, &names)?,
-            Kind::Variable | Kind::Other => self.other(&known, &names)?,
-        };
-        self.facts[index] = Facts { state: State::Known, ..facts };
-        if matches!(known.kind, Kind::Function | Kind::Entry) {
-            self.order.push(index);
-        }
-        Some(())
-    }
-
-    fn other(&self, known: &Known, names: &[(&Name, Option<usize>)]) -> Option<Facts> {
-        let references = || names.iter().filter_map(|(_, index)| *index);
-        let calls = references().any(|index| matches!(self.known[index].kind, Kind::Function | Kind::Entry));
-        let face = hash(&known.text, references().map(|index| &self.facts[index].face));
-        let reached = if known.kind == Kind::Variable { vec![face] } else { Vec::new() };
-        (!calls).then(|| Facts { face, reached, ..Facts::default() })
-    }
-
-    fn function(&self, known: &Known, names: &[(&Name, Option<usize>)]) -> Option<Facts> {
-        let below = || names.iter().filter_map(|(_, index)| Some(&self.facts[(*index)?]));
-        let derives = |(name, index): &(&Name, Option<usize>)| index.map_or(name.derives, |index| self.facts[index].derives);
-        // Where neighbouring fragments may have parted, a derivative has to be looked at in full.
-        if names.iter().any(|named| named.0.loud && derives(named)) {
-            return None;
-        }
-        // What is acted on depends on no value, and so on no function that only computes one.
-        let acts = known.scan.acts || names.iter().any(|(name, index)| index.map_or(name.acts, |index| self.is_shared(index)));
-        let act = acts.then(|| hash(&known.text, below().filter_map(|facts| facts.act.as_ref())));
-        let mut reached: Vec<Key> = below().flat_map(|facts| facts.reached.iter().copied()).chain(act).collect();
-        reached.sort_unstable();
-        reached.dedup();
-        let signature = names[..known.scan.signature].iter().filter_map(|(_, index)| Some(&self.facts[(*index)?].face));
-        let face = hash(&known.head, signature.chain(&reached));
-        let key = hash(&known.text, below().map(|facts| &facts.face).chain([&self.stage]));
-        let derives = names.iter().any(derives);
-        Some(Facts { face, key, reached, act, derives, ..Facts::default() })
-    }
-
-    /// Whether others can notice that a variable was used: it is no uniform block.
-    fn is_shared(&self, index: usize) -> bool {
-        self.known[index].kind == Kind::Variable && !self.texts[index].contains("<uniform")
+        self.state[function] = State::Done;
+        self.order.push(function);
+        Ok(())
     }
 }
 
-fn hash<'a>(text: &[u8], keys: impl Iterator<Item = &'a Key>) -> Key {
-    let mut bytes = Vec::with_capacity(text.len() + 256);
-    bytes.extend_from_slice(&(text.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(text);
-    keys.for_each(|key| bytes.extend_from_slice(key));
+/// 128 bits over parts that cannot run into each other.
+pub fn hash<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> Key {
+    let mut bytes = Vec::with_capacity(512);
+    for part in parts {
+        bytes.extend_from_slice(&(part.len() as u64).to_le_bytes());
+        bytes.extend_from_slice(part);
+    }
     let mut key = [0; 16];
     key.copy_from_slice(&blake3::hash(&bytes).as_bytes()[..16]);
     key

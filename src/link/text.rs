@@ -1,6 +1,7 @@
 //! A text that naga wrote, by its declarations.
 
 use super::words::{begins_word, end, words};
+use crate::emit::is_header_line;
 
 /// What a declaration of an output is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,9 +39,7 @@ pub fn split(text: &str) -> Result<(&str, Vec<Declared<'_>>), String> {
 
 /// Bytes of the lines that begin a text of its language.
 fn header(text: &str) -> usize {
-    let starts = ["#", "//", "precision ", "using ", "enable ", "requires "];
-    let is_header = |line: &&str| line.trim().is_empty() || starts.iter().any(|start| line.starts_with(start));
-    text.split_inclusive('\n').take_while(is_header).map(str::len).sum()
+    text.split_inclusive('\n').take_while(|line| is_header_line(line)).map(str::len).sum()
 }
 
 /// Bytes of the declaration that a text begins with, the semicolon after its brackets too.
@@ -58,7 +57,11 @@ fn length(text: &str) -> Option<usize> {
         if depth == 0 && byte == b'}' {
             let after = &text[at + 1..];
             let blanks = after.len() - after.trim_start().len();
-            return Some(if after.trim_start().starts_with(';') { at + blanks + 2 } else { at + 1 });
+            return Some(if after.trim_start().starts_with(';') {
+                at + blanks + 2
+            } else {
+                at + 1
+            });
         }
     }
     None
@@ -71,18 +74,31 @@ fn declaration(text: &str) -> Result<Declared<'_>, String> {
     let (kind, name) = match head.stop {
         _ if has("struct") || has("cbuffer") => {
             let kind = if has("struct") { Kind::Type } else { Kind::Global };
-            (kind, head.words.iter().skip_while(|word| !matches!(**word, "struct" | "cbuffer")).nth(1).copied())
+            (
+                kind,
+                head.words
+                    .iter()
+                    .skip_while(|word| !matches!(**word, "struct" | "cbuffer"))
+                    .nth(1)
+                    .copied(),
+            )
         }
         _ if has("typedef") || has("alias") => (Kind::Type, last()),
         b'(' => (Kind::Function, last()),
         // A block of uniforms is called by the name of its instance.
-        b'{' if has("uniform") || has("buffer") => (Kind::Global, words(text).last().map(|word| word.text)),
+        b'{' if has("uniform") || has("buffer") => {
+            (Kind::Global, words(text).last().map(|word| word.text))
+        }
         b'{' | b' ' => (Kind::Global, None),
-        _ if has("const") && !head.words.iter().any(|word| word.starts_with("Sampler")) => (Kind::Constant, last()),
+        _ if has("const") && !head.words.iter().any(|word| word.starts_with("Sampler")) => {
+            (Kind::Constant, last())
+        }
         _ if has("constant") => (Kind::Constant, last()),
         _ => (Kind::Global, last()),
     };
-    let name = name.ok_or_else(|| format!("a declaration without a name: {}", text.chars().take(60).collect::<String>()))?;
+    let name = name.ok_or_else(|| {
+        format!("a declaration without a name: {}", text.chars().take(60).collect::<String>())
+    })?;
     Ok(Declared { kind, name, text })
 }
 
@@ -106,7 +122,9 @@ fn head(text: &str) -> Head<'_> {
             b'(' | b'{' | b'=' | b'[' | b';' | b':' => return Head { words, stop: byte },
             // Attributes of WGSL, and layouts of GLSL, have arguments of their own.
             b'@' => {
-                at += text[at..].find(|character: char| !character.is_ascii_alphanumeric() && character != '_').unwrap_or(0);
+                at += text[at..]
+                    .find(|character: char| !character.is_ascii_alphanumeric() && character != '_')
+                    .unwrap_or(0);
                 is_attribute = true;
                 continue;
             }

@@ -1,10 +1,9 @@
 //! Identifiers of a shading language's text: WGSL, or one of the C family, without comments.
 
-/// An identifier and where it stands.
+/// An identifier.
 #[derive(Debug, Clone, Copy)]
 pub struct Word<'a> {
     pub text: &'a str,
-    pub start: usize,
     /// The last byte before it that is not blank; a blank at the start of the text.
     pub before: u8,
 }
@@ -20,7 +19,7 @@ pub fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
             let last = before;
             before = if byte.is_ascii_whitespace() { before } else { bytes[at - 1] };
             if begins_word(byte) {
-                return Some(Word { text: &text[start..at], start, before: last });
+                return Some(Word { text: &text[start..at], before: last });
             }
         }
         None
@@ -39,8 +38,10 @@ pub fn end(bytes: &[u8], start: usize) -> usize {
         _ => byte.is_ascii_alphanumeric() || *byte == b'_',
     };
     let long = first.is_ascii_digit() || begins_word(first);
-    let rest = if long { bytes[start + 1..].iter().take_while(|byte| belongs(byte)).count() } else { 0 };
+    let rest =
+        if long { bytes[start + 1..].iter().take_while(|byte| belongs(byte)).count() } else { 0 };
     // A character of several bytes is one.
-    let more = bytes[start + 1..].iter().take_while(|byte| first >= 0x80 && **byte & 0xc0 == 0x80).count();
+    let more =
+        bytes[start + 1..].iter().take_while(|byte| first >= 0x80 && **byte & 0xc0 == 0x80).count();
     start + 1 + rest + more
 }

@@ -12,5 +12,8 @@ pub fn decompress(_packed: &[u8], _most: usize) -> io::Result<Vec<u8>> {
 }
 
 fn absent() -> io::Error {
-    io::Error::new(io::ErrorKind::Unsupported, "this build has no single-file bundles: enable the feature `single-file` of lamplight")
+    io::Error::new(
+        io::ErrorKind::Unsupported,
+        "this build has no single-file bundles: enable the feature `single-file` of lamplight",
+    )
 }

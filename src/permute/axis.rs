@@ -50,7 +50,8 @@ pub enum Mode {
 
 impl Mode {
     /// Every mode, by its name in manifests.
-    pub const ALL: &[(&str, Self)] = &[("static", Self::Static), ("spec", Self::Spec), ("dynamic", Self::Dynamic)];
+    pub const ALL: &[(&str, Self)] =
+        &[("static", Self::Static), ("spec", Self::Spec), ("dynamic", Self::Dynamic)];
 
     /// The name in manifests.
     pub fn name(self) -> &'static str {
@@ -97,7 +98,11 @@ impl Axis {
     pub fn macros(&self) -> Vec<String> {
         let own = self.name.to_ascii_uppercase();
         let values = match self.kind {
-            Kind::Enum => self.values.iter().map(|value| format!("{own}_{}", value.to_string().to_ascii_uppercase())).collect(),
+            Kind::Enum => self
+                .values
+                .iter()
+                .map(|value| format!("{own}_{}", value.to_string().to_ascii_uppercase()))
+                .collect(),
             Kind::Bool | Kind::Int => Vec::new(),
         };
         std::iter::once(own).chain(values).collect()

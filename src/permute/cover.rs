@@ -51,20 +51,26 @@ pub fn pairwise(space: &Space) -> Cover {
 /// The cover where there are no pairs: each valid value of the only axis, or the only point.
 fn pairless(space: &Space) -> Vec<Assignment> {
     match space.axes() {
-        [axis] => axis.domain().iter().filter_map(|ordinal| space.pick_valid(&[(0, ordinal)], |_, open| first(open))).collect(),
+        [axis] => axis
+            .domain()
+            .iter()
+            .filter_map(|ordinal| space.pick_valid(&[(0, ordinal)], |_, open| first(open)))
+            .collect(),
         _ => space.pick_valid(&[], |_, open| first(open)).into_iter().collect(),
     }
 }
 
 fn pairs(space: &Space) -> BTreeSet<Pair> {
-    let values = space
-        .axes()
-        .iter()
-        .enumerate()
-        .flat_map(|(index, axis)| axis.domain().iter().map(move |ordinal| (index, ordinal)).collect::<Vec<_>>());
+    let values = space.axes().iter().enumerate().flat_map(|(index, axis)| {
+        axis.domain().iter().map(move |ordinal| (index, ordinal)).collect::<Vec<_>>()
+    });
     let values: Vec<(usize, usize)> = values.collect();
-    let second =
-        |first: (usize, usize)| values.iter().filter(move |second| second.0 > first.0).map(move |second| Pair { first, second: *second });
+    let second = |first: (usize, usize)| {
+        values
+            .iter()
+            .filter(move |second| second.0 > first.0)
+            .map(move |second| Pair { first, second: *second })
+    };
     values.iter().flat_map(|first| second(*first)).collect()
 }
 
@@ -72,8 +78,13 @@ fn covering(space: &Space, pair: Pair, left: &BTreeSet<Pair>) -> Option<Assignme
     let pins = [pair.first, pair.second];
     let mut chosen = pins.to_vec();
     space.pick_valid(&pins, |axis, open| {
-        let gain = |ordinal: usize| chosen.iter().filter(|other| left.contains(&ordered(**other, (axis, ordinal)))).count();
-        let best = open.iter().max_by_key(|ordinal| (gain(*ordinal), std::cmp::Reverse(*ordinal))).unwrap_or(0);
+        let gain = |ordinal: usize| {
+            chosen.iter().filter(|other| left.contains(&ordered(**other, (axis, ordinal)))).count()
+        };
+        let best = open
+            .iter()
+            .max_by_key(|ordinal| (gain(*ordinal), std::cmp::Reverse(*ordinal)))
+            .unwrap_or(0);
         if !pins.iter().any(|(pinned, _)| *pinned == axis) {
             chosen.push((axis, best));
         }

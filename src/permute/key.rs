@@ -6,11 +6,9 @@ use super::Setting;
 use super::axis::{Axis, Kind, Mode, ValueSet};
 use super::quoted::Quoted;
 use super::space::{Formula, Space};
+use crate::bundle::key::{self, Part, Word};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::Span;
-
-/// The name of the point with every axis at its default.
-pub const DEFAULT: &str = "default";
 
 /// A value for every axis of a space, as ordinals in the order of its axes. Ordered canonically.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -28,7 +26,8 @@ impl Assignment {
     }
 
     pub(super) fn formula(&self) -> Formula {
-        let atom = |(axis, ordinal): (usize, &u8)| Formula::Is(axis, ValueSet::single((*ordinal).into()));
+        let atom =
+            |(axis, ordinal): (usize, &u8)| Formula::Is(axis, ValueSet::single((*ordinal).into()));
         Formula::All(self.0.iter().enumerate().map(atom).collect())
     }
 }
@@ -40,9 +39,13 @@ pub struct Key(String);
 
 impl Key {
     pub(super) fn of(axes: &[Axis], point: &Assignment) -> Self {
-        let differing = axes.iter().zip(&point.0).filter(|(axis, ordinal)| axis.default != usize::from(**ordinal));
-        let parts: Vec<String> = differing.map(|(axis, ordinal)| part(axis, &axis.values[usize::from(*ordinal)])).collect();
-        Self(if parts.is_empty() { DEFAULT.to_owned() } else { parts.join(",") })
+        let differing: Vec<(&str, String)> = axes
+            .iter()
+            .zip(&point.0)
+            .filter(|(axis, ordinal)| axis.default != usize::from(**ordinal))
+            .map(|(axis, ordinal)| (&*axis.name, axis.values[usize::from(*ordinal)].to_string()))
+            .collect();
+        Self(key::write(differing.iter().map(|(axis, value)| (*axis, value.as_str()))))
     }
 
     /// The text.
@@ -57,21 +60,22 @@ impl fmt::Display for Key {
     }
 }
 
-fn part(axis: &Axis, value: &Setting) -> String {
-    match value {
-        Setting::Bool(true) => axis.name.clone(),
-        value => format!("{}={value}", axis.name),
-    }
+/// The point that a key names, canonical or not: parts in any order, defaults spelt out, blanks
+/// around words. Whether the point is valid is another question.
+pub fn parse(space: &Space, key: &Quoted) -> Result<Assignment, Diagnostics> {
+    parse_over(space, space.default_assignment(), key)
 }
 
-/// The point that a key names, canonical or not: parts in any order, defaults spelt out, blanks
-/// around parts. Whether the point is valid is another question.
-pub fn parse(space: &Space, key: &Quoted) -> Result<Assignment, Diagnostics> {
-    let mut point = space.default_assignment();
+/// The point that a key names where axes that it leaves out are as at another point.
+pub fn parse_over(
+    space: &Space,
+    mut point: Assignment,
+    key: &Quoted,
+) -> Result<Assignment, Diagnostics> {
     let mut seen: Vec<Option<Span>> = vec![None; space.axes().len()];
     let mut problems = Vec::new();
-    for (start, text) in parts(&key.text) {
-        match choice(space, key, start, text) {
+    for part in key::parts(&key.text) {
+        match choice(space, key, part) {
             Ok((axis, ordinal, span)) => {
                 problems.extend(seen[axis].map(|first| twice(space, axis, span, first)));
                 seen[axis] = Some(span);
@@ -83,37 +87,23 @@ pub fn parse(space: &Space, key: &Quoted) -> Result<Assignment, Diagnostics> {
     if problems.is_empty() { Ok(point) } else { Err(problems) }
 }
 
-/// The parts between commas with their offsets; none for the default point.
-fn parts(text: &str) -> Vec<(usize, &str)> {
-    if text.trim().is_empty() || text.trim() == DEFAULT {
-        return Vec::new();
+fn choice(space: &Space, key: &Quoted, part: Part<'_>) -> Result<(usize, usize, Span), Diagnostic> {
+    let place = |word: Word<'_>| key.span(word.start..word.start + word.text.len());
+    let last = part.value.unwrap_or(part.axis);
+    let span = key.span(part.axis.start..last.start + last.text.len());
+    if part.axis.text.is_empty() {
+        return Err(Diagnostic::error(
+            codes::KEY_SYNTAX,
+            "expected `axis=value` or the name of a boolean axis",
+        )
+        .at(span, "no axis here"));
     }
-    let mut start = 0;
-    let parts = text.split(',').map(|part| {
-        let found = trimmed(start, part);
-        start += part.len() + 1;
-        found
-    });
-    parts.collect()
-}
-
-fn trimmed(start: usize, text: &str) -> (usize, &str) {
-    (start + text.len() - text.trim_start().len(), text.trim())
-}
-
-fn choice(space: &Space, key: &Quoted, start: usize, text: &str) -> Result<(usize, usize, Span), Diagnostic> {
-    let span = key.span(start..start + text.len());
-    let (name, value) = text.split_once('=').map_or((text, None), |(name, value)| (name.trim_end(), Some((name.len() + 1, value))));
-    if name.is_empty() {
-        return Err(Diagnostic::error(codes::KEY_SYNTAX, "expected `axis=value` or the name of a boolean axis").at(span, "no axis here"));
-    }
-    let axis = find_axis(space.axes(), name, key.span(start..start + name.len()))?;
+    let axis = find_axis(space.axes(), part.axis.text, place(part.axis))?;
     let found = &space.axes()[axis];
-    let ordinal = match value {
+    let ordinal = match part.value {
         None if found.kind == Kind::Bool => find_value(found, &Setting::Bool(true), span)?,
-        Some((offset, value)) if !value.trim().is_empty() => {
-            let (offset, value) = trimmed(start + offset, value);
-            find_value(found, &Setting::parse(value), key.span(offset..offset + value.len()))?
+        Some(value) if !value.text.is_empty() => {
+            find_value(found, &Setting::parse(value.text), place(value))?
         }
         None | Some(_) => return Err(valueless(found, span)),
     };
@@ -126,7 +116,9 @@ pub(super) fn find_axis(axes: &[Axis], name: &str, span: Span) -> Result<usize, 
         Some(index) if axes[index].mode == Mode::Dynamic => Err(dynamic(&axes[index], span)),
         Some(index) => Ok(index),
         None => {
-            let unknown = Diagnostic::error(codes::UNKNOWN_AXIS, format!("there is no axis `{name}`")).at(span, "not declared");
+            let unknown =
+                Diagnostic::error(codes::UNKNOWN_AXIS, format!("there is no axis `{name}`"))
+                    .at(span, "not declared");
             Err(unknown.suggest(name, axes.iter().map(|axis| axis.name.as_str())))
         }
     }
@@ -136,10 +128,16 @@ pub(super) fn find_axis(axes: &[Axis], name: &str, span: Span) -> Result<usize, 
 pub(super) fn find_value(axis: &Axis, value: &Setting, span: Span) -> Result<usize, Diagnostic> {
     axis.ordinal(value).ok_or_else(|| {
         let (names, text) = (axis.value_names(), value.to_string());
-        let unknown = Diagnostic::error(codes::UNKNOWN_VALUE, format!("axis `{}` has no value `{text}`", axis.name));
+        let unknown = Diagnostic::error(
+            codes::UNKNOWN_VALUE,
+            format!("axis `{}` has no value `{text}`", axis.name),
+        );
         let unknown = unknown.at(span, "not one of its values");
         let unknown = match axis.kind {
-            _ if names.contains(&text) => unknown.note(format!("help: the axis is {}; write the value without quotes", axis.kind.name())),
+            _ if names.contains(&text) => unknown.note(format!(
+                "help: the axis is {}; write the value without quotes",
+                axis.kind.name()
+            )),
             Kind::Enum => unknown.suggest(&text, names.iter().map(String::as_str)),
             Kind::Bool | Kind::Int => unknown,
         };
@@ -148,9 +146,12 @@ pub(super) fn find_value(axis: &Axis, value: &Setting, span: Span) -> Result<usi
 }
 
 fn dynamic(axis: &Axis, span: Span) -> Diagnostic {
-    Diagnostic::error(codes::DYNAMIC_AXIS, format!("axis `{}` is dynamic: its value is chosen while running", axis.name))
-        .at(span, "permutations do not differ in it")
-        .at(axis.span, "declared here")
+    Diagnostic::error(
+        codes::DYNAMIC_AXIS,
+        format!("axis `{}` is dynamic: its value is chosen while running", axis.name),
+    )
+    .at(span, "permutations do not differ in it")
+    .at(axis.span, "declared here")
 }
 
 fn valueless(axis: &Axis, span: Span) -> Diagnostic {

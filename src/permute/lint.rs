@@ -8,16 +8,27 @@ use crate::source::Span;
 
 /// Warnings about a space; `what` and `place` name its program.
 pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
-    let mut warnings: Vec<Diagnostic> = space.constraints().iter().filter_map(|constraint| trivial(space, constraint)).collect();
-    if space.valid_count() == 0 && warnings.iter().any(|warning| warning.code == codes::CONSTRAINT_ALWAYS_FALSE) {
+    let mut warnings: Vec<Diagnostic> =
+        space.constraints().iter().filter_map(|constraint| trivial(space, constraint)).collect();
+    if space.valid_count() == 0
+        && warnings.iter().any(|warning| warning.code == codes::CONSTRAINT_ALWAYS_FALSE)
+    {
         return warnings;
     }
     if space.valid_count() == 0 {
         let message = format!("no permutation of {what} satisfies all constraints");
-        warnings.push(Diagnostic::warning(codes::NO_PERMUTATION, message).at(place, "has no permutation"));
+        warnings.push(
+            Diagnostic::warning(codes::NO_PERMUTATION, message).at(place, "has no permutation"),
+        );
         return warnings;
     }
-    warnings.extend(space.axes().iter().zip(space.valid_values()).flat_map(|(axis, valid)| never_valid(axis, valid)));
+    warnings.extend(
+        space
+            .axes()
+            .iter()
+            .zip(space.valid_values())
+            .flat_map(|(axis, valid)| never_valid(axis, valid)),
+    );
     warnings.extend(space.lists().only.iter().filter_map(|slice| empty(space, slice)));
     warnings
 }
@@ -30,24 +41,40 @@ fn trivial(space: &Space, constraint: &Constraint) -> Option<Diagnostic> {
         all if all == space.full_count() => (codes::CONSTRAINT_ALWAYS_TRUE, "true"),
         _ => return None,
     };
-    let warning = Diagnostic::warning(code, format!("the constraint `{}` is always {word}", constraint.text));
+    let warning =
+        Diagnostic::warning(code, format!("the constraint `{}` is always {word}", constraint.text));
     Some(warning.at(constraint.span, format!("{word} whatever the axes are")))
 }
 
 fn never_valid(axis: &Axis, valid: ValueSet) -> Option<Diagnostic> {
-    let never: Vec<String> = axis.domain().without(valid).iter().map(|ordinal| format!("`{}`", axis.values[ordinal])).collect();
+    let never: Vec<String> = axis
+        .domain()
+        .without(valid)
+        .iter()
+        .map(|ordinal| format!("`{}`", axis.values[ordinal]))
+        .collect();
     let (subject, label) = match never.as_slice() {
         [] => return None,
-        [value] => (format!("value {value} of axis `{}` is", axis.name), "the constraints rule this value out"),
-        values => (format!("values {} of axis `{}` are", values.join(", "), axis.name), "the constraints rule these values out"),
+        [value] => (
+            format!("value {value} of axis `{}` is", axis.name),
+            "the constraints rule this value out",
+        ),
+        values => (
+            format!("values {} of axis `{}` are", values.join(", "), axis.name),
+            "the constraints rule these values out",
+        ),
     };
-    Some(Diagnostic::warning(codes::VALUE_NEVER_VALID, format!("{subject} in no valid permutation")).at(axis.span, label))
+    Some(
+        Diagnostic::warning(codes::VALUE_NEVER_VALID, format!("{subject} in no valid permutation"))
+            .at(axis.span, label),
+    )
 }
 
 fn empty(space: &Space, slice: &Slice) -> Option<Diagnostic> {
     let warning = || {
         let message = "this entry of `only` selects no valid permutation";
-        let warning = Diagnostic::warning(codes::EMPTY_SLICE, message).at(slice.span, "selects nothing");
+        let warning =
+            Diagnostic::warning(codes::EMPTY_SLICE, message).at(slice.span, "selects nothing");
         warning.note("an axis that an entry does not name is at its default")
     };
     (!space.meets(slice)).then(warning)

@@ -25,7 +25,8 @@ use super::space::Space;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::{SourceId, SourceSet, Span};
 
-const HEADER: &str = "# Ordinals of axes and values. Commit this file; lines are only ever appended.";
+const HEADER: &str =
+    "# Ordinals of axes and values. Commit this file; lines are only ever appended.";
 
 /// The digits of every program.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -50,7 +51,10 @@ impl Digit {
 
     /// The digit's value where the axis has that setting; 0 where it is not one of these.
     fn of(&self, setting: &Setting) -> u128 {
-        self.values.iter().position(|known| known == setting).map_or(0, |place| place as u128 + u128::from(self.added))
+        self.values
+            .iter()
+            .position(|known| known == setting)
+            .map_or(0, |place| place as u128 + u128::from(self.added))
     }
 
     fn setting(&self, digit: u128) -> Option<&Setting> {
@@ -72,7 +76,8 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Lock, Diagnostics> {
         }
         match digit(&lock, text) {
             Ok(digit) => lock.lines.push(digit),
-            Err(message) => problems.push(Diagnostic::error(codes::LOCK_SYNTAX, message).at(span, "in this line")),
+            Err(message) => problems
+                .push(Diagnostic::error(codes::LOCK_SYNTAX, message).at(span, "in this line")),
         }
     }
     if problems.is_empty() { Ok(lock) } else { Err(problems) }
@@ -86,8 +91,11 @@ fn digit(before: &Lock, line: &str) -> Result<Digit, String> {
     let mut words = words.peekable();
     let added = words.next_if_eq(&"+").is_some();
     let values: Vec<Setting> = words.map(Setting::parse).collect();
-    let mut known: Vec<&Setting> =
-        before.digits(program).filter(|(_, digit)| digit.axis == axis).flat_map(|(_, digit)| &digit.values).collect();
+    let mut known: Vec<&Setting> = before
+        .digits(program)
+        .filter(|(_, digit)| digit.axis == axis)
+        .flat_map(|(_, digit)| &digit.values)
+        .collect();
     if added == known.is_empty() {
         return Err(if added {
             format!("axis `{axis}` has no line before this one")
@@ -96,7 +104,9 @@ fn digit(before: &Lock, line: &str) -> Result<Digit, String> {
         });
     }
     known.extend(&values);
-    let twice = (1..known.len()).find(|at| known[..*at].contains(&known[*at])).map(|at| known[at].to_string());
+    let twice = (1..known.len())
+        .find(|at| known[..*at].contains(&known[*at]))
+        .map(|at| known[at].to_string());
     match twice {
         Some(value) => Err(format!("axis `{axis}` has the value `{value}` twice")),
         None if values.is_empty() => Err(format!("axis `{axis}` has no values here")),
@@ -109,11 +119,20 @@ impl Lock {
     pub fn extended(&self, program: &str, space: &Space) -> Self {
         let mut lock = self.clone();
         for axis in space.axes() {
-            let known: Vec<&Setting> =
-                self.digits(program).filter(|(_, digit)| digit.axis == axis.name).flat_map(|(_, digit)| &digit.values).collect();
-            let values: Vec<Setting> = in_order(axis).filter(|value| !known.contains(value)).cloned().collect();
+            let known: Vec<&Setting> = self
+                .digits(program)
+                .filter(|(_, digit)| digit.axis == axis.name)
+                .flat_map(|(_, digit)| &digit.values)
+                .collect();
+            let values: Vec<Setting> =
+                in_order(axis).filter(|value| !known.contains(value)).cloned().collect();
             if !values.is_empty() {
-                lock.lines.push(Digit { program: program.to_owned(), axis: axis.name.clone(), added: !known.is_empty(), values });
+                lock.lines.push(Digit {
+                    program: program.to_owned(),
+                    axis: axis.name.clone(),
+                    added: !known.is_empty(),
+                    values,
+                });
             }
         }
         lock
@@ -122,8 +141,12 @@ impl Lock {
     /// The number of a point. `None` if the lock lacks one of its values (extend it first) or
     /// has more digits than fit.
     pub fn dense(&self, program: &str, space: &Space, point: &Assignment) -> Option<u128> {
-        let settings: BTreeMap<&str, &Setting> =
-            space.axes().iter().enumerate().map(|(index, axis)| (axis.name.as_str(), space.value(index, point))).collect();
+        let settings: BTreeMap<&str, &Setting> = space
+            .axes()
+            .iter()
+            .enumerate()
+            .map(|(index, axis)| (axis.name.as_str(), space.value(index, point)))
+            .collect();
         let mut placed = 0;
         let mut dense = 0u128;
         for (weight, digit) in self.digits(program) {
@@ -149,18 +172,24 @@ impl Lock {
         if covered.is_some_and(|covered| dense >= covered) {
             return None;
         }
-        let ordinals = space.axes().iter().map(|axis| Some(axis.ordinal(settings.get(axis.name.as_str())?)? as u8));
+        let ordinals = space
+            .axes()
+            .iter()
+            .map(|axis| Some(axis.ordinal(settings.get(axis.name.as_str())?)? as u8));
         let point = Assignment(ordinals.collect::<Option<_>>()?);
         (self.dense(program, space, &point) == Some(dense)).then_some(point)
     }
 
     /// The digits of a program with their weights; `None` for a weight beyond 128 bits.
     fn digits<'a>(&'a self, program: &'a str) -> impl Iterator<Item = (Option<u128>, &'a Digit)> {
-        self.lines.iter().filter(move |digit| digit.program == program).scan(Some(1u128), |weight, digit| {
-            let own = *weight;
-            *weight = own.and_then(|own| own.checked_mul(digit.radix()));
-            Some((own, digit))
-        })
+        self.lines.iter().filter(move |digit| digit.program == program).scan(
+            Some(1u128),
+            |weight, digit| {
+                let own = *weight;
+                *weight = own.and_then(|own| own.checked_mul(digit.radix()));
+                Some((own, digit))
+            },
+        )
     }
 }
 

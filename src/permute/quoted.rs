@@ -23,12 +23,19 @@ impl Quoted {
 
     /// A part of a source, which means what it says.
     pub fn plain(sources: &SourceSet, span: Span) -> Self {
-        Self { text: sources.text(span).to_owned(), span, places: (span.start..=span.end).collect() }
+        Self {
+            text: sources.text(span).to_owned(),
+            span,
+            places: (span.start..=span.end).collect(),
+        }
     }
 
     /// A TOML string whose literal, quotes included, covers `span` and means `text`.
     pub fn toml(sources: &SourceSet, span: Span, text: &str) -> Self {
-        let places = places(sources.text(span), text).into_iter().map(|place| span.start + place as u32).collect();
+        let places = places(sources.text(span), text)
+            .into_iter()
+            .map(|place| span.start + place as u32)
+            .collect();
         Self { text: text.to_owned(), span, places }
     }
 
@@ -58,7 +65,10 @@ fn places(literal: &str, text: &str) -> Vec<usize> {
 /// The length of the opening quotes, with the newline that TOML drops, and whether the string
 /// has escapes. A bare key has neither.
 fn opening(literal: &str) -> (usize, bool) {
-    let quote = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quote| literal.starts_with(quote)).unwrap_or("");
+    let quote = ["\"\"\"", "'''", "\"", "'"]
+        .into_iter()
+        .find(|quote| literal.starts_with(quote))
+        .unwrap_or("");
     let rest = &literal[quote.len()..];
     let newline = match quote.len() {
         3 if rest.starts_with("\r\n") => 2,

@@ -74,7 +74,11 @@ pub fn report(program: &str, space: &Space) -> Report {
         stages: None,
         unique_sources: None,
         unique_outputs: None,
-        axes: axes.map(|(index, axis)| cost(axis, valid[index].len(), wanted, space.count_without(index).ok())).collect(),
+        axes: axes
+            .map(|(index, axis)| {
+                cost(axis, valid[index].len(), wanted, space.count_without(index).ok())
+            })
+            .collect(),
         static_in_glsl: Vec::new(),
     }
 }
@@ -87,7 +91,8 @@ fn cost(axis: &Axis, valid_values: usize, wanted: u128, without: Option<u128>) -
         values: axis.values.len(),
         valid_values,
         without: without.map(Count),
-        factor: without.map(|without| if without == 0 { 1.0 } else { wanted as f64 / without as f64 }),
+        factor: without
+            .map(|without| if without == 0 { 1.0 } else { wanted as f64 / without as f64 }),
     }
 }
 
@@ -95,8 +100,16 @@ impl Report {
     /// The rows of the funnel that are known, widest first.
     fn funnel(&self) -> Vec<(String, Count)> {
         let row = |name: &str, count: Count| (name.to_owned(), count);
-        let mut rows = vec![row("full space", self.full), row("after constraints", self.valid), row("after lists", self.wanted)];
-        rows.extend(self.stages.iter().flatten().map(|stage| row(&format!("unique in {}", stage.stage), Count(stage.unique.into()))));
+        let mut rows = vec![
+            row("full space", self.full),
+            row("after constraints", self.valid),
+            row("after lists", self.wanted),
+        ];
+        rows.extend(
+            self.stages.iter().flatten().map(|stage| {
+                row(&format!("unique in {}", stage.stage), Count(stage.unique.into()))
+            }),
+        );
         rows.extend(self.unique_sources.map(|count| row("unique sources", Count(count.into()))));
         rows.extend(self.unique_outputs.map(|count| row("unique outputs", Count(count.into()))));
         rows
@@ -106,7 +119,8 @@ impl Report {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "program {}", self.program)?;
-        let funnel = self.funnel().into_iter().map(|(name, count)| vec![name, count.to_string()]).collect();
+        let funnel =
+            self.funnel().into_iter().map(|(name, count)| vec![name, count.to_string()]).collect();
         table(f, &[Align::Left, Align::Right], funnel)?;
         for stage in self.stages.iter().flatten().filter(|stage| !stage.blind.is_empty()) {
             writeln!(f, "  {} is blind to {}", stage.stage, stage.blind.join(", "))?;
@@ -115,12 +129,21 @@ impl fmt::Display for Report {
             return Ok(());
         }
         writeln!(f)?;
-        let heading = ["axis", "kind", "mode", "values", "without it", "costs"].map(str::to_owned).to_vec();
+        let heading =
+            ["axis", "kind", "mode", "values", "without it", "costs"].map(str::to_owned).to_vec();
         let rows = std::iter::once(heading).chain(self.axes.iter().map(AxisCost::row)).collect();
-        table(f, &[Align::Left, Align::Left, Align::Left, Align::Right, Align::Right, Align::Right], rows)?;
+        table(
+            f,
+            &[Align::Left, Align::Left, Align::Left, Align::Right, Align::Right, Align::Right],
+            rows,
+        )?;
         match self.static_in_glsl.as_slice() {
             [] => Ok(()),
-            names => writeln!(f, "  static in GLSL, which is composed for each value: {}", names.join(", ")),
+            names => writeln!(
+                f,
+                "  static in GLSL, which is composed for each value: {}",
+                names.join(", ")
+            ),
         }
     }
 }
@@ -149,10 +172,11 @@ fn table(f: &mut fmt::Formatter<'_>, columns: &[Align], rows: Vec<Vec<String>>) 
     let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns.len()).map(width).collect();
     for row in &rows {
-        let cells = row.iter().zip(columns).zip(&widths).map(|((cell, align), width)| match align {
-            Align::Left => format!("{cell:<width$}"),
-            Align::Right => format!("{cell:>width$}"),
-        });
+        let cells =
+            row.iter().zip(columns).zip(&widths).map(|((cell, align), width)| match align {
+                Align::Left => format!("{cell:<width$}"),
+                Align::Right => format!("{cell:>width$}"),
+            });
         writeln!(f, "  {}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
     }
     Ok(())

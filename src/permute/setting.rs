@@ -13,12 +13,12 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// `true` and `false`, a decimal integer, or else a name.
+    /// `true` and `false`, a decimal integer as it is printed, or else a name.
     pub fn parse(text: &str) -> Self {
-        match (text, text.parse()) {
+        match (text, text.parse::<i64>()) {
             ("true", _) => Self::Bool(true),
             ("false", _) => Self::Bool(false),
-            (_, Ok(number)) => Self::Int(number),
+            (_, Ok(number)) if number.to_string() == text => Self::Int(number),
             _ => Self::Name(text.to_owned()),
         }
     }

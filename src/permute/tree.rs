@@ -39,7 +39,9 @@ impl<T> ReadTree<T> {
         for (depth, (name, answer)) in reads.iter().enumerate() {
             match self.nodes.get(node) {
                 None => return self.grow(&reads[depth..], value),
-                Some(Node::Question { name: asked, answers }) if asked == name => match answers.get(answer) {
+                Some(Node::Question { name: asked, answers }) if asked == name => match answers
+                    .get(answer)
+                {
                     Some(next) => node = *next,
                     None => return self.branch(node, answer.clone(), &reads[depth + 1..], value),
                 },
@@ -60,7 +62,9 @@ impl<T> ReadTree<T> {
         loop {
             match self.nodes.get(node)? {
                 Node::Leaf(value) => return Some(value),
-                Node::Question { name, answers } => node = *answers.get(settings.values.get(name)?)?,
+                Node::Question { name, answers } => {
+                    node = *answers.get(settings.values.get(name)?)?
+                }
             }
         }
     }
@@ -73,7 +77,13 @@ impl<T> ReadTree<T> {
         })
     }
 
-    fn branch(&mut self, node: usize, answer: Setting, rest: &[(String, Setting)], value: T) -> Result<(), Contradiction> {
+    fn branch(
+        &mut self,
+        node: usize,
+        answer: Setting,
+        rest: &[(String, Setting)],
+        value: T,
+    ) -> Result<(), Contradiction> {
         let next = self.nodes.len();
         if let Some(Node::Question { answers, .. }) = self.nodes.get_mut(node) {
             answers.insert(answer, next);
@@ -85,7 +95,10 @@ impl<T> ReadTree<T> {
     fn grow(&mut self, reads: &[(String, Setting)], value: T) -> Result<(), Contradiction> {
         for (name, answer) in reads {
             let next = self.nodes.len() + 1;
-            self.nodes.push(Node::Question { name: name.clone(), answers: BTreeMap::from([(answer.clone(), next)]) });
+            self.nodes.push(Node::Question {
+                name: name.clone(),
+                answers: BTreeMap::from([(answer.clone(), next)]),
+            });
         }
         self.nodes.push(Node::Leaf(value));
         Ok(())

@@ -40,25 +40,35 @@ pub fn open(root: &Path, sources: SourceSet) -> Result<Project, (SourceSet, Diag
 /// The package of a root folder and what it may import.
 pub fn packages(root: &Path, sources: &mut SourceSet) -> Result<Packages, Diagnostics> {
     if root.is_file() {
-        return Err(vec![Diagnostic::error(codes::UNREADABLE, format!("`{}` is a file, not a package's root folder", root.display()))]);
+        return Err(vec![Diagnostic::error(
+            codes::UNREADABLE,
+            format!("`{}` is a file, not a package's root folder", root.display()),
+        )]);
     }
     let disk = Disk::new(root).map_err(|error| vec![unreadable(root, &error)])?;
     let mut dependencies = wesl_toml::dependencies(root, sources)?;
     if !dependencies.iter().any(|package| package.name == LIBRARY) {
         dependencies.push(Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) });
     }
-    Ok(Packages { root: Package { name: "package".to_owned(), files: Box::new(disk) }, dependencies })
+    Ok(Packages {
+        root: Package { name: "package".to_owned(), files: Box::new(disk) },
+        dependencies,
+    })
 }
 
 /// The shader library itself as a package, from the binary.
 pub fn library() -> Packages {
-    Packages { root: Package { name: "package".to_owned(), files: Box::new(Embedded) }, dependencies: Vec::new() }
+    Packages {
+        root: Package { name: "package".to_owned(), files: Box::new(Embedded) },
+        dependencies: Vec::new(),
+    }
 }
 
 /// The package root that a file belongs to when none is given: what the nearest `wesl.toml`
 /// above it declares, or else its folder.
 pub fn root_of(file: &Path) -> PathBuf {
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder =
+        file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     folder
         .ancestors()
         .find_map(|ancestor| wesl_toml::declared_root(ancestor).filter(|root| is_below(file, root)))
@@ -67,17 +77,27 @@ pub fn root_of(file: &Path) -> PathBuf {
 
 /// The path of `file` relative to `root`, `/`-separated.
 pub fn relative(file: &Path, root: &Path) -> Result<String, Diagnostic> {
-    let real = |path: &Path| if path.as_os_str().is_empty() { Path::new(".").canonicalize() } else { path.canonicalize() };
+    let real = |path: &Path| {
+        if path.as_os_str().is_empty() {
+            Path::new(".").canonicalize()
+        } else {
+            path.canonicalize()
+        }
+    };
     let real_root = real(root).map_err(|error| unreadable(root, &error))?;
     let real_file = real(file).map_err(|error| unreadable(file, &error))?;
     if real_file.is_dir() {
-        return Err(Diagnostic::error(codes::UNREADABLE, format!("`{}` is a folder, not a file", file.display())));
+        return Err(Diagnostic::error(
+            codes::UNREADABLE,
+            format!("`{}` is a folder, not a file", file.display()),
+        ));
     }
     match real_file.strip_prefix(&real_root) {
         Ok(below) => Ok(slashed(below)),
-        Err(_) => {
-            Err(Diagnostic::error(codes::OUTSIDE_ROOT, format!("`{}` is not below the package root `{}`", file.display(), root.display())))
-        }
+        Err(_) => Err(Diagnostic::error(
+            codes::OUTSIDE_ROOT,
+            format!("`{}` is not below the package root `{}`", file.display(), root.display()),
+        )),
     }
 }
 
@@ -114,7 +134,10 @@ pub fn manifest(root: &Path, sources: &mut SourceSet) -> Result<Option<Manifest>
 /// Reads a manifest by its path.
 pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
     if path.is_dir() {
-        return Err(vec![Diagnostic::error(codes::UNREADABLE, format!("`{}` is a folder, not a manifest", path.display()))]);
+        return Err(vec![Diagnostic::error(
+            codes::UNREADABLE,
+            format!("`{}` is a folder, not a manifest", path.display()),
+        )]);
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let disk = Disk::new(folder).map_err(|error| vec![unreadable(path, &error)])?;
@@ -139,10 +162,11 @@ pub fn lock_path(manifest: &Path) -> PathBuf {
 
 /// The lock of dense keys beside a manifest; an empty one where there is no file.
 pub fn lock(manifest: &Path, sources: &mut SourceSet) -> Result<Lock, Diagnostics> {
-    let folder = manifest.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder =
+        manifest.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let disk = Disk::new(folder).map_err(|error| vec![unreadable(folder, &error)])?;
     let package = Package { name: String::new(), files: Box::new(disk) };
-    match source::read(sources, &package, LOCK).map_err(|error| vec![error])? {
+    match source::read(sources, &package, LOCK).map_err(|error| vec![error.into()])? {
         Some(id) => lock::parse(sources, id),
         None => Ok(Lock::default()),
     }
@@ -163,21 +187,33 @@ pub fn cache_folder(manifest: &Path) -> Option<PathBuf> {
     const NAME: &str = "lamplight-cache";
     let real = manifest.canonicalize().ok()?;
     let packages = real.ancestors().filter(|folder| folder.join("Cargo.toml").is_file());
-    if let Some(target) = packages.map(|folder| folder.join("target")).find(|target| target.is_dir()) {
+    if let Some(target) =
+        packages.map(|folder| folder.join("target")).find(|target| target.is_dir())
+    {
         return Some(target.join(NAME));
     }
-    let variable = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let variable =
+        |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     Some(variable("XDG_CACHE_HOME").or_else(|| Some(variable("HOME")?.join(".cache")))?.join(NAME))
 }
 
-fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
-    let id = source::read(sources, package, name).map_err(|error| vec![error])?;
-    let id =
-        id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no manifest `{}`", package.files.display(name)))])?;
+fn parse_manifest(
+    package: &Package,
+    name: &str,
+    sources: &mut SourceSet,
+) -> Result<Manifest, Diagnostics> {
+    let id = source::read(sources, package, name).map_err(|error| vec![error.into()])?;
+    let id = id.ok_or_else(|| {
+        vec![Diagnostic::error(
+            codes::UNREADABLE,
+            format!("there is no manifest `{}`", package.files.display(name)),
+        )]
+    })?;
     let mut manifest = manifest::parse(sources, id)?;
     for program in &mut manifest.programs {
         let Some(file) = program.usage.clone() else { continue };
-        let list = source::read(sources, package, &file.path).map_err(|error| vec![error.at(file.span, "named here")])?;
+        let list = source::read(sources, package, &file.path)
+            .map_err(|error| vec![Diagnostic::from(error).at(file.span, "named here")])?;
         let list = list.ok_or_else(|| vec![no_list(&file)])?;
         let warnings = usage::narrow(program, sources, list)?;
         manifest.warnings.extend(warnings);
@@ -186,5 +222,6 @@ fn parse_manifest(package: &Package, name: &str, sources: &mut SourceSet) -> Res
 }
 
 fn no_list(file: &manifest::File) -> Diagnostic {
-    Diagnostic::error(codes::UNREADABLE, format!("there is no usage list `{}`", file.path)).at(file.span, "named here")
+    Diagnostic::error(codes::UNREADABLE, format!("there is no usage list `{}`", file.path))
+        .at(file.span, "named here")
 }

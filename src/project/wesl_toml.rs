@@ -6,7 +6,10 @@ use std::path::{Path, PathBuf};
 use toml::Table;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::source::{self, Disk, Files, Package, ReadError, SourceId, SourceSet, Span};
+use crate::input;
+use crate::source::{
+    self, Disk, Files, LIMITS, Package, ReadError, SourceId, SourceSet, Span, is_inside,
+};
 
 const NAME: &str = "wesl.toml";
 /// Packages that one `wesl.toml` may list.
@@ -15,21 +18,27 @@ const DEFAULT_ROOT: &str = "shaders";
 
 /// The root that the `wesl.toml` of `folder` declares, if it has one.
 pub fn declared_root(folder: &Path) -> Option<PathBuf> {
-    let text = std::fs::read_to_string(folder.join(NAME)).ok()?;
-    Some(root_in(folder, &text.parse().ok()?))
+    let table = table_of(folder)?;
+    is_inside(declared_in(&table)).then(|| root_in(folder, &table))
+}
+
+/// The tables of a folder's file, if it is one that can be read.
+fn table_of(folder: &Path) -> Option<Table> {
+    let text = input::read(&folder.join(NAME), LIMITS.file_bytes as u64).ok()?;
+    String::from_utf8(text).ok()?.parse().ok()
 }
 
 /// The name that the root's `wesl.toml` gives its package.
 pub fn declared_name(root: &Path) -> Option<String> {
-    let table: Table = std::fs::read_to_string(home(root)?.join(NAME)).ok()?.parse().ok()?;
-    Some(table.get("package")?.get("name")?.as_str()?.to_owned())
+    Some(table_of(&home(root)?)?.get("package")?.get("name")?.as_str()?.to_owned())
 }
 
 /// The packages that the root's `wesl.toml` lists by path, those they list in turn included.
 pub fn dependencies(root: &Path, sources: &mut SourceSet) -> Result<Vec<Package>, Diagnostics> {
     broken(root, sources)?;
     let Some(folder) = home(root) else { return Ok(Vec::new()) };
-    let mut found = Found { packages: Vec::new(), visited: vec![folder.clone()], diagnostics: Vec::new() };
+    let mut found =
+        Found { packages: Vec::new(), visited: vec![folder.clone()], diagnostics: Vec::new() };
     found.collect(&folder, sources);
     if found.diagnostics.is_empty() { Ok(found.packages) } else { Err(found.diagnostics) }
 }
@@ -47,7 +56,11 @@ fn home(root: &Path) -> Option<PathBuf> {
 /// blame the imports.
 fn broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
     let Ok(real) = root.canonicalize() else { return Ok(()) };
-    for folder in [Some(real.as_path()), real.parent()].into_iter().flatten().filter(|folder| folder.join(NAME).is_file()) {
+    for folder in [Some(real.as_path()), real.parent()]
+        .into_iter()
+        .flatten()
+        .filter(|folder| folder.join(NAME).is_file())
+    {
         let shown = if folder == real { root.to_owned() } else { root.join("..") };
         parse(folder, &shown, sources).map_err(|error| vec![error])?;
     }
@@ -55,17 +68,29 @@ fn broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
 }
 
 /// The tables of a folder's `wesl.toml`, which is there; `shown` is the folder's name in diagnostics.
-fn parse(folder: &Path, shown: &Path, sources: &mut SourceSet) -> Result<(Table, SourceId), Diagnostic> {
-    let disk =
-        Disk::new(folder).map_err(|error| Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", shown.display())))?;
-    let package = Package { name: String::new(), files: Box::new(Shown { disk, folder: shown.to_owned() }) };
-    let missing = || Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`", shown.join(NAME).display()));
+fn parse(
+    folder: &Path,
+    shown: &Path,
+    sources: &mut SourceSet,
+) -> Result<(Table, SourceId), Diagnostic> {
+    let disk = Disk::new(folder).map_err(|error| {
+        Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", shown.display()))
+    })?;
+    let package =
+        Package { name: String::new(), files: Box::new(Shown { disk, folder: shown.to_owned() }) };
+    let missing = || {
+        Diagnostic::error(
+            codes::UNREADABLE,
+            format!("cannot read `{}`", shown.join(NAME).display()),
+        )
+    };
     let id = source::read(sources, &package, NAME)?.ok_or_else(missing)?;
     let text = sources.get(id).text.clone();
     let table: Table = text.parse().map_err(|error: toml::de::Error| {
         let range = error.span().unwrap_or(0..0);
         let span = Span::new(id, range.start.min(text.len())..range.end.min(text.len()));
-        Diagnostic::error(codes::WESL_TOML, "`wesl.toml` is not valid TOML").at(span, error.message().replace('\n', "; "))
+        Diagnostic::error(codes::WESL_TOML, "`wesl.toml` is not valid TOML")
+            .at(span, error.message().replace('\n', "; "))
     })?;
     check(&table, id, &text)?;
     Ok((table, id))
@@ -76,8 +101,10 @@ fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
     let wrong = |what: &str, expected: &str, key: &str| {
         let start = text.find(key).unwrap_or(0);
         let message = format!("{what} of `wesl.toml` is not {expected}");
-        Err(Diagnostic::error(codes::WESL_TOML, message)
-            .at(Span::new(id, start..(start + key.len()).min(text.len())), format!("expected {expected}")))
+        Err(Diagnostic::error(codes::WESL_TOML, message).at(
+            Span::new(id, start..(start + key.len()).min(text.len())),
+            format!("expected {expected}"),
+        ))
     };
     let package = table.get("package");
     if package.is_some_and(|package| !package.is_table()) {
@@ -89,12 +116,24 @@ fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
     if table.get("root").is_some_and(|root| !root.is_str()) {
         return wrong("`root`", "a string", "root");
     }
-    let Some(dependencies) = table.get("dependencies") else { return Ok(()) };
-    let Some(dependencies) = dependencies.as_table() else { return wrong("`dependencies`", "a table", "dependencies") };
-    if dependencies.len() > DEPENDENCIES {
-        return wrong("`dependencies`", &format!("a table of at most {DEPENDENCIES} packages"), "dependencies");
+    if !is_inside(declared_in(table)) {
+        return wrong("`root`", "a path below the file's folder", "root");
     }
-    match dependencies.iter().find(|(_, entry)| entry.get("path").is_some_and(|path| !path.is_str())) {
+    let Some(dependencies) = table.get("dependencies") else { return Ok(()) };
+    let Some(dependencies) = dependencies.as_table() else {
+        return wrong("`dependencies`", "a table", "dependencies");
+    };
+    if dependencies.len() > DEPENDENCIES {
+        return wrong(
+            "`dependencies`",
+            &format!("a table of at most {DEPENDENCIES} packages"),
+            "dependencies",
+        );
+    }
+    match dependencies
+        .iter()
+        .find(|(_, entry)| entry.get("path").is_some_and(|path| !path.is_str()))
+    {
         Some((name, _)) => wrong(&format!("`path` of dependency `{name}`"), "a string", name),
         None => Ok(()),
     }
@@ -122,9 +161,13 @@ impl Files for Shown {
 }
 
 fn root_in(folder: &Path, table: &Table) -> PathBuf {
+    folder.join(declared_in(table))
+}
+
+fn declared_in(table: &Table) -> &str {
     let packaged = table.get("package").and_then(|package| package.get("root"));
     let declared = packaged.or_else(|| table.get("root")).and_then(|root| root.as_str());
-    folder.join(declared.unwrap_or(DEFAULT_ROOT))
+    declared.unwrap_or(DEFAULT_ROOT)
 }
 
 struct Found {
@@ -143,26 +186,51 @@ impl Found {
             Err(error) => return self.diagnostics.push(error),
         };
         let text = sources.get(id).text.clone();
-        let Some(dependencies) = table.get("dependencies").and_then(|entry| entry.as_table()) else { return };
+        let Some(dependencies) = table.get("dependencies").and_then(|entry| entry.as_table())
+        else {
+            return;
+        };
         for (name, entry) in dependencies {
             let Some(path) = entry.get("path").and_then(|path| path.as_str()) else { continue };
-            self.add(name, (Path::new(path), &folder.join(path)), Span::new(id, key_range(&text, name)), sources);
+            self.add(
+                name,
+                (Path::new(path), &folder.join(path)),
+                Span::new(id, key_range(&text, name)),
+                sources,
+            );
         }
     }
 
     /// Adds the dependency in `folder`, which its dependent calls `shown`.
-    fn add(&mut self, name: &str, (shown, folder): (&Path, &Path), span: Span, sources: &mut SourceSet) {
+    fn add(
+        &mut self,
+        name: &str,
+        (shown, folder): (&Path, &Path),
+        span: Span,
+        sources: &mut SourceSet,
+    ) {
         if folder.join(NAME).is_file()
             && let Err(error) = parse(folder, shown, sources)
         {
             return self.diagnostics.push(error.at(span, "of this dependency"));
         }
         let Some(root) = declared_root(folder) else {
-            self.diagnostics
-                .push(Diagnostic::error(codes::WESL_TOML, format!("dependency `{name}` has no `wesl.toml`")).at(span, "declared here"));
+            self.diagnostics.push(
+                Diagnostic::error(
+                    codes::WESL_TOML,
+                    format!("dependency `{name}` has no `wesl.toml`"),
+                )
+                .at(span, "declared here"),
+            );
             return;
         };
         let disk = match (folder.canonicalize(), Disk::new(root)) {
+            (Ok(real), Ok(disk)) if !disk.is_below(&real) => {
+                let message = format!("the root of dependency `{name}` leads out of its folder");
+                let error = Diagnostic::error(codes::OUTSIDE_ROOT, message);
+                self.diagnostics.push(error.at(span, "declared here"));
+                return;
+            }
             (Ok(real), Ok(disk)) => {
                 if self.visited.contains(&real) {
                     return;
@@ -172,7 +240,11 @@ impl Found {
             }
             (_, Err(error)) | (Err(error), _) => {
                 self.diagnostics.push(
-                    Diagnostic::error(codes::UNREADABLE, format!("cannot read dependency `{name}`: {error}")).at(span, "declared here"),
+                    Diagnostic::error(
+                        codes::UNREADABLE,
+                        format!("cannot read dependency `{name}`: {error}"),
+                    )
+                    .at(span, "declared here"),
                 );
                 return;
             }
@@ -186,5 +258,7 @@ impl Found {
 fn key_range(text: &str, name: &str) -> std::ops::Range<usize> {
     const SECTION: &str = "[dependencies]";
     let section = text.find(SECTION).map_or(0, |start| start + SECTION.len());
-    text[section..].find(name).map_or(section..section, |start| section + start..section + start + name.len())
+    text[section..]
+        .find(name)
+        .map_or(section..section, |start| section + start..section + start + name.len())
 }

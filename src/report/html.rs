@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use super::escaped;
 use super::plot::{Series, error_plot, heat_map};
-use crate::compose::Language;
-use crate::harness::check::{Input, Outcome, Proof, Report, Verdict, failures_of, language, short};
+use crate::bundle::Language;
+use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, failures_of, language, short};
 
 const STYLE: &str = include_str!("style.css");
 
@@ -51,14 +51,39 @@ impl<'a> Page<'a> {
     }
 
     fn summary(&self, html: &mut String) {
-        let (all, passed) = (self.report.outcomes.len(), self.report.outcomes.iter().filter(|outcome| outcome.passed()).count());
-        let inputs: usize = self.report.outcomes.iter().filter_map(|outcome| Some(outcome.verdict.as_ref().ok()?.inputs)).sum();
-        let verdict = if self.report.passed() { "<b class=\"ok\">all hold</b>" } else { "<b class=\"bad\">not all hold</b>" };
-        let _ = writeln!(html, "<p>{} functions, {passed} of {all} runs pass over {inputs} inputs: {verdict}.</p>", self.functions.len());
+        let (all, passed) = (
+            self.report.outcomes.len(),
+            self.report.outcomes.iter().filter(|outcome| outcome.passed()).count(),
+        );
+        let inputs: usize = self
+            .report
+            .outcomes
+            .iter()
+            .filter_map(|outcome| Some(outcome.verdict.as_ref().ok()?.inputs))
+            .sum();
+        let verdict = if self.report.passed() {
+            "<b class=\"ok\">all hold</b>"
+        } else {
+            "<b class=\"bad\">not all hold</b>"
+        };
+        let _ = writeln!(
+            html,
+            "<p>{} functions, {passed} of {all} runs pass over {inputs} inputs: {verdict}.</p>",
+            self.functions.len()
+        );
         html.push_str("<ul class=\"key\">");
         for (index, executor) in self.executors.iter().enumerate() {
-            let adapter = self.report.outcomes.iter().find(|outcome| outcome.executor == *executor).map_or("", |outcome| &outcome.adapter);
-            let _ = write!(html, "<li><i class=\"swatch b{index}\"></i><b>{executor}</b> {}</li>", escaped(adapter));
+            let adapter = self
+                .report
+                .outcomes
+                .iter()
+                .find(|outcome| outcome.executor == *executor)
+                .map_or("", |outcome| &outcome.adapter);
+            let _ = write!(
+                html,
+                "<li><i class=\"swatch b{index}\"></i><b>{executor}</b> {}</li>",
+                escaped(adapter)
+            );
         }
         html.push_str("</ul><p class=\"note\">Lines show the largest error over each parameter, dashed for GLSL; the grey area is what is allowed. Headroom is what is left of that.</p>\n");
     }
@@ -73,9 +98,10 @@ impl<'a> Page<'a> {
         for (path, outcomes) in &self.functions {
             let _ = write!(html, "<tr><td><a href=\"#{0}\">{0}</a></td>", escaped(path));
             for executor in &self.executors {
-                let own: Vec<&&Outcome> = outcomes.iter().filter(|outcome| outcome.executor == *executor).collect();
+                let own: Vec<&&Outcome> =
+                    outcomes.iter().filter(|outcome| outcome.executor == *executor).collect();
                 let share = own.iter().map(|outcome| share(outcome)).fold(0.0, f64::max);
-                html.push_str(&cell(own.iter().all(|outcome| outcome.passed()), share));
+                html.push_str(&cell(!own.iter().any(|outcome| outcome.failed()), share));
             }
             html.push_str("</tr>\n");
         }
@@ -88,9 +114,11 @@ impl<'a> Page<'a> {
         cases.sort_unstable();
         cases.dedup();
         for case in cases {
-            let own: Vec<&Outcome> = outcomes.iter().copied().filter(|outcome| outcome.case == case).collect();
-            let proof =
-                self.report.proofs.iter().find(|proof| proof.case == case && own.first().is_some_and(|outcome| belongs(proof, outcome)));
+            let own: Vec<&Outcome> =
+                outcomes.iter().copied().filter(|outcome| outcome.case == case).collect();
+            let proof = self.report.proofs.iter().find(|proof| {
+                proof.case == case && own.first().is_some_and(|outcome| belongs(proof, outcome))
+            });
             self.case(html, case, &own, proof);
         }
         html.push_str("</section>\n");
@@ -116,7 +144,11 @@ impl<'a> Page<'a> {
             .iter()
             .filter_map(|outcome| {
                 let profile = outcome.verdict.as_ref().ok()?.profile.as_deref()?;
-                Some(Series { class: self.class(outcome), dashed: outcome.language == Language::Glsl, profile })
+                Some(Series {
+                    class: self.class(outcome),
+                    dashed: outcome.language == Language::Glsl,
+                    profile,
+                })
             })
             .collect();
         let Some(first) = series.first() else { return };
@@ -144,7 +176,12 @@ fn belongs(proof: &Proof, outcome: &Outcome) -> bool {
 }
 
 fn share(outcome: &Outcome) -> f64 {
-    outcome.verdict.as_ref().ok().and_then(|verdict| verdict.worst).map_or(0.0, |worst| worst.share())
+    outcome
+        .verdict
+        .as_ref()
+        .ok()
+        .and_then(|verdict| verdict.worst)
+        .map_or(0.0, |worst| worst.share())
 }
 
 fn headroom(share: f64) -> String {
@@ -161,14 +198,24 @@ fn cell(passed: bool, share: f64) -> String {
         "ok"
     };
     let text = if passed { headroom(share) } else { "fails".to_owned() };
-    format!("<td class=\"bar {class}\" style=\"--used:{:.0}%\">{text}</td>", 100.0 * share.clamp(0.0, 1.0))
+    format!(
+        "<td class=\"bar {class}\" style=\"--used:{:.0}%\">{text}</td>",
+        100.0 * share.clamp(0.0, 1.0)
+    )
 }
 
 fn row(html: &mut String, outcome: &Outcome) {
-    let _ = write!(html, "<tr><td>{}</td><td>{}</td>", outcome.executor, language(outcome.language));
+    let _ =
+        write!(html, "<tr><td>{}</td><td>{}</td>", outcome.executor, language(outcome.language));
     match &outcome.verdict {
         Err(error) => {
-            let _ = write!(html, "<td colspan=\"8\" class=\"bad\">not run: {}</td>", escaped(&error.message));
+            let _ = write!(
+                html,
+                "<td colspan=\"8\" class=\"{}\">{}: {}</td>",
+                if outcome.failed() { "bad" } else { "note" },
+                if outcome.failed() { "not run" } else { "cannot run here" },
+                escaped(&error.message)
+            );
         }
         Ok(verdict) => numbers(html, outcome, verdict),
     }
@@ -176,8 +223,10 @@ fn row(html: &mut String, outcome: &Outcome) {
 }
 
 fn numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
-    let (ulps, allowed) = verdict.worst.map_or((0.0, 0.0), |worst| (worst.ulps(), worst.allowed_ulps()));
-    let percent = |rows: usize| format!("{:.2} %", 100.0 * rows as f64 / verdict.inputs.max(1) as f64);
+    let (ulps, allowed) =
+        verdict.worst.map_or((0.0, 0.0), |worst| (worst.ulps(), worst.allowed_ulps()));
+    let percent =
+        |rows: usize| format!("{:.2} %", 100.0 * rows as f64 / verdict.inputs.max(1) as f64);
     let _ = write!(
         html,
         "<td>{}</td><td>{}</td><td>{}</td>{}",
@@ -186,7 +235,8 @@ fn numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
         short(allowed),
         cell(outcome.passed(), share(outcome))
     );
-    let driver = outcome.of_driver().map_or("–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let driver =
+        outcome.of_driver().map_or("–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
     let parity = verdict.parity.map_or("–".to_owned(), short);
     let _ = write!(
         html,
@@ -212,18 +262,27 @@ fn proved(proof: &Proof) -> String {
     match proof.value {
         None => {}
         Some(value) if value.off == 0 => {
-            text += &format!("In f64 the code is within {} of what is allowed, on {} inputs. ", short(value.share), value.rows)
+            text += &format!(
+                "In f64 the code is within {} of what is allowed, on {} inputs. ",
+                short(value.share),
+                value.rows
+            )
         }
         Some(value) => {
             let (off, rows, share) = (value.off, value.rows, short(value.share));
-            text +=
-                &format!("<b class=\"bad\">In f64 the code is off on {off} of {rows} inputs, by up to {share} of what is allowed.</b> ");
+            text += &format!(
+                "<b class=\"bad\">In f64 the code is off on {off} of {rows} inputs, by up to {share} of what is allowed.</b> "
+            );
         }
     }
     match &proof.parity {
         None => {}
-        Some(Err(error)) => text += &format!("The languages could not be compared in f64: {}.", escaped(error)),
-        Some(Ok(parity)) if parity.apart == 0 => text += &format!("WESL and GLSL agree in f64 on {} inputs.", parity.rows),
+        Some(Err(error)) => {
+            text += &format!("The languages could not be compared in f64: {}.", escaped(error))
+        }
+        Some(Ok(parity)) if parity.apart == 0 => {
+            text += &format!("WESL and GLSL agree in f64 on {} inputs.", parity.rows)
+        }
         Some(Ok(parity)) => {
             text += &format!(
                 "WESL and GLSL differ in f64 on {} of {} inputs, by up to {:.1e} of the value.",
@@ -235,20 +294,36 @@ fn proved(proof: &Proof) -> String {
 }
 
 fn failing(html: &mut String, outcomes: &[&Outcome]) {
-    for outcome in outcomes.iter().filter(|outcome| !outcome.passed()) {
-        let _ = writeln!(html, "<pre class=\"bad\">{}</pre>", escaped(&failures_of(std::slice::from_ref(*outcome), &[])));
+    for outcome in outcomes.iter().filter(|outcome| outcome.failed()) {
+        let _ = writeln!(
+            html,
+            "<pre class=\"bad\">{}</pre>",
+            escaped(&failures_of(std::slice::from_ref(*outcome), &[]))
+        );
     }
 }
 
 /// The inputs that used most of what is allowed, of the run that used most.
 fn inputs(html: &mut String, outcomes: &[&Outcome]) {
-    let Some(outcome) = outcomes.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else { return };
+    let Some(outcome) = outcomes.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else {
+        return;
+    };
     let profile = outcome.verdict.as_ref().ok().and_then(|verdict| verdict.profile.as_deref());
-    let Some(worst) = profile.map(|profile| &profile.worst).filter(|worst| !worst.is_empty()) else { return };
-    let _ = write!(html, "<details><summary>worst inputs ({}, {})</summary><table><tbody>", outcome.executor, language(outcome.language));
+    let Some(worst) = profile.map(|profile| &profile.worst).filter(|worst| !worst.is_empty())
+    else {
+        return;
+    };
+    let _ = write!(
+        html,
+        "<details><summary>worst inputs ({}, {})</summary><table><tbody>",
+        outcome.executor,
+        language(outcome.language)
+    );
     for Input { words, worst } in worst {
-        let words: Vec<String> =
-            words.iter().map(|(name, value, bits)| format!("{} = {value} <i>0x{bits:08x}</i>", escaped(name))).collect();
+        let words: Vec<String> = words
+            .iter()
+            .map(|(name, value, bits)| format!("{} = {value} <i>0x{bits:08x}</i>", escaped(name)))
+            .collect();
         let _ = write!(
             html,
             "<tr><td class=\"words\">{}</td><td>found {}, expected {}: {} of {} ULP</td></tr>",

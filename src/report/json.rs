@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::harness::check::{Input, Outcome, Proof, Report, Verdict, Worst, language};
+use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, Worst, language};
 
 /// The report as indented JSON.
 pub fn text(report: &Report) -> String {
@@ -28,6 +28,7 @@ fn outcome(outcome: &Outcome) -> Value {
         "executor": outcome.executor,
         "adapter": outcome.adapter,
         "passed": outcome.passed(),
+        "lacks": outcome.lacks().map(|lack| &lack.message),
         "recorded_share": outcome.recorded,
         "of_driver": outcome.of_driver(),
         "waiver": outcome.waiver.as_ref().map(|(share, reason)| json!({ "share": share, "reason": reason })),
@@ -37,7 +38,10 @@ fn outcome(outcome: &Outcome) -> Value {
 }
 
 fn verdict(verdict: &Verdict) -> Value {
-    let laws = verdict.laws.iter().map(|law| json!({ "law": law.name, "broken": law.broken, "example": law.example }));
+    let laws = verdict
+        .laws
+        .iter()
+        .map(|law| json!({ "law": law.name, "broken": law.broken, "example": law.example }));
     let worst_inputs = verdict.profile.iter().flat_map(|profile| &profile.worst);
     json!({
         "inputs": verdict.inputs,
@@ -83,10 +87,14 @@ fn proof(proof: &Proof) -> Value {
         Err(error) => json!({ "error": error }),
     };
     let parity = proof.parity.as_ref().map(|parity| match parity {
-        Ok(parity) => json!({ "rows": parity.rows, "apart": parity.apart, "worst_relative": parity.worst }),
+        Ok(parity) => {
+            json!({ "rows": parity.rows, "apart": parity.apart, "worst_relative": parity.worst })
+        }
         Err(error) => json!({ "error": error }),
     });
-    let value = proof.value.map(|value| json!({ "rows": value.rows, "off": value.off, "worst_share": value.share }));
+    let value = proof
+        .value
+        .map(|value| json!({ "rows": value.rows, "off": value.off, "worst_share": value.share }));
     json!({
         "module": proof.module,
         "function": proof.function,

@@ -4,13 +4,14 @@
 use std::fmt::Write as _;
 
 use super::escaped;
-use crate::harness::check::{Report, failures_of, language};
+use crate::proof::check::{Report, failures_of, language};
 
-/// A test case: the module it belongs to, its name, and how it failed.
+/// A test case: the module it belongs to, its name, how it failed, and why it cannot run.
 struct Test<'a> {
     module: &'a str,
     name: String,
     failure: Option<String>,
+    lacks: Option<&'a str>,
 }
 
 /// The report as JUnit understands it.
@@ -20,7 +21,12 @@ pub fn text(report: &Report) -> String {
     modules.sort_unstable();
     modules.dedup();
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let _ = writeln!(text, "<testsuites name=\"lamplight\" tests=\"{}\" failures=\"{}\">", tests.len(), failed(&tests));
+    let _ = writeln!(
+        text,
+        "<testsuites name=\"lamplight\" tests=\"{}\" failures=\"{}\">",
+        tests.len(),
+        failed(&tests)
+    );
     for module in modules {
         let own: Vec<&Test<'_>> = tests.iter().filter(|test| test.module == module).collect();
         suite(&mut text, module, &own);
@@ -31,13 +37,21 @@ pub fn text(report: &Report) -> String {
 fn tests(report: &Report) -> Vec<Test<'_>> {
     let outcomes = report.outcomes.iter().map(|outcome| Test {
         module: &outcome.module,
-        name: format!("{} case {} {} {}", outcome.function, outcome.case + 1, language(outcome.language), outcome.executor),
-        failure: (!outcome.passed()).then(|| failures_of(std::slice::from_ref(outcome), &[])),
+        name: format!(
+            "{} case {} {} {}",
+            outcome.function,
+            outcome.case + 1,
+            language(outcome.language),
+            outcome.executor
+        ),
+        failure: outcome.failed().then(|| failures_of(std::slice::from_ref(outcome), &[])),
+        lacks: outcome.lacks().map(|lack| lack.message.as_str()),
     });
     let proofs = report.proofs.iter().map(|proof| Test {
         module: &proof.module,
         name: format!("{} case {} in f64", proof.function, proof.case + 1),
         failure: (!proof.passed()).then(|| failures_of(&[], std::slice::from_ref(proof))),
+        lacks: None,
     });
     outcomes.chain(proofs).collect()
 }
@@ -48,15 +62,39 @@ fn failed<'a>(tests: impl IntoIterator<Item = &'a Test<'a>>) -> usize {
 
 fn suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
     let failures = failed(tests.iter().copied());
-    let _ = writeln!(text, "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{failures}\">", escaped(module), tests.len());
+    let _ = writeln!(
+        text,
+        "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{failures}\" skipped=\"{}\">",
+        escaped(module),
+        tests.len(),
+        tests.iter().filter(|test| test.lacks.is_some()).count()
+    );
     for test in tests {
-        let _ = write!(text, "    <testcase classname=\"{}\" name=\"{}\"", escaped(module), escaped(&test.name));
+        let _ = write!(
+            text,
+            "    <testcase classname=\"{}\" name=\"{}\"",
+            escaped(module),
+            escaped(&test.name)
+        );
         let Some(details) = &test.failure else {
-            text.push_str("/>\n");
+            text.push_str(&match test.lacks {
+                Some(reason) => {
+                    format!(
+                        ">\n      <skipped message=\"{}\"/>\n    </testcase>\n",
+                        escaped(reason)
+                    )
+                }
+                None => "/>\n".to_owned(),
+            });
             continue;
         };
         let first = details.lines().next().unwrap_or_default();
-        let _ = writeln!(text, ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>", escaped(first), escaped(details));
+        let _ = writeln!(
+            text,
+            ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>",
+            escaped(first),
+            escaped(details)
+        );
     }
     text.push_str("  </testsuite>\n");
 }

@@ -7,7 +7,7 @@ mod json;
 mod junit;
 mod plot;
 
-use crate::harness::check::Report;
+use crate::proof::check::Report;
 
 /// A form of a report.
 pub struct Entry {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::escaped;
-use crate::harness::check::{Axis, BINS, CELLS, Map, Profile, Scale, short};
+use crate::proof::check::{Axis, BINS, CELLS, Map, Profile, Scale, short};
 
 const WIDTH: f64 = 250.0;
 const HEIGHT: f64 = 116.0;
@@ -25,9 +25,11 @@ pub struct Series<'a> {
 
 /// Error and what is allowed over one parameter, the error by its logarithm.
 pub fn error_plot(index: usize, series: &[Series<'_>]) -> Option<String> {
-    let axes: Vec<(&Series<'_>, &Axis)> = series.iter().filter_map(|one| Some((one, one.profile.axes.get(index)?))).collect();
+    let axes: Vec<(&Series<'_>, &Axis)> =
+        series.iter().filter_map(|one| Some((one, one.profile.axes.get(index)?))).collect();
     let (_, first) = axes.first()?;
-    let values = || axes.iter().flat_map(|(_, axis)| &axis.bins).flat_map(|bin| [bin.error, bin.allowed]);
+    let values =
+        || axes.iter().flat_map(|(_, axis)| &axis.bins).flat_map(|bin| [bin.error, bin.allowed]);
     let most = values().filter(|value| value.is_finite()).fold(0.0, f64::max);
     if most == 0.0 {
         return None;
@@ -41,9 +43,14 @@ pub fn error_plot(index: usize, series: &[Series<'_>]) -> Option<String> {
     );
     let _ = write!(svg, "<path class=\"allowed\" d=\"{}\"/>", frame.area(&axes));
     for (one, axis) in &axes {
-        let points: Vec<String> = axis.bins.iter().map(|bin| format!("{:.1} {:.1}", across(bin.index), frame.y(bin.error))).collect();
+        let points: Vec<String> = axis
+            .bins
+            .iter()
+            .map(|bin| format!("{:.1} {:.1}", across(bin.index), frame.y(bin.error)))
+            .collect();
         let dash = if one.dashed { " dash" } else { "" };
-        let _ = write!(svg, "<path class=\"line e{}{dash}\" d=\"M{}\"/>", one.class, points.join("L"));
+        let _ =
+            write!(svg, "<path class=\"line e{}{dash}\" d=\"M{}\"/>", one.class, points.join("L"));
     }
     labels(&mut svg, &frame, first.scale);
     Some(svg + "</svg>")
@@ -57,17 +64,28 @@ struct Frame {
 
 impl Frame {
     fn y(&self, value: f64) -> f64 {
-        let place = if value > 0.0 { ((value.log10() - self.low) / (self.high - self.low)).clamp(0.0, 1.0) } else { 0.0 };
+        let place = if value > 0.0 {
+            ((value.log10() - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         HEIGHT - BOTTOM - place * (HEIGHT - BOTTOM - TOP)
     }
 
     /// Everything below what is allowed.
     fn area(&self, axes: &[(&Series<'_>, &Axis)]) -> String {
         let allowed = |index: usize| {
-            axes.iter().flat_map(|(_, axis)| &axis.bins).filter(|bin| bin.index == index).map(|bin| bin.allowed).reduce(f64::max)
+            axes.iter()
+                .flat_map(|(_, axis)| &axis.bins)
+                .filter(|bin| bin.index == index)
+                .map(|bin| bin.allowed)
+                .reduce(f64::max)
         };
-        let points: Vec<(f64, f64)> = (0..BINS).filter_map(|index| Some((across(index), self.y(allowed(index)?)))).collect();
-        let (Some(first), Some(last)) = (points.first(), points.last()) else { return String::new() };
+        let points: Vec<(f64, f64)> =
+            (0..BINS).filter_map(|index| Some((across(index), self.y(allowed(index)?)))).collect();
+        let (Some(first), Some(last)) = (points.first(), points.last()) else {
+            return String::new();
+        };
         let line: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
         let floor = HEIGHT - BOTTOM;
         format!("M{:.1} {floor}L{}L{:.1} {floor}z", first.0, line.join("L"), last.0)
@@ -82,11 +100,21 @@ fn labels(svg: &mut String, frame: &Frame, scale: Scale) {
     let (floor, right) = (HEIGHT - BOTTOM, WIDTH - RIGHT);
     let _ = write!(svg, "<path class=\"frame\" d=\"M{LEFT} {TOP}V{floor}H{right}\"/>");
     for (value, y) in [(frame.high, TOP + 4.0), (frame.low, floor)] {
-        let _ = write!(svg, "<text x=\"{}\" y=\"{y}\" class=\"end\">{:.0e}</text>", LEFT - 3.0, 10f64.powf(value));
+        let _ = write!(
+            svg,
+            "<text x=\"{}\" y=\"{y}\" class=\"end\">{:.0e}</text>",
+            LEFT - 3.0,
+            10f64.powf(value)
+        );
     }
     for (place, class) in [(0.0, "start"), (0.5, "middle"), (1.0, "end")] {
         let x = LEFT + place * (right - LEFT);
-        let _ = write!(svg, "<text x=\"{x}\" y=\"{}\" class=\"{class}\">{}</text>", HEIGHT - 4.0, short(scale.value(place)));
+        let _ = write!(
+            svg,
+            "<text x=\"{x}\" y=\"{}\" class=\"{class}\">{}</text>",
+            HEIGHT - 4.0,
+            short(scale.value(place))
+        );
     }
 }
 
@@ -98,7 +126,8 @@ pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
     let width = LEFT + side + RIGHT;
     let mut paths = vec![String::new(); LEVELS + 1];
     for (index, share) in map.cells.iter().enumerate().filter(|(_, share)| !share.is_nan()) {
-        let level = if *share > 1.0 { LEVELS } else { ((share * LEVELS as f64) as usize).min(LEVELS - 1) };
+        let level =
+            if *share > 1.0 { LEVELS } else { ((share * LEVELS as f64) as usize).min(LEVELS - 1) };
         let (column, row) = (index % CELLS, index / CELLS);
         let _ = write!(
             paths[level],
@@ -108,17 +137,33 @@ pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
         );
     }
     let title = format!("{} across, {} up: share of allowed", escaped(&x.name), escaped(&y.name));
-    let mut svg = format!("<svg viewBox=\"0 0 {width} {HEIGHT}\" class=\"plot map\"><title>{title}</title>");
+    let mut svg =
+        format!("<svg viewBox=\"0 0 {width} {HEIGHT}\" class=\"plot map\"><title>{title}</title>");
     for (level, path) in paths.iter().enumerate().filter(|(_, path)| !path.is_empty()) {
         let _ = write!(svg, "<path class=\"h{level}\" d=\"{path}\"/>");
     }
     let (floor, right) = (HEIGHT - BOTTOM, LEFT + side);
-    let _ = write!(svg, "<text x=\"{LEFT}\" y=\"10\" class=\"name\">{} × {}</text>", escaped(&x.name), escaped(&y.name));
+    let _ = write!(
+        svg,
+        "<text x=\"{LEFT}\" y=\"10\" class=\"name\">{} × {}</text>",
+        escaped(&x.name),
+        escaped(&y.name)
+    );
     for (value, y) in [(y.scale.high, TOP + 4.0), (y.scale.low, floor)] {
-        let _ = write!(svg, "<text x=\"{}\" y=\"{y}\" class=\"end\">{}</text>", LEFT - 3.0, short(value));
+        let _ = write!(
+            svg,
+            "<text x=\"{}\" y=\"{y}\" class=\"end\">{}</text>",
+            LEFT - 3.0,
+            short(value)
+        );
     }
     for (value, x, class) in [(x.scale.low, LEFT, "start"), (x.scale.high, right, "end")] {
-        let _ = write!(svg, "<text x=\"{x}\" y=\"{}\" class=\"{class}\">{}</text>", HEIGHT - 4.0, short(value));
+        let _ = write!(
+            svg,
+            "<text x=\"{x}\" y=\"{}\" class=\"{class}\">{}</text>",
+            HEIGHT - 4.0,
+            short(value)
+        );
     }
     Some(svg + "</svg>")
 }

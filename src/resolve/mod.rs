@@ -3,7 +3,7 @@
 pub mod glsl;
 pub mod wesl;
 
-use crate::compose::Language;
+use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
 use crate::permute::Settings;
 use crate::source::{Package, SourceSet};
@@ -69,7 +69,12 @@ impl Graph {
 }
 
 /// Reads and resolves `root`, a path relative to the root package, and what it may reach.
-pub fn load(sources: &mut SourceSet, packages: &Packages, root: &str, language: Language) -> Result<Graph, Diagnostics> {
+pub fn load(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    root: &str,
+    language: Language,
+) -> Result<Graph, Diagnostics> {
     match language {
         Language::Wesl => wesl::load(sources, packages, root).map(Graph::Wesl),
         Language::Glsl => glsl::load(sources, packages, root).map(Graph::Glsl),

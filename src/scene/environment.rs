@@ -26,7 +26,8 @@ fn constant(_: DVec3) -> DVec3 {
 }
 
 fn studio(d: DVec3) -> DVec3 {
-    let wall = DVec3::new(0.16, 0.17, 0.2).lerp(DVec3::new(0.42, 0.44, 0.48), smoothstep(-0.6, 0.9, d.y));
+    let wall =
+        DVec3::new(0.16, 0.17, 0.2).lerp(DVec3::new(0.42, 0.44, 0.48), smoothstep(-0.6, 0.9, d.y));
     let floor = DVec3::new(0.11, 0.1, 0.09);
     let room = floor.lerp(wall, smoothstep(-0.25, -0.05, d.y));
     room + softbox(d, DVec3::new(-0.6, 0.65, 0.45), (0.45, 0.35)) * DVec3::new(5.5, 5.4, 5.2)
@@ -71,15 +72,23 @@ impl Equirect {
     /// # Errors
     /// In words: bytes that are no such file, or one that is too large.
     pub fn from_radiance(bytes: &[u8]) -> Result<Self, String> {
-        let decoder = HdrDecoder::new(std::io::Cursor::new(bytes)).map_err(|error| error.to_string())?;
+        let decoder =
+            HdrDecoder::new(std::io::Cursor::new(bytes)).map_err(|error| error.to_string())?;
         let (width, height) = decoder.dimensions();
         if width > LARGEST || height > LARGEST {
             return Err(format!("{width} x {height} pixels are more than {LARGEST} x {LARGEST}"));
         }
-        let mut read = vec![0; usize::try_from(decoder.total_bytes()).map_err(|error| error.to_string())?];
+        let mut read =
+            vec![0; usize::try_from(decoder.total_bytes()).map_err(|error| error.to_string())?];
         decoder.read_image(&mut read).map_err(|error| error.to_string())?;
-        let numbers: Vec<f64> = read.as_chunks::<4>().0.iter().map(|bytes| f64::from(f32::from_ne_bytes(*bytes))).collect();
+        let numbers: Vec<f64> = read
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|bytes| f64::from(f32::from_ne_bytes(*bytes)))
+            .collect();
         let pixels = numbers.as_chunks::<3>().0.iter().map(|rgb| DVec3::from_array(*rgb)).collect();
-        Self::new(width as usize, height as usize, pixels).ok_or_else(|| "the image is empty".to_owned())
+        Self::new(width as usize, height as usize, pixels)
+            .ok_or_else(|| "the image is empty".to_owned())
     }
 }

@@ -24,7 +24,11 @@ pub fn corners(view_projection: DMat4, clip: Clip, depth: Depth) -> [DVec3; 8] {
     let inverse = view_projection.inverse();
     std::array::from_fn(|index| {
         let sign = |bit: usize| if index & bit == 0 { -1.0 } else { 1.0 };
-        inverse.project_point3(DVec3::new(sign(1), sign(2), if index & 4 == 0 { near } else { far }))
+        inverse.project_point3(DVec3::new(
+            sign(1),
+            sign(2),
+            if index & 4 == 0 { near } else { far },
+        ))
     })
 }
 
@@ -43,7 +47,14 @@ pub fn depth_range(view: DMat4, points: &[DVec3]) -> Option<(f64, f64)> {
 pub fn fit(view: DMat4, points: &[DVec3]) -> Option<Bounds> {
     let seen = || points.iter().map(|point| view.transform_point3(*point));
     let (low, high) = (seen().reduce(DVec3::min)?, seen().reduce(DVec3::max)?);
-    Some(Bounds { left: low.x, right: high.x, bottom: low.y, top: high.y, near: -high.z, far: -low.z })
+    Some(Bounds {
+        left: low.x,
+        right: high.x,
+        bottom: low.y,
+        top: high.y,
+        near: -high.z,
+        far: -low.z,
+    })
 }
 
 /// Where the cascades of a directional light end: the far distance of each.

@@ -19,8 +19,12 @@ pub enum MeshError {
 impl std::fmt::Display for MeshError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Incomplete { corners } => write!(f, "{corners} corners make no whole number of triangles"),
-            Self::Beyond { index, vertices } => write!(f, "the index {index} is beyond the last of {vertices} vertices"),
+            Self::Incomplete { corners } => {
+                write!(f, "{corners} corners make no whole number of triangles")
+            }
+            Self::Beyond { index, vertices } => {
+                write!(f, "the index {index} is beyond the last of {vertices} vertices")
+            }
         }
     }
 }
@@ -36,7 +40,10 @@ impl std::error::Error for MeshError {}
 /// # Errors
 /// An incomplete triangle, an index beyond the positions.
 pub fn face_normals(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<DVec3>, MeshError> {
-    Ok(triangles(positions, indices)?.iter().map(|corners| area(positions, *corners).normalize_or_zero()).collect())
+    Ok(triangles(positions, indices)?
+        .iter()
+        .map(|corners| area(positions, *corners).normalize_or_zero())
+        .collect())
 }
 
 /// The unit normal of each vertex: the sum over its triangles, each weighted by its area.
@@ -49,7 +56,10 @@ pub fn face_normals(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<
 ///
 /// # Errors
 /// As of [`face_normals`].
-pub fn smooth_normals(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<DVec3>, MeshError> {
+pub fn smooth_normals(
+    positions: &[DVec3],
+    indices: Option<&[u32]>,
+) -> Result<Vec<DVec3>, MeshError> {
     let triangles = triangles(positions, indices)?;
     let vertex = if indices.is_some() { (0..positions.len()).collect() } else { welded(positions) };
     let mut sums = vec![DVec3::ZERO; positions.len()];
@@ -69,7 +79,9 @@ fn triangles(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<[usize;
     let corners: Vec<usize> = match indices {
         None => (0..positions.len()).collect(),
         Some(indices) => match indices.iter().find(|index| **index as usize >= positions.len()) {
-            Some(index) => return Err(MeshError::Beyond { index: *index, vertices: positions.len() }),
+            Some(index) => {
+                return Err(MeshError::Beyond { index: *index, vertices: positions.len() });
+            }
             None => indices.iter().map(|index| *index as usize).collect(),
         },
     };
@@ -83,7 +95,11 @@ fn triangles(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<[usize;
 fn welded(positions: &[DVec3]) -> Vec<usize> {
     let mut first = BTreeMap::new();
     let key = |position: &DVec3| position.to_array().map(|part| (part + 0.0).to_bits());
-    positions.iter().enumerate().map(|(index, position)| *first.entry(key(position)).or_insert(index)).collect()
+    positions
+        .iter()
+        .enumerate()
+        .map(|(index, position)| *first.entry(key(position)).or_insert(index))
+        .collect()
 }
 
 /// The matrix that takes normals where `model` takes points: the inverse transpose of its upper
@@ -93,7 +109,11 @@ fn welded(positions: &[DVec3]) -> Vec<usize> {
 /// determinant and still give the normal of what it flattens to.
 pub fn normal_matrix(model: DMat4) -> DMat3 {
     let m = DMat3::from_mat4(model);
-    let cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    let cofactors = DMat3::from_cols(
+        m.y_axis.cross(m.z_axis),
+        m.z_axis.cross(m.x_axis),
+        m.x_axis.cross(m.y_axis),
+    );
     let determinant = m.x_axis.dot(cofactors.x_axis);
     if determinant == 0.0 { cofactors } else { cofactors * (1.0 / determinant) }
 }

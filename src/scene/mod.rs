@@ -21,7 +21,9 @@ pub use frustum::{Bounds, cascade_splits, corners, depth_range, fit};
 pub use kernel::gaussian;
 pub use mesh::{MeshError, UNUSED_NORMAL, face_normals, normal_matrix, smooth_normals};
 pub use probe::{CubeMap, directions, irradiance_sh9, prefilter, sh9_basis, sh9_project};
-pub use projection::{Clip, Depth, cube_projection, orthographic, perspective, polygon_offset, shadow_matrix};
+pub use projection::{
+    Clip, Depth, cube_projection, orthographic, perspective, polygon_offset, shadow_matrix,
+};
 pub use shape::{Shape, Vertex};
 pub use sky::{Equirect, Sky};
 pub use view::{FACES, cube_view, from_angles, look_along, look_at};

@@ -41,7 +41,9 @@ pub fn sh9_project(samples: impl Iterator<Item = (DVec3, f64, DVec3)>) -> [DVec3
     let mut sums = [DVec3::ZERO; 9];
     for (direction, solid_angle, radiance) in samples {
         let basis = sh9_basis(direction);
-        sums.iter_mut().zip(basis).for_each(|(sum, harmonic)| *sum += radiance * (harmonic * solid_angle));
+        sums.iter_mut()
+            .zip(basis)
+            .for_each(|(sum, harmonic)| *sum += radiance * (harmonic * solid_angle));
     }
     sums
 }
@@ -69,7 +71,10 @@ pub fn directions(rows: usize) -> Vec<(DVec3, f64)> {
         let radius = (1.0 - height * height).sqrt();
         (0..columns).map(move |column| {
             let around = TAU * (column as f64 + 0.5) / columns as f64;
-            (DVec3::new(radius * around.cos(), height, radius * around.sin()), weight * TAU / columns as f64)
+            (
+                DVec3::new(radius * around.cos(), height, radius * around.sin()),
+                weight * TAU / columns as f64,
+            )
         })
     };
     gauss_legendre(rows).into_iter().flat_map(row).collect()
@@ -125,8 +130,10 @@ impl CubeMap {
 /// the diffuse map times pi is the irradiance.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, "Image-Based Lighting".
 pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> CubeMap {
-    let seen: Vec<(DVec3, f64, DVec3)> =
-        directions(rows).into_iter().map(|(direction, weight)| (direction, weight, sky(direction))).collect();
+    let seen: Vec<(DVec3, f64, DVec3)> = directions(rows)
+        .into_iter()
+        .map(|(direction, weight)| (direction, weight, sky(direction)))
+        .collect();
     let texel = |index: usize| {
         let (face, row, column) = (index / (size * size), index / size % size, index % size);
         let n = CubeMap::direction(size, face, column, row);

@@ -41,7 +41,14 @@ impl Clip {
 /// Parameters: `fov_y` the whole vertical angle, radians, in (0, pi); `aspect` width over height;
 /// `near`, `far` distances along -z, scene units, `0 < near < far`.
 /// Returns: view to clip space.
-pub fn perspective(fov_y: f64, aspect: f64, near: f64, far: f64, clip: Clip, depth: Depth) -> DMat4 {
+pub fn perspective(
+    fov_y: f64,
+    aspect: f64,
+    near: f64,
+    far: f64,
+    clip: Clip,
+    depth: Depth,
+) -> DMat4 {
     let (at_near, at_far) = clip.depths(depth);
     let scale = 1.0 / (0.5 * fov_y).tan();
     let slope = (far * at_far - near * at_near) / (near - far);

@@ -36,13 +36,24 @@ impl Shape {
         let mut shape = Self::default();
         for row in 0..=rows {
             for column in 0..=columns {
-                let (u, v) = (f64::from(column) / f64::from(columns.max(1)), f64::from(row) / f64::from(rows.max(1)));
+                let (u, v) = (
+                    f64::from(column) / f64::from(columns.max(1)),
+                    f64::from(row) / f64::from(rows.max(1)),
+                );
                 shape.vertices.push(vertex(&at, u, v));
             }
         }
-        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)))
+        {
             let corner = |x: u32, y: u32| (row + y) * (columns + 1) + column + x;
-            shape.indices.extend([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 0), corner(1, 1), corner(0, 1)]);
+            shape.indices.extend([
+                corner(0, 0),
+                corner(1, 0),
+                corner(1, 1),
+                corner(0, 0),
+                corner(1, 1),
+                corner(0, 1),
+            ]);
         }
         shape
     }
@@ -70,11 +81,18 @@ impl Shape {
 
     /// A box around the origin, seen from outside, each face of `quads` by `quads`.
     pub fn cuboid(half: DVec3, quads: u32) -> Self {
-        let faces = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z].map(|normal| {
-            let along = if normal.y == 0.0 { DVec3::Y.cross(normal) } else { DVec3::X };
-            let up = normal.cross(along);
-            Self::patch((normal - along - up) * half, along * half * 2.0, up * half * 2.0, (quads, quads))
-        });
+        let faces = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z].map(
+            |normal| {
+                let along = if normal.y == 0.0 { DVec3::Y.cross(normal) } else { DVec3::X };
+                let up = normal.cross(along);
+                Self::patch(
+                    (normal - along - up) * half,
+                    along * half * 2.0,
+                    up * half * 2.0,
+                    (quads, quads),
+                )
+            },
+        );
         faces.into_iter().fold(Self::default(), Self::with)
     }
 
@@ -92,9 +110,11 @@ impl Shape {
         let line: Vec<DVec2> = points.iter().map(|(point, _)| *point).collect();
         let radii: Vec<DVec2> = points.iter().map(|(_, radius)| DVec2::new(*radius, 0.0)).collect();
         Self::surface(quads.0, quads.1, |u, v| {
-            let ahead = (smooth(&line, (v + 1e-3).min(1.0)) - smooth(&line, (v - 1e-3).max(0.0))).normalize_or_zero();
+            let ahead = (smooth(&line, (v + 1e-3).min(1.0)) - smooth(&line, (v - 1e-3).max(0.0)))
+                .normalize_or_zero();
             let (sin, cos) = (TAU * u).sin_cos();
-            let side = (DVec3::new(-ahead.y, ahead.x, 0.0) * cos + DVec3::Z * sin) * smooth(&radii, v).x.max(0.0);
+            let side = (DVec3::new(-ahead.y, ahead.x, 0.0) * cos + DVec3::Z * sin)
+                * smooth(&radii, v).x.max(0.0);
             smooth(&line, v).extend(0.0) + side
         })
     }
@@ -122,7 +142,10 @@ impl Shape {
         self.map(|vertex| {
             vertex.position = matrix.transform_point3(vertex.position);
             vertex.normal = (normals * vertex.normal).normalize_or_zero();
-            vertex.tangent = matrix.transform_vector3(vertex.tangent.truncate()).normalize_or_zero().extend(vertex.tangent.w);
+            vertex.tangent = matrix
+                .transform_vector3(vertex.tangent.truncate())
+                .normalize_or_zero()
+                .extend(vertex.tangent.w);
         })
     }
 
@@ -141,7 +164,11 @@ impl Shape {
         let normals = face_normals(&positions, Some(&self.indices)).unwrap_or_default();
         let corners = normals.iter().zip(self.indices.chunks(3));
         let vertices: Vec<Vertex> = corners
-            .flat_map(|(normal, corners)| corners.iter().map(|index| Vertex { normal: *normal, ..self.vertices[*index as usize] }))
+            .flat_map(|(normal, corners)| {
+                corners
+                    .iter()
+                    .map(|index| Vertex { normal: *normal, ..self.vertices[*index as usize] })
+            })
             .collect();
         let indices = (0..vertices.len() as u32).collect();
         Self { vertices, indices }
@@ -180,5 +207,8 @@ fn smooth(points: &[DVec2], at: f64) -> DVec2 {
     let t = place - first as f64;
     let point = |index: isize| points[(first as isize + index).clamp(0, last as isize) as usize];
     let (a, b, c, d) = (point(-1), point(0), point(1), point(2));
-    0.5 * (2.0 * b + (c - a) * t + (2.0 * a - 5.0 * b + 4.0 * c - d) * t * t + (3.0 * b - a - 3.0 * c + d) * t * t * t)
+    0.5 * (2.0 * b
+        + (c - a) * t
+        + (2.0 * a - 5.0 * b + 4.0 * c - d) * t * t
+        + (3.0 * b - a - 3.0 * c + d) * t * t * t)
 }

@@ -20,14 +20,22 @@ pub struct Equirect {
 impl Equirect {
     /// An image from its pixels; `None` where they are not `width * height`, or none.
     pub fn new(width: usize, height: usize, pixels: Vec<DVec3>) -> Option<Self> {
-        (width > 0 && pixels.len() == width * height && height > 0).then_some(Self { width, height, pixels })
+        (width > 0 && pixels.len() == width * height && height > 0).then_some(Self {
+            width,
+            height,
+            pixels,
+        })
     }
 
     /// An image of a sky, sampled in the middle of each pixel.
     pub fn of(sky: &Sky<'_>, width: usize, height: usize) -> Option<Self> {
         let blank = Self { width, height, pixels: Vec::new() };
         let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-        Self::new(width, height, pixels.map(|(column, row)| sky(blank.direction(column, row))).collect())
+        Self::new(
+            width,
+            height,
+            pixels.map(|(column, row)| sky(blank.direction(column, row))).collect(),
+        )
     }
 
     /// The direction through the middle of a pixel.
@@ -63,7 +71,10 @@ impl Equirect {
             let inside = if row < 0.0 { -1.0 - row } else { row.min(2.0 * height - 1.0 - row) };
             let around = if beyond { around + 0.5 * self.width as f64 } else { around };
             let left = around.floor();
-            let pixel = |column: f64| self.pixels[inside as usize * self.width + column.rem_euclid(self.width as f64) as usize];
+            let pixel = |column: f64| {
+                self.pixels
+                    [inside as usize * self.width + column.rem_euclid(self.width as f64) as usize]
+            };
             pixel(left).lerp(pixel(left + 1.0), around - left)
         };
         row(top).lerp(row(top + 1.0), down - top)

@@ -14,7 +14,10 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
 /// [`look_at`] by a direction, which need not be of unit length: a directional light's view.
 pub fn look_along(eye: DVec3, direction: DVec3, up: DVec3) -> DMat4 {
     let Some(forward) = direction.try_normalize() else { return DMat4::from_translation(-eye) };
-    let side = forward.cross(up).try_normalize().filter(|_| forward.cross(up.normalize_or_zero()).length() > 1e-6);
+    let side = forward
+        .cross(up)
+        .try_normalize()
+        .filter(|_| forward.cross(up.normalize_or_zero()).length() > 1e-6);
     let right = side.unwrap_or_else(|| forward.cross(farthest_axis(forward)).normalize());
     let rotation = DMat3::from_cols(right, right.cross(forward), -forward).transpose();
     DMat4::from_mat3(rotation) * DMat4::from_translation(-eye)

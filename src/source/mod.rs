@@ -3,8 +3,9 @@
 mod package;
 mod read;
 
+pub(crate) use package::is_inside;
 pub use package::{Disk, Embedded, Files, LIMITS, Limits, Memory, Package, ReadError};
-pub use read::read;
+pub use read::{ReadFailure, read};
 
 /// One text an author wrote, as shown in diagnostics.
 #[derive(Debug, Clone)]
@@ -50,7 +51,11 @@ pub struct SourceSet {
 
 impl SourceSet {
     /// Adds a text and returns its index.
-    pub fn add(&mut self, path: impl Into<String>, text: impl Into<std::sync::Arc<str>>) -> SourceId {
+    pub fn add(
+        &mut self,
+        path: impl Into<String>,
+        text: impl Into<std::sync::Arc<str>>,
+    ) -> SourceId {
         self.sources.push(Source { path: path.into(), text: text.into() });
         SourceId(self.sources.len() as u32 - 1)
     }

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use crate::input;
+
 /// Bounds on what is read; each has its own error.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
@@ -81,6 +83,11 @@ impl Disk {
         let folder = if shown.as_os_str().is_empty() { Path::new(".") } else { &shown };
         Ok(Self { root: folder.canonicalize()?, shown })
     }
+
+    /// Whether the folder is that one or below it, links followed.
+    pub fn is_below(&self, real: &Path) -> bool {
+        self.root.starts_with(real)
+    }
 }
 
 impl Files for Disk {
@@ -91,7 +98,10 @@ impl Files for Disk {
         let joined = self.root.join(path);
         let real = match joined.canonicalize() {
             Ok(real) => real,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound || error.kind() == std::io::ErrorKind::NotADirectory => {
+            Err(error)
+                if error.kind() == std::io::ErrorKind::NotFound
+                    || error.kind() == std::io::ErrorKind::NotADirectory =>
+            {
                 return Ok(None);
             }
             Err(error) => return Err(ReadError::Io(error.to_string())),
@@ -99,14 +109,15 @@ impl Files for Disk {
         if !real.starts_with(&self.root) {
             return Err(ReadError::OutsideRoot);
         }
-        let metadata = fs::metadata(&real).map_err(|error| ReadError::Io(error.to_string()))?;
+        let io = |error: std::io::Error| ReadError::Io(error.to_string());
+        let metadata = fs::metadata(&real).map_err(io)?;
         if !metadata.is_file() {
             return Ok(None);
         }
         if metadata.len() > LIMITS.file_bytes as u64 {
             return Err(ReadError::TooLarge { bytes: metadata.len() });
         }
-        decode(fs::read(&real).map_err(|error| ReadError::Io(error.to_string()))?).map(Some)
+        decode(input::read(&real, LIMITS.file_bytes as u64).map_err(io)?).map(Some)
     }
 
     fn list(&self, extensions: &[&str]) -> Vec<String> {
@@ -145,11 +156,18 @@ mod shaderlib {
 
 impl Files for Embedded {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
-        Ok(shaderlib::FILES.binary_search_by(|(name, _)| (*name).cmp(path)).ok().map(|index| shaderlib::FILES[index].1.to_owned()))
+        Ok(shaderlib::FILES
+            .binary_search_by(|(name, _)| (*name).cmp(path))
+            .ok()
+            .map(|index| shaderlib::FILES[index].1.to_owned()))
     }
 
     fn list(&self, extensions: &[&str]) -> Vec<String> {
-        shaderlib::FILES.iter().filter(|(name, _)| has_extension(name, extensions)).map(|(name, _)| (*name).to_owned()).collect()
+        shaderlib::FILES
+            .iter()
+            .filter(|(name, _)| has_extension(name, extensions))
+            .map(|(name, _)| (*name).to_owned())
+            .collect()
     }
 
     fn display(&self, path: &str) -> String {
@@ -167,7 +185,9 @@ impl Files for Memory {
             return Err(ReadError::OutsideRoot);
         }
         match self.0.get(path) {
-            Some(text) if text.len() > LIMITS.file_bytes => Err(ReadError::TooLarge { bytes: text.len() as u64 }),
+            Some(text) if text.len() > LIMITS.file_bytes => {
+                Err(ReadError::TooLarge { bytes: text.len() as u64 })
+            }
             found => Ok(found.cloned()),
         }
     }
@@ -182,7 +202,7 @@ fn has_extension(name: &str, extensions: &[&str]) -> bool {
 }
 
 /// Whether a relative path stays below its root on its own words, links aside.
-fn is_inside(path: &str) -> bool {
+pub fn is_inside(path: &str) -> bool {
     let mut depth = 0i32;
     Path::new(path).components().all(|component| {
         match component {

@@ -1,30 +1,44 @@
-//! Reading one file of a package, its failures as diagnostics.
+//! Reading one file of a package.
 
-use super::{LIMITS, Package, ReadError, SourceId, SourceSet, Span};
-use crate::diagnostic::{Diagnostic, codes};
+use super::{Package, ReadError, SourceId, SourceSet, Span};
+
+/// Why a file of a package was not read. Becomes a diagnostic with `?`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReadFailure {
+    /// As it was asked for, below the package's root.
+    pub path: String,
+    /// As it is shown to the author.
+    pub shown: String,
+    /// What is wrong.
+    pub error: ReadError,
+    /// The first bad byte of a text that is not UTF-8.
+    pub place: Option<Span>,
+}
 
 /// Reads `path` of `package` into the set. `None` where there is no such file.
 ///
-/// The diagnostic has no label of the place that asked for the file, except for text that is not
-/// UTF-8, where it points to the first bad byte: add the asker's with [`Diagnostic::at`].
-pub fn read(sources: &mut SourceSet, package: &Package, path: &str) -> Result<Option<SourceId>, Diagnostic> {
+/// # Errors
+/// The failure has no place of the one who asked for the file.
+pub fn read(
+    sources: &mut SourceSet,
+    package: &Package,
+    path: &str,
+) -> Result<Option<SourceId>, ReadFailure> {
     let shown = package.files.display(path);
     match package.files.read(path) {
         Ok(text) => Ok(text.map(|text| sources.add(shown, text))),
-        Err(ReadError::OutsideRoot) => Err(Diagnostic::error(codes::OUTSIDE_ROOT, format!("`{path}` leads out of its package's root"))),
-        Err(ReadError::TooLarge { bytes }) => Err(Diagnostic::error(
-            codes::FILE_TOO_LARGE,
-            format!("`{shown}` has {bytes} bytes, more than the {} that are allowed", LIMITS.file_bytes),
-        )),
-        Err(ReadError::Io(words)) => Err(Diagnostic::error(codes::UNREADABLE, format!("cannot read `{shown}`: {words}"))),
-        Err(ReadError::NotUtf8 { lossy, offset }) => Err(not_utf8(sources, shown, lossy, offset)),
+        Err(error) => {
+            let place = bad_byte(sources, &shown, &error);
+            Err(ReadFailure { path: path.to_owned(), shown, error, place })
+        }
     }
 }
 
-fn not_utf8(sources: &mut SourceSet, shown: String, lossy: String, offset: usize) -> Diagnostic {
-    let message = format!("`{shown}` is not UTF-8");
+/// Adds a text that is not UTF-8 as far as it can be shown, and points to its first bad byte.
+fn bad_byte(sources: &mut SourceSet, shown: &str, error: &ReadError) -> Option<Span> {
+    let ReadError::NotUtf8 { lossy, offset } = error else { return None };
     // The first bad byte became one replacement character in the lossy text.
     let end = (offset + char::REPLACEMENT_CHARACTER.len_utf8()).min(lossy.len());
-    let source = sources.add(shown, lossy);
-    Diagnostic::error(codes::NOT_UTF8, message).at(Span::new(source, offset..end), "the first byte that is not")
+    let source = sources.add(shown, lossy.as_str());
+    Some(Span::new(source, *offset..end))
 }

@@ -5,7 +5,9 @@ use crate::cache::{Folder, Storage};
 /// The store at `fs:/path`.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     match address.split_once(':') {
-        Some(("fs", path)) => Ok(Box::new(Folder::new(path))),
+        Some(("fs", path)) => Folder::new(path)
+            .map(|folder| Box::new(folder) as Box<dyn Storage>)
+            .map_err(|foreign| foreign.to_string()),
         _ => Err(format!(
             "this build has no store like `{address}`, only `fs:/path`: build it with `cargo install lamplight --features store`"
         )),

@@ -23,11 +23,22 @@ const ROOT: &str = "/lamplight";
 /// The store at `fs:/path` or `redis://host:port`, if it answers.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     let operator = operator(address)?;
-    let runtime = Builder::new_multi_thread().worker_threads(1).enable_all().build().map_err(|error| error.to_string())?;
+    let runtime = Builder::new_multi_thread()
+        .worker_threads(1)
+        .enable_all()
+        .build()
+        .map_err(|error| error.to_string())?;
     let answer = runtime.block_on(async { timeout(PATIENCE, operator.read("units/00/0")).await });
     match answer {
-        Ok(Err(error)) if error.kind() != ErrorKind::NotFound => return Err(format!("the store `{address}` refuses: {error}")),
-        Err(_) => return Err(format!("the store `{address}` does not answer within {} s", PATIENCE.as_secs())),
+        Ok(Err(error)) if error.kind() != ErrorKind::NotFound => {
+            return Err(format!("the store `{address}` refuses: {error}"));
+        }
+        Err(_) => {
+            return Err(format!(
+                "the store `{address}` does not answer within {} s",
+                PATIENCE.as_secs()
+            ));
+        }
         Ok(_) => {}
     }
     let blocking = {
@@ -39,9 +50,15 @@ pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
 
 fn operator(address: &str) -> Result<AsyncOperator, String> {
     let operator = match address.split_once(':') {
-        Some(("fs", path)) => AsyncOperator::new(Fs::default().root(path).atomic_write_dir(&format!("{path}/.tmp"))),
+        Some(("fs", path)) => {
+            AsyncOperator::new(Fs::default().root(path).atomic_write_dir(&format!("{path}/.tmp")))
+        }
         Some(("redis", _)) => AsyncOperator::new(Redis::default().endpoint(address).root(ROOT)),
-        _ => return Err(format!("`{address}` is no store: write `fs:/path` or `redis://host:port`")),
+        _ => {
+            return Err(format!(
+                "`{address}` is no store: write `fs:/path` or `redis://host:port`"
+            ));
+        }
     };
     operator.map_err(|error| format!("the store `{address}` cannot be opened: {error}"))
 }

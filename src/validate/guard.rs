@@ -42,7 +42,11 @@ pub fn guard<R>(text: &str, work: impl FnOnce() -> R) -> Result<R, Diagnostic> {
     GUARDED.set(outer);
     result.map_err(|_| {
         let reason = PANIC.take().unwrap_or_else(|| "no message".to_owned());
-        Diagnostic::error(codes::NAGA_INTERNAL, format!("naga stopped with an internal error: {reason}")).note(quote(text))
+        Diagnostic::error(
+            codes::NAGA_INTERNAL,
+            format!("naga stopped with an internal error: {reason}"),
+        )
+        .note(quote(text))
     })
 }
 
@@ -77,7 +81,10 @@ fn hush() {
 /// The panic's message and the line of naga it came from, without the path of the machine.
 fn describe(info: &panic::PanicHookInfo<'_>) -> String {
     let payload = info.payload();
-    let message = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let message = payload
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| payload.downcast_ref::<String>().map(String::as_str));
     let message = message.unwrap_or("no message");
     match info.location() {
         Some(place) => {
@@ -90,7 +97,14 @@ fn describe(info: &panic::PanicHookInfo<'_>) -> String {
 }
 
 fn quote(text: &str) -> String {
-    let end = (0..=QUOTED_BYTES.min(text.len())).rev().find(|end| text.is_char_boundary(*end)).unwrap_or_default();
-    let rest = if end < text.len() { format!("\n[{} more bytes]", text.len() - end) } else { String::new() };
+    let end = (0..=QUOTED_BYTES.min(text.len()))
+        .rev()
+        .find(|end| text.is_char_boundary(*end))
+        .unwrap_or_default();
+    let rest = if end < text.len() {
+        format!("\n[{} more bytes]", text.len() - end)
+    } else {
+        String::new()
+    };
     format!("the composed text:\n{}{rest}", &text[..end])
 }

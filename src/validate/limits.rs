@@ -30,7 +30,11 @@ pub const LIMITS: Limits = Limits { bytes: 4 << 20, nesting: 256, operators: 409
 pub fn check(composed: &Composed) -> Result<(), Diagnostic> {
     let text = &composed.text;
     if text.len() > LIMITS.bytes {
-        let message = format!("the composed text has {} bytes, more than the limit of {}", text.len(), LIMITS.bytes);
+        let message = format!(
+            "the composed text has {} bytes, more than the limit of {}",
+            text.len(),
+            LIMITS.bytes
+        );
         return Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message));
     }
     match scan(text.as_bytes()) {
@@ -46,10 +50,14 @@ struct Excess {
 }
 
 fn report(composed: &Composed, excess: &Excess) -> Diagnostic {
-    let error = Diagnostic::error(codes::LIMIT_EXCEEDED, format!("more than {} {}", excess.limit, excess.what));
+    let error = Diagnostic::error(
+        codes::LIMIT_EXCEEDED,
+        format!("more than {} {}", excess.limit, excess.what),
+    );
     match composed.map.lookup(excess.offset..excess.offset + 1) {
         Some(span) => error.at(span, "the limit is reached here"),
-        None => error.note(format!("the limit is reached at byte {} of the composed text", excess.offset)),
+        None => error
+            .note(format!("the limit is reached at byte {} of the composed text", excess.offset)),
     }
 }
 
@@ -75,18 +83,33 @@ struct Scan<'a> {
 }
 
 fn scan(bytes: &[u8]) -> Option<Excess> {
-    let mut scan = Scan { bytes, at: 0, levels: vec![Level::default()], open: 0, after_block: false, bodies: 0 };
+    let mut scan = Scan {
+        bytes,
+        at: 0,
+        levels: vec![Level::default()],
+        open: 0,
+        after_block: false,
+        bodies: 0,
+    };
     while scan.at < bytes.len() {
         let offset = scan.at;
         scan.step();
         if scan.levels.len() > LIMITS.nesting {
-            return Some(Excess { offset, what: "brackets within each other", limit: LIMITS.nesting });
+            return Some(Excess {
+                offset,
+                what: "brackets within each other",
+                limit: LIMITS.nesting,
+            });
         }
         if scan.bodies > LIMITS.bodies {
             return Some(Excess { offset, what: "functions and structures", limit: LIMITS.bodies });
         }
         if scan.open > LIMITS.operators {
-            return Some(Excess { offset, what: "operators in one expression", limit: LIMITS.operators });
+            return Some(Excess {
+                offset,
+                what: "operators in one expression",
+                limit: LIMITS.operators,
+            });
         }
     }
     None
@@ -116,7 +139,8 @@ impl Scan<'_> {
             b',' => self.separate(),
             b';' => self.reset(),
             b'.' if self.peek().is_none_or(|next| !next.is_ascii_alphabetic()) => {}
-            b'+' | b'-' | b'*' | b'/' | b'%' | b'<' | b'>' | b'=' | b'!' | b'~' | b'&' | b'|' | b'^' | b'?' | b':' | b'.' => self.count(1),
+            b'+' | b'-' | b'*' | b'/' | b'%' | b'<' | b'>' | b'=' | b'!' | b'~' | b'&' | b'|'
+            | b'^' | b'?' | b':' | b'.' => self.count(1),
             _ => {}
         }
     }
@@ -188,7 +212,9 @@ impl Scan<'_> {
     /// that sees more text.
     fn skip_block(&mut self) {
         self.at += 1;
-        while self.at < self.bytes.len() && !(self.bytes[self.at] == b'*' && self.bytes.get(self.at + 1) == Some(&b'/')) {
+        while self.at < self.bytes.len()
+            && !(self.bytes[self.at] == b'*' && self.bytes.get(self.at + 1) == Some(&b'/'))
+        {
             self.at += 1;
         }
         self.at = (self.at + 2).min(self.bytes.len());

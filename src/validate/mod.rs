@@ -15,7 +15,8 @@ pub use uniformity::{has_lints, lint};
 use naga::front::{glsl, wgsl};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
-use crate::compose::{Composed, Language, Stage};
+use crate::bundle::{Language, Stage};
+use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
 /// A module that naga accepts, with what it found out about it.
@@ -28,7 +29,8 @@ pub struct Validated {
 
 /// What every target of the crate has: sample shading and cube arrays, which naga takes for
 /// granted, and no type of 16 or 64 bits. Cube arrays are refused by the targets without them.
-pub const CAPABILITIES: Capabilities = Capabilities::MULTISAMPLED_SHADING.union(Capabilities::CUBE_ARRAY_TEXTURES);
+pub const CAPABILITIES: Capabilities =
+    Capabilities::MULTISAMPLED_SHADING.union(Capabilities::CUBE_ARRAY_TEXTURES);
 
 /// Parses and validates.
 ///
@@ -37,19 +39,37 @@ pub const CAPABILITIES: Capabilities = Capabilities::MULTISAMPLED_SHADING.union(
 /// validator, in the author's places; `naga-internal` where it panicked.
 pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
     limits::check(composed).map_err(|error| vec![error])?;
-    on_large_stack(|| guard(&composed.text, || parse(composed).and_then(|module| analyse(composed, module))))
-        .map_err(|error| vec![error])
-        .and_then(|result| result)
+    on_large_stack(|| {
+        guard(&composed.text, || parse(composed).and_then(|module| analyse(composed, module)))
+    })
+    .map_err(|error| vec![error])
+    .and_then(|result| result)
+}
+
+/// Refuses a text that naga should not see.
+///
+/// # Errors
+/// `limit-exceeded`.
+pub fn check_limits(composed: &Composed) -> Result<(), Diagnostics> {
+    limits::check(composed).map_err(|error| vec![error])
 }
 
 fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     match composed.language {
-        Language::Wesl => wgsl::parse_str(&composed.text).map_err(|error| vec![report::wgsl(composed, &error)]),
+        Language::Wesl => {
+            wgsl::parse_str(&composed.text).map_err(|error| vec![report::wgsl(composed, &error)])
+        }
         Language::Glsl => {
-            let stage =
-                composed.stage.ok_or_else(|| vec![Diagnostic::error(codes::GLSL_ERROR, "the stage of the GLSL text is not known")])?;
+            let stage = composed.stage.ok_or_else(|| {
+                vec![Diagnostic::error(
+                    codes::GLSL_ERROR,
+                    "the stage of the GLSL text is not known",
+                )]
+            })?;
             let options = glsl::Options::from(naga_stage(stage));
-            glsl::Frontend::default().parse(&options, &composed.text).map_err(|errors| report::glsl(composed, &errors))
+            glsl::Frontend::default()
+                .parse(&options, &composed.text)
+                .map_err(|errors| report::glsl(composed, &errors))
         }
     }
 }

@@ -6,7 +6,8 @@ use std::ops::Range;
 use naga::front::{glsl, wgsl};
 use naga::valid::ValidationError;
 
-use crate::compose::{Composed, Language};
+use crate::bundle::Language;
+use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
 /// An error of the WGSL parser, with all its labels and notes.
@@ -41,16 +42,28 @@ pub fn validation(composed: &Composed, error: &naga::WithSpan<ValidationError>) 
         Language::Glsl => codes::GLSL_ERROR,
     };
     // The shortest span says most: it becomes the diagnostic's place.
-    let mut spans: Vec<_> = error.spans().map(|(span, context)| (span.to_range(), kind(context))).collect();
+    let mut spans: Vec<_> =
+        error.spans().map(|(span, context)| (span.to_range(), kind(context))).collect();
     spans.sort_by_key(|(range, _)| range.as_ref().map_or(usize::MAX, ExactSizeIterator::len));
     let diagnostic = Diagnostic::error(code, sentence(&causes(error.as_inner()).join(": ")));
-    spans.into_iter().fold(diagnostic, |diagnostic, (range, words)| place(diagnostic, composed, range, words))
+    spans
+        .into_iter()
+        .fold(diagnostic, |diagnostic, (range, words)| place(diagnostic, composed, range, words))
 }
 
 /// A label where the range has an author, else a note that quotes the composed text.
-fn place(diagnostic: Diagnostic, composed: &Composed, range: Option<Range<usize>>, label: &str) -> Diagnostic {
+fn place(
+    diagnostic: Diagnostic,
+    composed: &Composed,
+    range: Option<Range<usize>>,
+    label: &str,
+) -> Diagnostic {
     let Some(range) = range else {
-        return if label.is_empty() || label == "here" { diagnostic } else { diagnostic.note(label) };
+        return if label.is_empty() || label == "here" {
+            diagnostic
+        } else {
+            diagnostic.note(label)
+        };
     };
     if let Some(span) = composed.map.lookup(range.clone()) {
         return diagnostic.at(span, label);
@@ -106,7 +119,9 @@ fn sentence(message: &str) -> String {
     let first_word = message.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
     let is_name = first_word.chars().skip(1).any(char::is_uppercase);
     match message.chars().next() {
-        Some(first) if !is_name && first.is_uppercase() => first.to_lowercase().chain(message.chars().skip(1)).collect(),
+        Some(first) if !is_name && first.is_uppercase() => {
+            first.to_lowercase().chain(message.chars().skip(1)).collect()
+        }
         _ => message.to_owned(),
     }
 }

@@ -18,7 +18,10 @@ const ROUNDS: usize = 8;
 
 /// Warnings about the fragment entry points of a module, in the order of its text.
 pub fn lint(composed: &Composed, validated: &Validated) -> Diagnostics {
-    findings(validated).iter().filter_map(|(range, finding)| warning(composed, range.0..range.1, finding)).collect()
+    findings(validated)
+        .iter()
+        .filter_map(|(range, finding)| warning(composed, range.0..range.1, finding))
+        .collect()
 }
 
 /// Whether there is something to warn of, wherever the text came from.
@@ -34,15 +37,28 @@ fn findings(validated: &Validated) -> BTreeMap<(usize, usize), Finding> {
     flow.found
 }
 
-fn warning(composed: &Composed, range: std::ops::Range<usize>, finding: &Finding) -> Option<Diagnostic> {
+fn warning(
+    composed: &Composed,
+    range: std::ops::Range<usize>,
+    finding: &Finding,
+) -> Option<Diagnostic> {
     let (what, help) = match finding.sample {
-        true => ("a texture sampled with an implicit level", "help: sample before the branch, or give the level or the gradients"),
+        true => (
+            "a texture sampled with an implicit level",
+            "help: sample before the branch, or give the level or the gradients",
+        ),
         false => ("a derivative", "help: take it before the branch"),
     };
-    let warning = Diagnostic::warning(codes::NON_UNIFORM_DERIVATIVE, format!("{what} in non-uniform control flow"));
-    let warning = warning.at(composed.map.lookup(range)?, "neighbouring fragments may not come here");
+    let warning = Diagnostic::warning(
+        codes::NON_UNIFORM_DERIVATIVE,
+        format!("{what} in non-uniform control flow"),
+    );
+    let warning =
+        warning.at(composed.map.lookup(range)?, "neighbouring fragments may not come here");
     let cause = finding.cause.to_range().and_then(|range| composed.map.lookup(range));
-    let warning = cause.into_iter().fold(warning, |warning, span| warning.at(span, "differs between fragments"));
+    let warning = cause
+        .into_iter()
+        .fold(warning, |warning, span| warning.at(span, "differs between fragments"));
     Some(warning.note(help))
 }
 
@@ -85,9 +101,18 @@ impl<'a> Flow<'a> {
             loops: BTreeMap::new(),
         };
         let functions = module.functions.iter().map(|(_, function)| known(function, false));
-        let entries = module.entry_points.iter().map(|point| known(&point.function, point.stage == ShaderStage::Fragment));
+        let entries = module
+            .entry_points
+            .iter()
+            .map(|point| known(&point.function, point.stage == ShaderStage::Fragment));
         let functions = functions.chain(entries).collect();
-        Self { module, functions, globals: vec![false; module.global_variables.len()], found: BTreeMap::new(), changed: false }
+        Self {
+            module,
+            functions,
+            globals: vec![false; module.global_variables.len()],
+            found: BTreeMap::new(),
+            changed: false,
+        }
     }
 
     /// Walks every function once, callees first; whether anything new was learnt.
@@ -97,14 +122,27 @@ impl<'a> Flow<'a> {
         for (handle, function) in module.functions.iter() {
             self.walk(handle.index(), function);
         }
-        for (index, point) in module.entry_points.iter().enumerate().filter(|(_, point)| point.stage == ShaderStage::Fragment) {
+        for (index, point) in module
+            .entry_points
+            .iter()
+            .enumerate()
+            .filter(|(_, point)| point.stage == ShaderStage::Fragment)
+        {
             self.walk(module.functions.len() + index, &point.function);
         }
         self.changed
     }
 
     fn walk(&mut self, index: usize, function: &'a Function) {
-        let mut walk = Walk { varying: self.varying(index, function), flow: self, index, function, returned: None, left: None, loops: 0 };
+        let mut walk = Walk {
+            varying: self.varying(index, function),
+            flow: self,
+            index,
+            function,
+            returned: None,
+            left: None,
+            loops: 0,
+        };
         let parted = walk.flow.functions[index].parted;
         walk.block(&function.body, parted);
     }
@@ -114,7 +152,8 @@ impl<'a> Flow<'a> {
         let known = &self.functions[index];
         let mut varying: Vec<bool> = Vec::with_capacity(function.expressions.len());
         for (_, expression) in function.expressions.iter() {
-            let of = |handle: &Handle<Expression>| varying.get(handle.index()).copied().unwrap_or(false);
+            let of =
+                |handle: &Handle<Expression>| varying.get(handle.index()).copied().unwrap_or(false);
             let value = match expression {
                 Expression::FunctionArgument(argument) => known.arguments[*argument as usize],
                 Expression::LocalVariable(variable) => known.locals[variable.index()],
@@ -124,14 +163,21 @@ impl<'a> Flow<'a> {
                 Expression::Load { pointer } => of(pointer),
                 Expression::Access { base, index } => of(base) || of(index),
                 Expression::AccessIndex { base, .. } => of(base),
-                Expression::Splat { value, .. } | Expression::Swizzle { vector: value, .. } => of(value),
+                Expression::Splat { value, .. } | Expression::Swizzle { vector: value, .. } => {
+                    of(value)
+                }
                 Expression::Unary { expr, .. } | Expression::As { expr, .. } => of(expr),
                 Expression::Relational { argument, .. } => of(argument),
                 Expression::Compose { components, .. } => components.iter().any(of),
                 Expression::Binary { left, right, .. } => of(left) || of(right),
-                Expression::Select { condition, accept, reject } => of(condition) || of(accept) || of(reject),
-                Expression::Math { arg, arg1, arg2, arg3, .. } => of(arg) || [arg1, arg2, arg3].into_iter().flatten().any(of),
-                Expression::ImageSample { coordinate, .. } | Expression::ImageLoad { coordinate, .. } => of(coordinate),
+                Expression::Select { condition, accept, reject } => {
+                    of(condition) || of(accept) || of(reject)
+                }
+                Expression::Math { arg, arg1, arg2, arg3, .. } => {
+                    of(arg) || [arg1, arg2, arg3].into_iter().flatten().any(of)
+                }
+                Expression::ImageSample { coordinate, .. }
+                | Expression::ImageLoad { coordinate, .. } => of(coordinate),
                 _ => false,
             };
             varying.push(value);
@@ -197,10 +243,13 @@ impl<'a> Walk<'_, 'a> {
             Statement::Break | Statement::Continue => self.left = self.left.or(parted),
             Statement::Return { value } => {
                 self.returned = self.returned.or(parted);
-                let varies = parted.is_some() || value.is_some_and(|value| self.varying[value.index()]);
+                let varies =
+                    parted.is_some() || value.is_some_and(|value| self.varying[value.index()]);
                 self.learn(varies, |flow, index| &mut flow.functions[index].result);
             }
-            Statement::Store { pointer, value } => self.store(*pointer, parted.is_some() || self.varying[value.index()]),
+            Statement::Store { pointer, value } => {
+                self.store(*pointer, parted.is_some() || self.varying[value.index()])
+            }
             Statement::Call { function, arguments, .. } => self.call(*function, arguments, parted),
             _ => {}
         }
@@ -216,7 +265,9 @@ impl<'a> Walk<'_, 'a> {
     }
 
     fn parted_by(&self, condition: Handle<Expression>, parted: Option<Span>) -> Option<Span> {
-        parted.or_else(|| self.varying[condition.index()].then(|| self.function.expressions.get_span(condition)))
+        parted.or_else(|| {
+            self.varying[condition.index()].then(|| self.function.expressions.get_span(condition))
+        })
     }
 
     fn emit(&mut self, handle: Handle<Expression>, cause: Span) {
@@ -233,19 +284,30 @@ impl<'a> Walk<'_, 'a> {
     /// The variable behind a pointer holds what differs between fragments.
     fn store(&mut self, pointer: Handle<Expression>, varies: bool) {
         let mut root = pointer;
-        while let Expression::Access { base, .. } | Expression::AccessIndex { base, .. } = &self.function.expressions[root] {
+        while let Expression::Access { base, .. } | Expression::AccessIndex { base, .. } =
+            &self.function.expressions[root]
+        {
             root = *base;
         }
         match &self.function.expressions[root] {
             Expression::LocalVariable(variable) => {
-                self.learn(varies, |flow, index| &mut flow.functions[index].locals[variable.index()]);
+                self.learn(varies, |flow, index| {
+                    &mut flow.functions[index].locals[variable.index()]
+                });
             }
-            Expression::GlobalVariable(variable) => self.learn(varies, |flow, _| &mut flow.globals[variable.index()]),
+            Expression::GlobalVariable(variable) => {
+                self.learn(varies, |flow, _| &mut flow.globals[variable.index()])
+            }
             _ => {}
         }
     }
 
-    fn call(&mut self, callee: Handle<Function>, arguments: &[Handle<Expression>], parted: Option<Span>) {
+    fn call(
+        &mut self,
+        callee: Handle<Function>,
+        arguments: &[Handle<Expression>],
+        parted: Option<Span>,
+    ) {
         for (position, argument) in arguments.iter().enumerate() {
             let varies = self.varying[argument.index()];
             self.learn(varies, |flow, _| &mut flow.functions[callee.index()].arguments[position]);
@@ -257,7 +319,11 @@ impl<'a> Walk<'_, 'a> {
         }
     }
 
-    fn learn(&mut self, holds: bool, fact: impl for<'f> FnOnce(&'f mut Flow<'a>, usize) -> &'f mut bool) {
+    fn learn(
+        &mut self,
+        holds: bool,
+        fact: impl for<'f> FnOnce(&'f mut Flow<'a>, usize) -> &'f mut bool,
+    ) {
         let index = self.index;
         let fact = fact(self.flow, index);
         if holds && !*fact {

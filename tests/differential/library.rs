@@ -16,11 +16,15 @@ use super::peer::{Files, Flags, Peer, lamplight_with};
 const POINTS: usize = 48;
 
 pub fn trials() -> Vec<Trial> {
-    let modules = Embedded.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
-    let modules = modules.map(|path| Trial::test(format!("differential::library::{path}"), move || module(&path)));
-    let programs = project::library_manifest().map(|(_, manifest)| manifest.programs).unwrap_or_default();
+    let modules =
+        Embedded.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
+    let modules = modules
+        .map(|path| Trial::test(format!("differential::library::{path}"), move || module(&path)));
     let programs =
-        programs.into_iter().map(|found| Trial::test(format!("differential::programs::{}", found.name), move || program(&found)));
+        project::library_manifest().map(|(_, manifest)| manifest.programs).unwrap_or_default();
+    let programs = programs.into_iter().map(|found| {
+        Trial::test(format!("differential::programs::{}", found.name), move || program(&found))
+    });
     modules.chain(programs).collect()
 }
 
@@ -30,18 +34,29 @@ fn text(path: &str) -> String {
 
 /// The whole library as a package.
 fn package(name: &str) -> Files {
-    Embedded.list(&["wesl"]).into_iter().map(|path| ((name.to_owned(), path.clone()), text(&path))).collect()
+    Embedded
+        .list(&["wesl"])
+        .into_iter()
+        .map(|path| ((name.to_owned(), path.clone()), text(&path)))
+        .collect()
 }
 
 /// A module as the root: all of its functions must mean the same.
 fn module(path: &str) -> Result<(), Failed> {
     let files = package("");
-    let functions: Vec<String> =
-        text(path).lines().filter_map(|line| Some(line.strip_prefix("fn ")?.split_once('(')?.0.to_owned())).collect();
+    let functions: Vec<String> = text(path)
+        .lines()
+        .filter_map(|line| Some(line.strip_prefix("fn ")?.split_once('(')?.0.to_owned()))
+        .collect();
     let ours = lamplight_with(&files, path, &Settings::default(), Mangle::Collisions)?;
     let theirs = Peer::keeping_root(&files).compose(path, &Flags::new())?;
-    let (our_meaning, their_meaning) = (normal_functions(&ours, &functions)?, normal_functions(&theirs, &functions)?);
-    if our_meaning == their_meaning { Ok(()) } else { Err(format!("--- lamplight\n{our_meaning}\n--- wesl\n{their_meaning}").into()) }
+    let (our_meaning, their_meaning) =
+        (normal_functions(&ours, &functions)?, normal_functions(&theirs, &functions)?);
+    if our_meaning == their_meaning {
+        Ok(())
+    } else {
+        Err(format!("--- lamplight\n{our_meaning}\n--- wesl\n{their_meaning}").into())
+    }
 }
 
 /// A program as a user has it: a file of their own that imports from the package `lamplight`.
@@ -61,7 +76,11 @@ fn program(program: &Program) -> Result<(), Failed> {
         let theirs = Peer::new(&translated).compose("main.wesl", &flags(program, point))?;
         let (our_meaning, their_meaning) = (normal(&ours)?, normal(&theirs)?);
         if our_meaning != their_meaning {
-            return Err(format!("{}\n--- lamplight\n{our_meaning}\n--- wesl\n{their_meaning}", program.space.key(point)).into());
+            return Err(format!(
+                "{}\n--- lamplight\n{our_meaning}\n--- wesl\n{their_meaning}",
+                program.space.key(point)
+            )
+            .into());
         }
     }
     Ok(())
@@ -106,7 +125,11 @@ fn comparisons(condition: &str) -> String {
                 let before = &words[at][..words[at].len() - name.len()];
                 let value = words[at + 2].trim_end_matches(')');
                 let not = if *operator == "!=" { "!" } else { "" };
-                output.push(format!("{before}{not}{}{}", flag(name, value), &words[at + 2][value.len()..]));
+                output.push(format!(
+                    "{before}{not}{}{}",
+                    flag(name, value),
+                    &words[at + 2][value.len()..]
+                ));
                 at += 3;
             }
             _ => {
@@ -128,7 +151,11 @@ fn flags(program: &Program, point: &Assignment) -> Flags {
         let chosen = program.space.value(index, point);
         match chosen {
             Setting::Bool(on) => drop(flags.insert(axis.name.clone(), *on)),
-            _ => flags.extend(axis.values.iter().map(|value| (flag(&axis.name, &value.to_string()), value == chosen))),
+            _ => flags.extend(
+                axis.values
+                    .iter()
+                    .map(|value| (flag(&axis.name, &value.to_string()), value == chosen)),
+            ),
         }
     }
     flags

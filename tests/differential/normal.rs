@@ -20,20 +20,27 @@ pub fn normal(text: &str) -> Result<String, String> {
 
 /// The canonical texts of functions, as if each were an entry point.
 pub fn normal_functions(text: &str, names: &[String]) -> Result<String, String> {
-    let mut module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
+    let mut module =
+        naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let mut roots = Vec::new();
     for name in names {
-        let found = module.functions.iter().position(|(_, function)| function.name.as_ref() == Some(name));
+        let found =
+            module.functions.iter().position(|(_, function)| function.name.as_ref() == Some(name));
         roots.push(global("fn", found.ok_or_else(|| format!("no function `{name}`"))?));
     }
     rename(&mut module);
     let info = validate(&module)?;
-    let text = naga::back::wgsl::write_string(&module, &info, WriterFlags::empty()).map_err(|error| error.to_string())?;
-    Ok(ordered(&text, |declaration| roots.iter().position(|root| defined(declaration) == Some(root))))
+    let text = naga::back::wgsl::write_string(&module, &info, WriterFlags::empty())
+        .map_err(|error| error.to_string())?;
+    Ok(ordered(&text, |declaration| {
+        roots.iter().position(|root| defined(declaration) == Some(root))
+    }))
 }
 
 fn validate(module: &Module) -> Result<naga::valid::ModuleInfo, String> {
-    Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module).map_err(|error| format!("{error:?}"))
+    Validator::new(ValidationFlags::all(), Capabilities::all())
+        .validate(module)
+        .map_err(|error| format!("{error:?}"))
 }
 
 fn entry(module: &Module, index: usize) -> Result<String, String> {
@@ -42,8 +49,10 @@ fn entry(module: &Module, index: usize) -> Result<String, String> {
     compact(&mut module, KeepUnused::No);
     rename(&mut module);
     let info = validate(&module)?;
-    let text = naga::back::wgsl::write_string(&module, &info, WriterFlags::empty()).map_err(|error| error.to_string())?;
-    let is_entry = |text: &str| ["@vertex", "@fragment", "@compute"].iter().any(|stage| text.contains(stage));
+    let text = naga::back::wgsl::write_string(&module, &info, WriterFlags::empty())
+        .map_err(|error| error.to_string())?;
+    let is_entry =
+        |text: &str| ["@vertex", "@fragment", "@compute"].iter().any(|stage| text.contains(stage));
     Ok(ordered(&text, |declaration| is_entry(declaration).then_some(0)))
 }
 
@@ -60,10 +69,26 @@ fn rename(module: &mut Module) {
     for (place, handle, ty) in named {
         module.types.replace(handle, naga::Type { name: Some(global("type", place)), ..ty });
     }
-    module.constants.iter_mut().enumerate().for_each(|(place, (_, constant))| constant.name = Some(global("const", place)));
-    module.overrides.iter_mut().enumerate().for_each(|(place, (_, constant))| constant.name = Some(global("over", place)));
-    module.global_variables.iter_mut().enumerate().for_each(|(place, (_, variable))| variable.name = Some(global("var", place)));
-    module.functions.iter_mut().enumerate().for_each(|(place, (_, function))| function.name = Some(global("fn", place)));
+    module
+        .constants
+        .iter_mut()
+        .enumerate()
+        .for_each(|(place, (_, constant))| constant.name = Some(global("const", place)));
+    module
+        .overrides
+        .iter_mut()
+        .enumerate()
+        .for_each(|(place, (_, constant))| constant.name = Some(global("over", place)));
+    module
+        .global_variables
+        .iter_mut()
+        .enumerate()
+        .for_each(|(place, (_, variable))| variable.name = Some(global("var", place)));
+    module
+        .functions
+        .iter_mut()
+        .enumerate()
+        .for_each(|(place, (_, function))| function.name = Some(global("fn", place)));
     let mut next = 0..;
     let entries = module.entry_points.iter_mut().map(|entry| &mut entry.function);
     for function in module.functions.iter_mut().map(|(_, function)| function).chain(entries) {
@@ -90,9 +115,11 @@ fn letters(number: usize) -> String {
 /// gives a root its place among them.
 fn ordered(text: &str, root: impl Fn(&str) -> Option<usize>) -> String {
     let declarations = declarations(text);
-    let mut roots: Vec<(usize, &str)> = declarations.iter().filter_map(|text| Some((root(text)?, *text))).collect();
+    let mut roots: Vec<(usize, &str)> =
+        declarations.iter().filter_map(|text| Some((root(text)?, *text))).collect();
     roots.sort_unstable();
-    let mut by_name: BTreeMap<&str, &str> = declarations.iter().filter_map(|text| Some((defined(text)?, *text))).collect();
+    let mut by_name: BTreeMap<&str, &str> =
+        declarations.iter().filter_map(|text| Some((defined(text)?, *text))).collect();
     by_name.retain(|_, text| root(text).is_none());
     let mut names: BTreeMap<String, String> = BTreeMap::new();
     let mut queue: VecDeque<&str> = roots.into_iter().map(|(_, text)| text).collect();

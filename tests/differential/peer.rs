@@ -18,24 +18,41 @@ pub type Files = BTreeMap<(String, String), String>;
 pub type Flags = BTreeMap<String, bool>;
 
 /// Our text, or our diagnostics as people see them.
-pub fn lamplight(files: &Files, root: &str, flags: &Flags, mangle: Mangle) -> Result<String, String> {
+pub fn lamplight(
+    files: &Files,
+    root: &str,
+    flags: &Flags,
+    mangle: Mangle,
+) -> Result<String, String> {
     let values = flags.iter().map(|(name, on)| (name.clone(), Setting::Bool(*on))).collect();
     lamplight_with(files, root, &Settings { values, ..Settings::default() }, mangle)
 }
 
 /// The same with settings of any kind.
-pub fn lamplight_with(files: &Files, root: &str, settings: &Settings, mangle: Mangle) -> Result<String, String> {
+pub fn lamplight_with(
+    files: &Files,
+    root: &str,
+    settings: &Settings,
+    mangle: Mangle,
+) -> Result<String, String> {
     let mut packages: BTreeMap<&str, Memory> = BTreeMap::new();
     for ((package, path), text) in files {
         packages.entry(package).or_default().0.insert(path.clone(), text.clone());
     }
-    let package = |name: &str, files: Memory| Package { name: name.to_owned(), files: Box::new(files) };
+    let package =
+        |name: &str, files: Memory| Package { name: name.to_owned(), files: Box::new(files) };
     let own = package("package", packages.remove("").unwrap_or_default());
-    let packages = Packages { root: own, dependencies: packages.into_iter().map(|(name, files)| package(name, files)).collect() };
+    let packages = Packages {
+        root: own,
+        dependencies: packages.into_iter().map(|(name, files)| package(name, files)).collect(),
+    };
     let mut sources = SourceSet::default();
     let options = Options { mangle, ..Options::default() };
-    let composed = resolve::wesl::load(&mut sources, &packages, root).and_then(|graph| ours::compose(&graph, settings, &options));
-    composed.map(|composed| composed.text).map_err(|problems| render(&sources, &problems, Form::Human))
+    let composed = resolve::wesl::load(&mut sources, &packages, root)
+        .and_then(|graph| ours::compose(&graph, settings, &options));
+    composed
+        .map(|composed| composed.text)
+        .map_err(|problems| render(&sources, &problems, Form::Human))
 }
 
 /// The `wesl` crate, set up once for a tree.
@@ -51,7 +68,10 @@ impl Peer {
 
     /// For modules without entry points.
     pub fn keeping_root(files: &Files) -> Self {
-        Self::with(files, wesl::CompileOptions { keep_root: true, ..wesl::CompileOptions::default() })
+        Self::with(
+            files,
+            wesl::CompileOptions { keep_root: true, ..wesl::CompileOptions::default() },
+        )
     }
 
     fn with(files: &Files, options: wesl::CompileOptions) -> Self {
@@ -71,13 +91,21 @@ impl Peer {
         for (name, on) in flags {
             self.compiler.set_feature(name, *on);
         }
-        let compiled = self.compiler.compile(&module_path("", root)).map_err(|error| error.to_string())?;
+        let compiled =
+            self.compiler.compile(&module_path("", root)).map_err(|error| error.to_string())?;
         Ok(compiled.to_string())
     }
 }
 
 fn module_path(package: &str, path: &str) -> ModulePath {
-    let origin = if package.is_empty() { PathOrigin::Absolute } else { PathOrigin::Package(package.to_owned()) };
+    let origin = if package.is_empty() {
+        PathOrigin::Absolute
+    } else {
+        PathOrigin::Package(package.to_owned())
+    };
     let path = path.trim_end_matches(".wesl").trim_end_matches(".wgsl");
-    ModulePath::new(origin, path.split('/').filter(|part| !part.is_empty()).map(str::to_owned).collect())
+    ModulePath::new(
+        origin,
+        path.split('/').filter(|part| !part.is_empty()).map(str::to_owned).collect(),
+    )
 }

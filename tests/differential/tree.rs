@@ -16,8 +16,10 @@ pub struct Tree {
 }
 
 const FLAGS: [&str; 5] = ["cold", "dim", "even", "fast", "grey"];
-const NAMES: [&str; 14] =
-    ["alpha", "beta", "gamma", "delta", "scale", "bias", "gain", "blend", "Shape", "Tap", "Real", "seed", "tone", "warp"];
+const NAMES: [&str; 14] = [
+    "alpha", "beta", "gamma", "delta", "scale", "bias", "gain", "blend", "Shape", "Tap", "Real",
+    "seed", "tone", "warp",
+];
 const MODULES: [(&str, &str); 10] = [
     ("", "a.wesl"),
     ("", "a/b.wesl"),
@@ -38,16 +40,26 @@ pub fn tree(seed: u64) -> Tree {
     let modules = 1 + random.below(MODULES.len());
     let items = items(&mut random, modules);
     let mut bodies: Vec<Vec<String>> = vec![Vec::new(); modules + 1];
-    let mut imports: Vec<Imports> = (0..=modules).map(|module| Imports::new(module, &items)).collect();
+    let mut imports: Vec<Imports> =
+        (0..=modules).map(|module| Imports::new(module, &items)).collect();
     for index in 0..items.len() {
-        let mut writer =
-            Writer { random: &mut random, items: &items[..index], imports: &mut imports[items[index].module], hidden: Vec::new() };
+        let mut writer = Writer {
+            random: &mut random,
+            items: &items[..index],
+            imports: &mut imports[items[index].module],
+            hidden: Vec::new(),
+        };
         let text = writer.item(&items[index]);
         bodies[items[index].module].push(text);
     }
     let entries = 1 + random.below(3);
     for entry in 0..entries {
-        let mut writer = Writer { random: &mut random, items: &items, imports: &mut imports[0], hidden: Vec::new() };
+        let mut writer = Writer {
+            random: &mut random,
+            items: &items,
+            imports: &mut imports[0],
+            hidden: Vec::new(),
+        };
         let text = writer.entry(entry);
         bodies[0].push(text);
     }
@@ -56,7 +68,9 @@ pub fn tree(seed: u64) -> Tree {
         random.shuffle(&mut body);
         files.insert(file(module), imports.text(&mut random) + &body.join("\n"));
     }
-    let flags = (0..3).map(|_| FLAGS.iter().map(|flag| ((*flag).to_owned(), random.chance(50))).collect()).collect();
+    let flags = (0..3)
+        .map(|_| FLAGS.iter().map(|flag| ((*flag).to_owned(), random.chance(50))).collect())
+        .collect();
     Tree { files, root: ROOT, flags }
 }
 
@@ -107,7 +121,9 @@ fn items(random: &mut Random, modules: usize) -> Vec<Item> {
         if !taken.insert((module, name)) {
             continue;
         }
-        let visible = |item: &Item| item.kind == Kind::Structure && item.guard.is_none() && reaches(module, item.module);
+        let visible = |item: &Item| {
+            item.kind == Kind::Structure && item.guard.is_none() && reaches(module, item.module)
+        };
         let shape = items.iter().position(visible).filter(|_| random.chance(30));
         let kind = match random.below(14) {
             0 | 1 => Kind::Real,
@@ -141,8 +157,15 @@ struct Imports {
 
 impl Imports {
     fn new(module: usize, items: &[Item]) -> Self {
-        let own = items.iter().filter(|item| item.module == module).map(|item| item.name.to_owned());
-        Self { module, locals: own.collect(), spelling: BTreeMap::new(), statements: Vec::new(), plain: Vec::new() }
+        let own =
+            items.iter().filter(|item| item.module == module).map(|item| item.name.to_owned());
+        Self {
+            module,
+            locals: own.collect(),
+            spelling: BTreeMap::new(),
+            statements: Vec::new(),
+            plain: Vec::new(),
+        }
     }
 
     /// How this module calls an item.
@@ -150,15 +173,22 @@ impl Imports {
         if item.module == self.module {
             return item.name.to_owned();
         }
-        if let Some(known) = self.spelling.get(&item.id).filter(|known| random.chance(80) && !hidden.contains(known)) {
+        if let Some(known) =
+            self.spelling.get(&item.id).filter(|known| random.chance(80) && !hidden.contains(known))
+        {
             return known.clone();
         }
         let path = path(self.module, item.module, random);
         let inline = format!("{}::{}", path.join("::"), item.name);
-        let free = |name: &str, imports: &Self| !imports.locals.contains(name) && !hidden.iter().any(|other| other == name);
+        let free = |name: &str, imports: &Self| {
+            !imports.locals.contains(name) && !hidden.iter().any(|other| other == name)
+        };
         match random.below(5) {
             0 => inline,
-            1 if free(path.last().unwrap(), self) && path.len() > 1 && path.last().is_none_or(|last| last != "super") => {
+            1 if free(path.last().unwrap(), self)
+                && path.len() > 1
+                && path.last().is_none_or(|last| last != "super") =>
+            {
                 // The module by name, the item by a path from it.
                 let last = path.last().unwrap().clone();
                 self.locals.insert(last.clone());
@@ -177,10 +207,13 @@ impl Imports {
 
     fn named(&mut self, item: &Item, path: Vec<String>, local: String) -> String {
         self.locals.insert(local.clone());
-        let renamed = if local == item.name { local.clone() } else { format!("{} as {local}", item.name) };
+        let renamed =
+            if local == item.name { local.clone() } else { format!("{} as {local}", item.name) };
         let guard = item.guard.clone().filter(|_| item.id.is_multiple_of(2));
         match guard {
-            Some(guard) => self.plain.push(format!("@if({guard}) import {}::{renamed};\n", path.join("::"))),
+            Some(guard) => {
+                self.plain.push(format!("@if({guard}) import {}::{renamed};\n", path.join("::")))
+            }
             None => self.statements.push((path, renamed)),
         }
         self.spelling.insert(item.id, local.clone());
@@ -193,7 +226,12 @@ impl Imports {
         let mut text = self.plain.concat();
         for (path, item) in &self.statements {
             let below = |from: usize| {
-                path[from..].iter().map(String::as_str).chain((!item.is_empty()).then_some(item.as_str())).collect::<Vec<_>>().join("::")
+                path[from..]
+                    .iter()
+                    .map(String::as_str)
+                    .chain((!item.is_empty()).then_some(item.as_str()))
+                    .collect::<Vec<_>>()
+                    .join("::")
             };
             if random.chance(50) && path[0] != "super" && !below(1).is_empty() {
                 groups.entry(&path[0]).or_default().push(below(1));
@@ -202,7 +240,10 @@ impl Imports {
             }
         }
         for (first, rest) in groups {
-            let nested: Vec<String> = rest.into_iter().map(|path| if random.chance(30) { nest(&path) } else { path }).collect();
+            let nested: Vec<String> = rest
+                .into_iter()
+                .map(|path| if random.chance(30) { nest(&path) } else { path })
+                .collect();
             let _ = writeln!(text, "import {first}::{{ {}, }};", nested.join(", "));
         }
         text
@@ -242,19 +283,33 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     fn item(&mut self, item: &Item) -> String {
-        let (name, guard) = (item.name, item.guard.as_ref().map_or(String::new(), |guard| format!("@if({guard}) ")));
-        let comment = if self.random.chance(30) { format!("// About {name}.\n") } else { String::new() };
+        let (name, guard) = (
+            item.name,
+            item.guard.as_ref().map_or(String::new(), |guard| format!("@if({guard}) ")),
+        );
+        let comment =
+            if self.random.chance(30) { format!("// About {name}.\n") } else { String::new() };
         let text = match item.kind {
-            Kind::Real => self.either(&guard, |writer| format!("const {name}: f32 = {};", writer.constant())),
+            Kind::Real => {
+                self.either(&guard, |writer| format!("const {name}: f32 = {};", writer.constant()))
+            }
             Kind::Count => format!("{guard}const {name} = {};", 1 + self.random.below(4)),
             Kind::Alias => format!("{guard}alias {name} = {};", self.real()),
-            Kind::Private => self.either(&guard, |writer| format!("var<private> {name}: {} = {};", writer.real(), writer.constant())),
-            Kind::Override => format!("{guard}@id({}) override {name}: f32 = {};", item.id, self.random.number()),
+            Kind::Private => self.either(&guard, |writer| {
+                format!("var<private> {name}: {} = {};", writer.real(), writer.constant())
+            }),
+            Kind::Override => {
+                format!("{guard}@id({}) override {name}: f32 = {};", item.id, self.random.number())
+            }
             Kind::Structure => format!("{guard}{}", self.structure(name)),
-            Kind::Function { arity, shape } => self.either(&guard, |writer| writer.function(name, arity, shape)),
+            Kind::Function { arity, shape } => {
+                self.either(&guard, |writer| writer.function(name, arity, shape))
+            }
         };
         let assertion = match item.kind {
-            Kind::Real | Kind::Count if item.guard.is_none() && self.random.chance(20) => format!("\nconst_assert {name} < 1000000;"),
+            Kind::Real | Kind::Count if item.guard.is_none() && self.random.chance(20) => {
+                format!("\nconst_assert {name} < 1000000;")
+            }
             _ => String::new(),
         };
         format!("{comment}{text}{assertion}\n")
@@ -280,7 +335,12 @@ impl Writer<'_> {
         }
         let _ = writeln!(text, "    b: {},", self.real());
         if self.random.chance(40) {
-            let _ = writeln!(text, "    @if({}) c: array<vec4<f32>, {}>,", self.random.condition(), self.count());
+            let _ = writeln!(
+                text,
+                "    @if({}) c: array<vec4<f32>, {}>,",
+                self.random.condition(),
+                self.count()
+            );
         }
         if self.random.chance(30)
             && let Some(inner) = self.find(|kind| kind == Kind::Structure)
@@ -291,32 +351,52 @@ impl Writer<'_> {
     }
 
     fn function(&mut self, name: &str, arity: usize, shape: Option<usize>) -> String {
-        let names: Vec<&str> = ["x", "y", NAMES[self.random.below(NAMES.len())]].into_iter().take(arity).collect();
+        let names: Vec<&str> =
+            ["x", "y", NAMES[self.random.below(NAMES.len())]].into_iter().take(arity).collect();
         // Types are resolved outside, where parameters do not hide anything.
-        let mut parameters: Vec<String> = names.iter().map(|name| format!("{name}: {}", self.real())).collect();
+        let mut parameters: Vec<String> =
+            names.iter().map(|name| format!("{name}: {}", self.real())).collect();
         if let Some(shape) = shape {
             let item = &self.items[shape];
-            parameters.push(format!("shape: {}", self.imports.reference(item, &self.hidden, self.random)));
+            parameters.push(format!(
+                "shape: {}",
+                self.imports.reference(item, &self.hidden, self.random)
+            ));
         }
         if self.random.chance(15) {
-            parameters.iter_mut().for_each(|parameter| *parameter = format!("@if(true) {parameter}"));
+            parameters
+                .iter_mut()
+                .for_each(|parameter| *parameter = format!("@if(true) {parameter}"));
         }
         let returned = self.real();
-        self.hidden =
-            names.iter().map(|name| (*name).to_owned()).chain(shape.map(|_| "shape".to_owned())).chain(["acc".to_owned()]).collect();
+        self.hidden = names
+            .iter()
+            .map(|name| (*name).to_owned())
+            .chain(shape.map(|_| "shape".to_owned()))
+            .chain(["acc".to_owned()])
+            .collect();
         let start = names.first().map_or("0.5".to_owned(), |name| format!("{name} * 0.5"));
         let body = self.block(2, 2);
         self.hidden.clear();
         let used = if shape.is_some() { "    acc += shape.b;\n" } else { "" };
         let must_use = if self.random.chance(10) { "@must_use " } else { "" };
         let end = self.end();
-        format!("{must_use}fn {name}({}) -> {returned} {{\n    var acc: f32 = {start};\n{used}{body}{end}}}", parameters.join(", "))
+        format!(
+            "{must_use}fn {name}({}) -> {returned} {{\n    var acc: f32 = {start};\n{used}{body}{end}}}",
+            parameters.join(", ")
+        )
     }
 
     fn end(&mut self) -> String {
         match self.random.below(4) {
-            0 => format!("    @if({}) return acc * 2.0;\n    @else return acc;\n", self.random.condition()),
-            1 => format!("    @if({}) {{ return acc; }} @else {{ return -acc; }}\n", self.random.condition()),
+            0 => format!(
+                "    @if({}) return acc * 2.0;\n    @else return acc;\n",
+                self.random.condition()
+            ),
+            1 => format!(
+                "    @if({}) {{ return acc; }} @else {{ return -acc; }}\n",
+                self.random.condition()
+            ),
             _ => "    return acc;\n".to_owned(),
         }
     }
@@ -351,7 +431,11 @@ impl Writer<'_> {
         let deeper = depth.saturating_sub(1);
         match self.random.below(if depth == 0 { 8 } else { 16 }) {
             0..=2 => self.guarded(),
-            3 => format!("    @if({condition}) acc = {};\n    @else acc -= {};\n", self.expression(1), self.expression(1)),
+            3 => format!(
+                "    @if({condition}) acc = {};\n    @else acc -= {};\n",
+                self.expression(1),
+                self.expression(1)
+            ),
             4 => format!(
                 "    @if({condition}) acc *= 2.0;\n    @elif({}) {{ acc += {}; }}\n    @else {{ acc -= 1.0; }}\n",
                 self.random.condition(),
@@ -373,7 +457,11 @@ impl Writer<'_> {
                 self.block(2, deeper),
                 self.block(1, deeper)
             ),
-            11 => format!("    for (var i = 0; i < {}; i++) {{\n{}    }}\n", self.count(), self.block(2, deeper)),
+            11 => format!(
+                "    for (var i = 0; i < {}; i++) {{\n{}    }}\n",
+                self.count(),
+                self.block(2, deeper)
+            ),
             12 => format!(
                 "    switch i32(acc) {{\n        case 0 {{\n{}        }}\n        @if({condition}) case {}, 9 {{\n{}        }}\n        default {{ }}\n    }}\n",
                 self.block(1, deeper),
@@ -395,8 +483,9 @@ impl Writer<'_> {
 
     /// Adds a value; one that only exists under a condition under the same condition.
     fn guarded(&mut self) -> String {
-        let guarded: Vec<usize> =
-            (0..self.items.len()).filter(|index| self.items[*index].guard.is_some() && self.usable(&self.items[*index])).collect();
+        let guarded: Vec<usize> = (0..self.items.len())
+            .filter(|index| self.items[*index].guard.is_some() && self.usable(&self.items[*index]))
+            .collect();
         if guarded.is_empty() || self.random.chance(60) {
             return format!("    acc += {};\n", self.expression(2));
         }
@@ -410,8 +499,10 @@ impl Writer<'_> {
 
     /// A local declaration with the name of something else, perhaps only in some permutations.
     fn shadow(&mut self, condition: &str) -> String {
-        let constants = self.items.iter().filter(|item| item.kind == Kind::Real && item.guard.is_none());
-        let reals: Vec<&Item> = constants.filter(|item| reaches(self.imports.module, item.module)).collect();
+        let constants =
+            self.items.iter().filter(|item| item.kind == Kind::Real && item.guard.is_none());
+        let reals: Vec<&Item> =
+            constants.filter(|item| reaches(self.imports.module, item.module)).collect();
         if reals.is_empty() || self.random.chance(40) {
             let name = NAMES[self.random.below(NAMES.len())];
             return format!("    {{ let {name} = acc * 0.25; acc += {name}; }}\n");
@@ -424,17 +515,27 @@ impl Writer<'_> {
         match self.random.below(3) {
             0 => format!("    {{ @if({condition}) let {name} = 2.0; acc += {name}; }}\n"),
             1 => format!("    {{ let {name} = {name} * 3.0; acc += {name}; }}\n"),
-            _ => format!("    for (var {name} = 0; {name} < 2; {name}++) {{ acc += f32({name}); }}\n    acc += {name};\n"),
+            _ => format!(
+                "    for (var {name} = 0; {name} < 2; {name}++) {{ acc += f32({name}); }}\n    acc += {name};\n"
+            ),
         }
     }
 
     /// A structure, perhaps given to a function.
     fn structured(&mut self) -> String {
-        let takes = |item: &&Item| item.guard.is_none() && matches!(item.kind, Kind::Function { shape: Some(_), .. });
-        let calls: Vec<&Item> = self.items.iter().filter(takes).filter(|item| self.usable(item)).collect();
+        let takes = |item: &&Item| {
+            item.guard.is_none() && matches!(item.kind, Kind::Function { shape: Some(_), .. })
+        };
+        let calls: Vec<&Item> =
+            self.items.iter().filter(takes).filter(|item| self.usable(item)).collect();
         if calls.is_empty() || self.random.chance(40) {
-            let Some(structure) = self.find(|kind| kind == Kind::Structure) else { return String::new() };
-            return format!("    {{ var held: {structure}; held.b = {}; acc += held.b; }}\n", self.expression(1));
+            let Some(structure) = self.find(|kind| kind == Kind::Structure) else {
+                return String::new();
+            };
+            return format!(
+                "    {{ var held: {structure}; held.b = {}; acc += held.b; }}\n",
+                self.expression(1)
+            );
         }
         let item = calls[self.random.below(calls.len())];
         let Kind::Function { arity, shape: Some(shape) } = item.kind else { return String::new() };
@@ -445,45 +546,71 @@ impl Writer<'_> {
         let structure = self.imports.reference(structure, &self.hidden, self.random);
         let function = self.imports.reference(item, &self.hidden, self.random);
         let arguments: String = (0..arity).map(|_| self.expression(0) + ", ").collect();
-        format!("    {{ var held: {structure}; held.b = {}; acc += {function}({arguments}held); }}\n", self.expression(1))
+        format!(
+            "    {{ var held: {structure}; held.b = {}; acc += {function}({arguments}held); }}\n",
+            self.expression(1)
+        )
     }
 
     fn expression(&mut self, depth: usize) -> String {
         if depth == 0 || self.random.chance(30) {
             return if self.random.chance(50) { self.random.number() } else { "acc".to_owned() };
         }
-        let candidates: Vec<usize> =
-            (0..self.items.len()).filter(|index| self.items[*index].guard.is_none() && self.usable(&self.items[*index])).collect();
+        let candidates: Vec<usize> = (0..self.items.len())
+            .filter(|index| self.items[*index].guard.is_none() && self.usable(&self.items[*index]))
+            .collect();
         if candidates.is_empty() {
             return format!("({} * {})", self.expression(depth - 1), self.random.number());
         }
         let item = &self.items[candidates[self.random.below(candidates.len())]];
         let value = self.value(item, depth - 1).unwrap_or_else(|| "acc".to_owned());
-        if self.random.chance(50) { value } else { format!("({value} + {})", self.expression(depth - 1)) }
+        if self.random.chance(50) {
+            value
+        } else {
+            format!("({value} + {})", self.expression(depth - 1))
+        }
     }
 
     /// An item as a number, if it is one.
     fn value(&mut self, item: &Item, depth: usize) -> Option<String> {
-        let arguments = |writer: &mut Self, count: usize| (0..count).map(|_| writer.expression(depth)).collect::<Vec<_>>().join(", ");
+        let arguments = |writer: &mut Self, count: usize| {
+            (0..count).map(|_| writer.expression(depth)).collect::<Vec<_>>().join(", ")
+        };
         match item.kind {
             Kind::Function { shape: Some(_), .. } | Kind::Structure => None,
             Kind::Function { arity, shape: None } => {
                 let arguments = arguments(self, arity);
-                Some(format!("{}({arguments})", self.imports.reference(item, &self.hidden, self.random)))
+                Some(format!(
+                    "{}({arguments})",
+                    self.imports.reference(item, &self.hidden, self.random)
+                ))
             }
-            Kind::Alias => Some(format!("{}({})", self.imports.reference(item, &self.hidden, self.random), arguments(self, 1))),
-            Kind::Count => Some(format!("f32({})", self.imports.reference(item, &self.hidden, self.random))),
-            Kind::Real | Kind::Private | Kind::Override => Some(self.imports.reference(item, &self.hidden, self.random)),
+            Kind::Alias => Some(format!(
+                "{}({})",
+                self.imports.reference(item, &self.hidden, self.random),
+                arguments(self, 1)
+            )),
+            Kind::Count => {
+                Some(format!("f32({})", self.imports.reference(item, &self.hidden, self.random)))
+            }
+            Kind::Real | Kind::Private | Kind::Override => {
+                Some(self.imports.reference(item, &self.hidden, self.random))
+            }
         }
     }
 
     fn usable(&self, item: &Item) -> bool {
-        let hidden = item.module == self.imports.module && self.hidden.iter().any(|name| name == item.name);
+        let hidden =
+            item.module == self.imports.module && self.hidden.iter().any(|name| name == item.name);
         reaches(self.imports.module, item.module) && !hidden
     }
 
     fn find(&mut self, is: impl Fn(Kind) -> bool) -> Option<String> {
-        let found: Vec<&Item> = self.items.iter().filter(|item| is(item.kind) && item.guard.is_none() && self.usable(item)).collect();
+        let found: Vec<&Item> = self
+            .items
+            .iter()
+            .filter(|item| is(item.kind) && item.guard.is_none() && self.usable(item))
+            .collect();
         if found.is_empty() {
             return None;
         }
@@ -493,19 +620,22 @@ impl Writer<'_> {
 
     /// A type that is `f32`.
     fn real(&mut self) -> String {
-        let alias = if self.random.chance(40) { self.find(|kind| kind == Kind::Alias) } else { None };
+        let alias =
+            if self.random.chance(40) { self.find(|kind| kind == Kind::Alias) } else { None };
         alias.unwrap_or_else(|| "f32".to_owned())
     }
 
     /// A positive constant integer.
     fn count(&mut self) -> String {
-        let named = if self.random.chance(50) { self.find(|kind| kind == Kind::Count) } else { None };
+        let named =
+            if self.random.chance(50) { self.find(|kind| kind == Kind::Count) } else { None };
         named.unwrap_or_else(|| (1 + self.random.below(3)).to_string())
     }
 
     /// A constant number.
     fn constant(&mut self) -> String {
-        let named = if self.random.chance(50) { self.find(|kind| kind == Kind::Real) } else { None };
+        let named =
+            if self.random.chance(50) { self.find(|kind| kind == Kind::Real) } else { None };
         named.map_or_else(|| self.random.number(), |name| format!("{name} * 0.5"))
     }
 }

@@ -17,25 +17,55 @@ const CASES: &[(&str, &str, &str, &[&str])] = &[
     ("i32", "x: i32", "clamp(x, -3, 5) ^ min(x, 2) | max(x, 7)", &["-4i", "0i", "9i"]),
     ("i32", "x: vec3i", "dot(x, vec3i(2, -3, 4))", &["vec3i(1, 2, 3)", "vec3i(-5, 0, 7)"]),
     ("vec3f", "x: vec3f", "cross(x, vec3f(1, 2, 3))", &["vec3f(4, 5, 6)"]),
-    ("f32", "x: vec3f", "length(x) + dot(x, vec3f(1, 2, 3)) + distance(x, vec3f(1))", &["vec3f(4, 5, 6)"]),
+    (
+        "f32",
+        "x: vec3f",
+        "length(x) + dot(x, vec3f(1, 2, 3)) + distance(x, vec3f(1))",
+        &["vec3f(4, 5, 6)"],
+    ),
     ("vec2f", "x: vec2f", "normalize(x)", &["vec2f(3, 4)", "vec2f(-1e-3, 7)"]),
-    ("vec3f", "x: vec3f", "round(x) + fract(x) * trunc(x) - ceil(x) / floor(x)", &["vec3f(2.5, 3.5, -1.25)"]),
-    ("f32", "x: f32", "pow(abs(x), 2.5) + exp(x) - exp2(x) + log(abs(x)) * log2(abs(x))", &["1.75f", "-0.3f"]),
+    (
+        "vec3f",
+        "x: vec3f",
+        "round(x) + fract(x) * trunc(x) - ceil(x) / floor(x)",
+        &["vec3f(2.5, 3.5, -1.25)"],
+    ),
+    (
+        "f32",
+        "x: f32",
+        "pow(abs(x), 2.5) + exp(x) - exp2(x) + log(abs(x)) * log2(abs(x))",
+        &["1.75f", "-0.3f"],
+    ),
     ("f32", "x: f32", "sin(x) + cos(x) * tan(x) - atan(x)", &["1.75f", "-0.3f"]),
     ("f32", "x: f32", "sinh(x) + cosh(x) * tanh(x) - asinh(x)", &["1.75f", "-0.3f"]),
     ("f32", "x: f32", "asin(x) + acos(x) * atanh(x) + acosh(x + 2)", &["0.75f", "-0.3f"]),
-    ("f32", "x: f32", "saturate(x) + step(0.5, x) + sign(x) + inverseSqrt(abs(x)) - sqrt(abs(x))", &["0.75f", "-0.3f", "4f"]),
+    (
+        "f32",
+        "x: f32",
+        "saturate(x) + step(0.5, x) + sign(x) + inverseSqrt(abs(x)) - sqrt(abs(x))",
+        &["0.75f", "-0.3f", "4f"],
+    ),
     ("f32", "x: f32", "degrees(x) - radians(x) + fma(x, 2, 3) + x % 0.7", &["0.75f", "-4.3f"]),
     ("i32", "x: f32", "i32(x) + i32(u32(abs(x)))", &["2.75f", "-4.3f"]),
-    ("vec2<bool>", "x: vec2f", "!(x < vec2f(1)) & (x != vec2f(3))", &["vec2f(0, 3)", "vec2f(2, 1)"]),
+    (
+        "vec2<bool>",
+        "x: vec2f",
+        "!(x < vec2f(1)) & (x != vec2f(3))",
+        &["vec2f(0, 3)", "vec2f(2, 1)"],
+    ),
     ("i32", "x: i32", "(x << 3u) - (x >> 1u) * (x % 5) / 3", &["-17i", "1000i"]),
 ];
 
 pub fn trials() -> Vec<Trial> {
-    CASES.iter().map(|case| Trial::test(format!("eval/constants/{}", case.2), || check(case))).collect()
+    CASES
+        .iter()
+        .map(|case| Trial::test(format!("eval/constants/{}", case.2), || check(case)))
+        .collect()
 }
 
-fn check((ty, parameters, expression, arguments): &(&str, &str, &str, &[&str])) -> Result<(), Failed> {
+fn check(
+    (ty, parameters, expression, arguments): &(&str, &str, &str, &[&str]),
+) -> Result<(), Failed> {
     for argument in *arguments {
         let text = format!(
             "const x = {argument};\nconst WANTED: {ty} = {expression};\nfn wanted() -> {ty} {{ return WANTED; }}\n\
@@ -43,7 +73,9 @@ fn check((ty, parameters, expression, arguments): &(&str, &str, &str, &[&str])) 
         );
         let program = match program(&text) {
             Ok(program) => program,
-            Err(error) => return Err(format!("{text}\n{}", error.message().unwrap_or_default()).into()),
+            Err(error) => {
+                return Err(format!("{text}\n{}", error.message().unwrap_or_default()).into());
+            }
         };
         let wanted = program.function("wanted").ok_or("wanted")?;
         let found = program.function("found").ok_or("found")?;

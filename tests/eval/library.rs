@@ -13,15 +13,23 @@ use libtest_mimic::{Failed, Trial};
 const INPUTS: u32 = 200;
 
 pub fn trials() -> Vec<Trial> {
-    let modules = Embedded.list(&["wesl"]).into_iter().filter(|path| path.contains('/') && !path.starts_with("programs/"));
+    let modules = Embedded
+        .list(&["wesl"])
+        .into_iter()
+        .filter(|path| path.contains('/') && !path.starts_with("programs/"));
     modules.map(|path| Trial::test(format!("eval/library/{path}"), move || check(&path))).collect()
 }
 
 fn check(path: &str) -> Result<(), Failed> {
-    let packages = Packages { root: Package { name: "lamplight".into(), files: Box::new(Embedded) }, dependencies: Vec::new() };
+    let packages = Packages {
+        root: Package { name: "lamplight".into(), files: Box::new(Embedded) },
+        dependencies: Vec::new(),
+    };
     let said = |errors| Failed::from(format!("{errors:?}"));
     let graph = load(&mut SourceSet::default(), &packages, path).map_err(said)?;
-    let composed = compose(&graph, &Settings::default(), &Options { keep: Keep::All, ..Options::default() }).map_err(said)?;
+    let composed =
+        compose(&graph, &Settings::default(), &Options { keep: Keep::All, ..Options::default() })
+            .map_err(said)?;
     let program = program(&composed.text)?;
     let mut failures = String::new();
     for (id, function) in program.functions() {
@@ -40,13 +48,16 @@ fn check(path: &str) -> Result<(), Failed> {
 /// Runs the function on seeded inputs in f32 and in value plus error.
 fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
     let function = program.signature(id).ok_or("no function")?;
-    let (mut single, mut bound) = (Machine::<f32>::new(program)?, Machine::<Bounded>::new(program)?);
+    let (mut single, mut bound) =
+        (Machine::<f32>::new(program)?, Machine::<Bounded>::new(program)?);
     let mut seed = 1u32;
     for _ in 0..INPUTS {
-        let words: Vec<u32> = function.arguments.iter().map(|kind| word(*kind, &mut seed)).collect();
+        let words: Vec<u32> =
+            function.arguments.iter().map(|kind| word(*kind, &mut seed)).collect();
         let mut result = Vec::new();
         single.call_words(id, &words, &mut result)?;
-        let slots: Vec<Bounded> = words.iter().zip(&function.arguments).map(|(word, kind)| slot(*kind, *word)).collect();
+        let slots: Vec<Bounded> =
+            words.iter().zip(&function.arguments).map(|(word, kind)| slot(*kind, *word)).collect();
         bound.forget();
         let wanted = bound.call(id, &slots)?.to_vec();
         if bound.findings().iter().any(|finding| finding.kind == FindingKind::Ambiguous) {
@@ -62,7 +73,11 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
             };
             if !inside {
                 let inputs: Vec<f32> = words.iter().map(|word| f32::from_bits(*word)).collect();
-                return Err(format!("{inputs:?} gives {}, wanted {wanted:?}", f32::from_bits(*found)).into());
+                return Err(format!(
+                    "{inputs:?} gives {}, wanted {wanted:?}",
+                    f32::from_bits(*found)
+                )
+                .into());
             }
         }
     }

@@ -21,15 +21,23 @@ fn coverage() -> Result<(), Failed> {
     let mut machine = Machine::<f64>::new(&program)?;
     let f = program.function("f").ok_or("f")?;
     let reached = |machine: &Machine<f64>| -> Vec<(Branch, u64)> {
-        let points = program.points().iter().zip(machine.hits()).filter(|(point, _)| point.function == f);
+        let points =
+            program.points().iter().zip(machine.hits()).filter(|(point, _)| point.function == f);
         points.map(|(point, hits)| (point.branch, *hits)).collect()
     };
     machine.call(f, &[1.0])?;
     machine.call(f, &[2.0])?;
-    assert_eq!(reached(&machine)[..3], [(Branch::Entry, 2), (Branch::Accept, 2), (Branch::Reject, 0)]);
+    assert_eq!(
+        reached(&machine)[..3],
+        [(Branch::Entry, 2), (Branch::Accept, 2), (Branch::Reject, 0)]
+    );
     machine.call(f, &[-1.0])?;
-    assert_eq!(reached(&machine)[..3], [(Branch::Entry, 3), (Branch::Accept, 2), (Branch::Reject, 1)]);
-    let accept = program.points().iter().find(|point| point.branch == Branch::Accept).ok_or("accept")?;
+    assert_eq!(
+        reached(&machine)[..3],
+        [(Branch::Entry, 3), (Branch::Accept, 2), (Branch::Reject, 1)]
+    );
+    let accept =
+        program.points().iter().find(|point| point.branch == Branch::Accept).ok_or("accept")?;
     assert_eq!(&text[accept.span.to_range().ok_or("span")?], "return 1.0;");
     machine.forget();
     assert!(machine.hits().iter().all(|hits| *hits == 0));
@@ -46,16 +54,24 @@ fn places() -> Result<(), Failed> {
     machine.sanitize(true);
     machine.call(f, &[0.0])?;
     machine.call(f, &[0.0])?;
-    let found: Vec<_> =
-        machine.findings().iter().map(|finding| (finding.kind, &text[finding.span.to_range().unwrap()], finding.count)).collect();
+    let found: Vec<_> = machine
+        .findings()
+        .iter()
+        .map(|finding| (finding.kind, &text[finding.span.to_range().unwrap()], finding.count))
+        .collect();
     // naga places a call at the name of what is called.
-    assert_eq!(found, [(FindingKind::DivisionByZero, "1.0 / (y - 1.0)", 2), (FindingKind::Domain, "sqrt", 2)]);
+    assert_eq!(
+        found,
+        [(FindingKind::DivisionByZero, "1.0 / (y - 1.0)", 2), (FindingKind::Domain, "sqrt", 2)]
+    );
     Ok(())
 }
 
 /// What the specification allows `pow`: its own formula, worked out by hand.
 fn bounds() -> Result<(), Failed> {
-    let program = program("fn f(x: f32, s: f32) -> f32 { return pow(x, s); }\nfn g(a: f32, b: f32) -> f32 { return a + b; }")?;
+    let program = program(
+        "fn f(x: f32, s: f32) -> f32 { return pow(x, s); }\nfn g(a: f32, b: f32) -> f32 { return a + b; }",
+    )?;
     let mut machine = Machine::<Bounded>::new(&program)?;
     let f = program.function("f").ok_or("f")?;
     let mut relative = |x: f64, s: f64| -> Result<f64, Failed> {
@@ -65,11 +81,17 @@ fn bounds() -> Result<(), Failed> {
     let unit = 2f64.powi(-23);
     let by_hand = |x: f64, s: f64| {
         let t: f64 = s * x.log2();
-        s * std::f64::consts::LN_2 * 2f64.powi(-21) + t.abs() * std::f64::consts::LN_2 * unit + (3.0 + 2.0 * t.abs()) * unit
+        s * std::f64::consts::LN_2 * 2f64.powi(-21)
+            + t.abs() * std::f64::consts::LN_2 * unit
+            + (3.0 + 2.0 * t.abs()) * unit
     };
     for (x, s) in [(0.99, 32.0), (0.9999, 4096.0), (0.7, 5.0)] {
         let found = relative(x, s)?;
-        assert!((found / by_hand(x, s) - 1.0).abs() < 2e-3, "pow({x}, {s}): {found:e}, by hand {:e}", by_hand(x, s));
+        assert!(
+            (found / by_hand(x, s) - 1.0).abs() < 2e-3,
+            "pow({x}, {s}): {found:e}, by hand {:e}",
+            by_hand(x, s)
+        );
     }
     assert!(relative(0.9999, 4096.0)? > 1e-3);
     let g = program.function("g").ok_or("g")?;
@@ -91,17 +113,28 @@ fn glsl() -> Result<(), Failed> {
         }
         void main() { color = block.tint * shade(vec3(0, 0, 1), vec3(uv, 0.5)); }";
     let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);
-    let module = naga::front::glsl::Frontend::default().parse(&options, text).map_err(|error| error.emit_to_string(text))?;
-    let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all()).validate(&module)?;
+    let module = naga::front::glsl::Frontend::default()
+        .parse(&options, text)
+        .map_err(|error| error.emit_to_string(text))?;
+    let info = naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::all(),
+    )
+    .validate(&module)?;
     let program = Program::new(&module, &info)?;
     let mut machine = Machine::<f64>::new(&program)?;
     let shade = program.function("shade").ok_or("shade")?;
     assert_eq!(machine.call(shade, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.5])?, &[0.5]);
-    let (id, _) = program.functions().filter(|(_, function)| function.name == "main").last().ok_or("main")?;
-    let unbound = machine.call(id, &[0.0, 0.0]).map(<[f64]>::to_vec).map_err(|error| error.code.name);
+    let (id, _) =
+        program.functions().filter(|(_, function)| function.name == "main").last().ok_or("main")?;
+    let unbound =
+        machine.call(id, &[0.0, 0.0]).map(<[f64]>::to_vec).map_err(|error| error.code.name);
     assert_eq!(unbound, Err("eval-unbound"));
     let bytes = [1f32, 2.0, 3.0, 4.0].iter().flat_map(|value| value.to_le_bytes()).collect();
-    machine.bind(lamplight::eval::Resources { buffers: [((0, 0), bytes)].into(), ..Default::default() })?;
+    machine.bind(lamplight::eval::Resources {
+        buffers: [((0, 0), bytes)].into(),
+        ..Default::default()
+    })?;
     assert_eq!(machine.call(id, &[0.0, 0.0])?, &[0.5, 1.0, 1.5, 2.0]);
     Ok(())
 }
@@ -116,8 +149,12 @@ fn refusals() -> Result<(), Failed> {
         fn unused(a: ptr<function, array<f32, 16777216>>) -> f32 { return (*a)[16777215]; }",
     )?;
     let mut machine = Machine::<f64>::new(&program)?;
-    let mut code =
-        |name: &str, arguments: &[f64]| machine.call(program.function(name).unwrap(), arguments).map_err(|error| error.code.name).err();
+    let mut code = |name: &str, arguments: &[f64]| {
+        machine
+            .call(program.function(name).unwrap(), arguments)
+            .map_err(|error| error.code.name)
+            .err()
+    };
     assert_eq!(code("f", &[1.0]), None);
     assert_eq!(code("f", &[]), Some("eval-arguments"));
     assert_eq!(code("f", &[1.0, 2.0]), Some("eval-arguments"));
@@ -125,15 +162,25 @@ fn refusals() -> Result<(), Failed> {
     assert_eq!(code("calls", &[]), Some("eval-unbound"));
     assert_eq!(code("huge", &[0.0]), Some("eval-too-large"));
     assert_eq!(code("unused", &[]), Some("eval-too-large"));
-    let short = lamplight::eval::Resources { buffers: [((0, 0), vec![0; 12])].into(), ..Default::default() };
+    let short = lamplight::eval::Resources {
+        buffers: [((0, 0), vec![0; 12])].into(),
+        ..Default::default()
+    };
     machine.bind(short)?;
-    assert_eq!(machine.call(program.function("reads").unwrap(), &[]).map_err(|error| error.code.name).err(), Some("eval-unbound"));
+    assert_eq!(
+        machine
+            .call(program.function("reads").unwrap(), &[])
+            .map_err(|error| error.code.name)
+            .err(),
+        Some("eval-unbound")
+    );
     Ok(())
 }
 
 fn loop_trips() -> Result<(), Failed> {
-    let program =
-        program("fn f(n: i32) -> i32 { var s = 0; for (var i = 0; i < n; i++) { for (var j = 0; j < 3; j++) { s++; } } return s; }")?;
+    let program = program(
+        "fn f(n: i32) -> i32 { var s = 0; for (var i = 0; i < n; i++) { for (var j = 0; j < 3; j++) { s++; } } return s; }",
+    )?;
     let mut machine = Machine::<f32>::new(&program)?;
     let f = program.function("f").ok_or("f")?;
     let mut result = Vec::new();

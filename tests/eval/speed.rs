@@ -27,7 +27,8 @@ fn measure() -> Result<(), Failed> {
 
 fn rate<N: Number>(machine: &mut Machine<N>) -> Result<f64, Failed> {
     let blinn_phong = machine.program().function("blinn_phong").ok_or("blinn_phong")?;
-    let mut arguments: [N; 10] = [0.0, 0.0, 1.0, 0.0, 0.6, 0.8, 0.0, 0.0, 1.0, 32.0].map(N::from_f64);
+    let mut arguments: [N; 10] =
+        [0.0, 0.0, 1.0, 0.0, 0.6, 0.8, 0.0, 0.0, 1.0, 32.0].map(N::from_f64);
     let start = Instant::now();
     let mut sum = 0.0;
     for step in 0..CALLS {

@@ -63,7 +63,12 @@ pub const ONE: &[One] = &[
     ("length(vec3f(x, 2.0, -3.0))", |x| (x * x + 13.0).sqrt(), -5.0, 5.0),
     ("normalize(vec2f(x, 2.0)).x", |x| x / (x * x + 4.0).sqrt(), -5.0, 5.0),
     ("dot(vec2f(x, 2.0), vec2f(3.0, x))", |x| 5.0 * x, -5.0, 5.0),
-    ("distance(vec2f(x, 2.0), vec2f(3.0, x))", |x| ((x - 3.0).powi(2) + (2.0 - x).powi(2)).sqrt(), -5.0, 5.0),
+    (
+        "distance(vec2f(x, 2.0), vec2f(3.0, x))",
+        |x| ((x - 3.0).powi(2) + (2.0 - x).powi(2)).sqrt(),
+        -5.0,
+        5.0,
+    ),
     ("x * x * x - 2.0 * x", |x| x * x * x - 2.0 * x, -5.0, 5.0),
 ];
 
@@ -81,13 +86,23 @@ fn sweep((expression, meaning, low, high): &One) -> Result<(), Failed> {
         let x = (low + (high - low) * f64::from(step) / 200.0) as f32;
         let wanted = meaning(f64::from(x));
         let found = double.call(f, &[f64::from(x)])?[0];
-        if found != wanted && (found - wanted).abs() > 1e-13 * wanted.abs().max(1.0) && !(found.is_nan() && wanted.is_nan()) {
+        if found != wanted
+            && (found - wanted).abs() > 1e-13 * wanted.abs().max(1.0)
+            && !(found.is_nan() && wanted.is_nan())
+        {
             return Err(format!("at {x}: {found}, wanted {wanted}").into());
         }
         let found = f64::from(single.call(f, &[x])?[0]);
         let bound = bounded.call(f, &[Bounded::from_f64(f64::from(x))])?[0];
-        if (found - wanted).abs() > bound.error() || bound.value() != double.call(f, &[f64::from(x)])?[0] && !wanted.is_nan() {
-            return Err(format!("at {x}: f32 gives {found}, wanted {} within {:e}", bound.value(), bound.error()).into());
+        if (found - wanted).abs() > bound.error()
+            || bound.value() != double.call(f, &[f64::from(x)])?[0] && !wanted.is_nan()
+        {
+            return Err(format!(
+                "at {x}: f32 gives {found}, wanted {} within {:e}",
+                bound.value(),
+                bound.error()
+            )
+            .into());
         }
     }
     Ok(())

@@ -1,7 +1,9 @@
 //! Textures against values computed by hand.
 
 use super::program;
-use lamplight::eval::{Address, Compare, Filter, FindingKind, Machine, Resources, Sampler, Shape, Texture};
+use lamplight::eval::{
+    Address, Compare, Filter, FindingKind, Machine, Resources, Sampler, Shape, Texture,
+};
 use libtest_mimic::{Failed, Trial};
 
 const SHADER: &str = "
@@ -88,8 +90,13 @@ const CASES: &[Case] = &[
 
 pub fn trials() -> Vec<Trial> {
     let cases = CASES.iter().map(|case| {
-        let name =
-            format!("eval/textures/{}({:?}){}{}", case.0, case.3, if case.1 { " linear" } else { "" }, if case.2 { " repeat" } else { "" });
+        let name = format!(
+            "eval/textures/{}({:?}){}{}",
+            case.0,
+            case.3,
+            if case.1 { " linear" } else { "" },
+            if case.2 { " repeat" } else { "" }
+        );
         Trial::test(name, || check(case))
     });
     cases
@@ -108,12 +115,20 @@ fn gray(values: &[f64]) -> Vec<[f64; 4]> {
 fn resources(linear: bool, repeat: bool) -> Resources {
     let filter = if linear { Filter::Linear } else { Filter::Nearest };
     let address = [if repeat { Address::Repeat } else { Address::Clamp }; 3];
-    let sampler = Sampler { address, mag: filter, min: filter, mipmap: filter, levels: (0.0, 32.0), compare: None };
+    let sampler = Sampler {
+        address,
+        mag: filter,
+        min: filter,
+        mipmap: filter,
+        levels: (0.0, 32.0),
+        compare: None,
+    };
     let mut chain = Texture::flat(Shape::D2, 4, 4, 1, gray(&[10.0; 16]));
     chain.levels.extend(Texture::flat(Shape::D2, 2, 2, 1, gray(&[20.0; 4])).levels);
     chain.levels.extend(Texture::flat(Shape::D2, 1, 1, 1, gray(&[30.0])).levels);
     let faces: Vec<f64> = (0..6).flat_map(|face| [f64::from(face); 16]).collect();
-    let bytes = |count: u16| (0..count).flat_map(|word| f32::from(word).to_le_bytes()).collect::<Vec<u8>>();
+    let bytes =
+        |count: u16| (0..count).flat_map(|word| f32::from(word).to_le_bytes()).collect::<Vec<u8>>();
     // The uniform's words are 1, 2, 3, ... so that a value names its offset.
     let counted = (1..=28u16).flat_map(|word| f32::from(word).to_le_bytes()).collect::<Vec<u8>>();
     Resources {
@@ -127,7 +142,11 @@ fn resources(linear: bool, repeat: bool) -> Resources {
             ((0, 9), chain),
         ]
         .into(),
-        samplers: [((0, 1), sampler), ((0, 3), Sampler { compare: Some(Compare::LessEqual), ..sampler })].into(),
+        samplers: [
+            ((0, 1), sampler),
+            ((0, 3), Sampler { compare: Some(Compare::LessEqual), ..sampler }),
+        ]
+        .into(),
     }
 }
 
@@ -136,7 +155,8 @@ fn check((name, linear, repeat, arguments, wanted): &Case) -> Result<(), Failed>
     let mut machine = Machine::<f64>::new(&program)?;
     machine.bind(resources(*linear, *repeat))?;
     let found = machine.call(program.function(name).ok_or("function")?, arguments)?;
-    let near = found.len() == wanted.len() && found.iter().zip(*wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-9);
+    let near = found.len() == wanted.len()
+        && found.iter().zip(*wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-9);
     if near { Ok(()) } else { Err(format!("{found:?}, wanted {wanted:?}").into()) }
 }
 
@@ -156,7 +176,10 @@ fn words() -> Result<(), Failed> {
     assert_eq!(call("raw", &[1, 0])?, [0.8f32.to_bits()]);
     assert_eq!(call("stored", &[1])?, [5f32.to_bits(), 3f32.to_bits()]);
     assert_eq!(call("stored", &[9])?, [9f32.to_bits(), 3f32.to_bits()]);
-    assert_eq!(machine.findings().iter().map(|finding| finding.kind).collect::<Vec<_>>(), [FindingKind::OutOfBounds]);
+    assert_eq!(
+        machine.findings().iter().map(|finding| finding.kind).collect::<Vec<_>>(),
+        [FindingKind::OutOfBounds]
+    );
     let none = machine.call(program.function("none").ok_or("none")?, &[]).map(<[f32]>::to_vec);
     assert_eq!(none.map_err(|error| error.code.name), Err("eval-unbound"));
     Ok(())
@@ -169,7 +192,10 @@ fn quad() -> Result<(), Failed> {
     machine.bind(resources(true, false))?;
     let implicit = program.function("implicit").ok_or("implicit")?;
     let wanted: [Vec<f64>; 4] = std::array::from_fn(|_| vec![20.0]);
-    assert_eq!(machine.quad(implicit, [&[0.0, 0.0], &[0.5, 0.0], &[0.0, 0.25], &[0.5, 0.25]])?, wanted);
+    assert_eq!(
+        machine.quad(implicit, [&[0.0, 0.0], &[0.5, 0.0], &[0.0, 0.25], &[0.5, 0.25]])?,
+        wanted
+    );
     assert_eq!(machine.call(implicit, &[0.3, 0.3])?, &[10.0]);
     Ok(())
 }
@@ -184,8 +210,14 @@ fn entries() -> Result<(), Failed> {
         _ => None,
     };
     let signature = program.signature(vs).ok_or("vs")?;
-    assert_eq!(signature.inputs.iter().map(location).collect::<Vec<_>>(), [None, Some(0), Some(0), Some(0)]);
-    assert_eq!(signature.outputs.iter().map(location).collect::<Vec<_>>(), [None, None, None, None, Some(0), Some(0), Some(0)]);
+    assert_eq!(
+        signature.inputs.iter().map(location).collect::<Vec<_>>(),
+        [None, Some(0), Some(0), Some(0)]
+    );
+    assert_eq!(
+        signature.outputs.iter().map(location).collect::<Vec<_>>(),
+        [None, None, None, None, Some(0), Some(0), Some(0)]
+    );
     let index = <f64 as lamplight::eval::Number>::from_word(3);
     assert_eq!(machine.call(vs, &[index, 4.0, 5.0, 6.0])?, &[4.0, 5.0, 6.0, 3.0, 4.0, 5.0, 6.0]);
     let front = <f64 as lamplight::eval::Number>::from_word(1);

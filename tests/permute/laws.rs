@@ -3,14 +3,19 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
+use lamplight::bundle;
 use lamplight::permute::axis::ValueSet;
 use lamplight::permute::cover::{Pair, pairwise};
 use lamplight::permute::space::{Formula, Lists, Slice};
-use lamplight::permute::{Key, Lock, Quoted, ReadTree, Setting, Settings, Space, key, lock, manifest, report};
+use lamplight::permute::{
+    Key, Lock, Quoted, ReadTree, Setting, Settings, Space, key, lock, manifest, report,
+};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
-use super::random::{NOWHERE, Random, axis, constraint, is_valid, is_wanted, ordinals, product, space};
+use super::random::{
+    NOWHERE, Random, axis, constraint, is_valid, is_wanted, ordinals, product, space,
+};
 
 type Law = fn() -> Result<(), Failed>;
 
@@ -19,6 +24,7 @@ const LAWS: &[(&str, Law)] = &[
     ("counts_without_an_axis", counts_without_an_axis),
     ("keys_round_trip", keys_round_trip),
     ("keys_survive_growth", keys_survive_growth),
+    ("loader_and_tools_read_alike", loader_and_tools_read_alike),
     ("pairwise_covers_what_is_feasible", pairwise_covers_what_is_feasible),
     ("huge_space_answers_at_once", huge_space_answers_at_once),
     ("entangled_space_is_refused", entangled_space_is_refused),
@@ -46,7 +52,8 @@ fn random_spaces(count: u64) -> impl Iterator<Item = Space> {
 fn enumeration_is_brute_force() -> Result<(), Failed> {
     for (seed, space) in random_spaces(400).enumerate() {
         let all = product(&space);
-        let wanted: Vec<Vec<u8>> = all.iter().filter(|point| is_wanted(&space, point)).cloned().collect();
+        let wanted: Vec<Vec<u8>> =
+            all.iter().filter(|point| is_wanted(&space, point)).cloned().collect();
         let valid = all.iter().filter(|point| is_valid(&space, point)).count();
         ensure(space.full_count() == all.len() as u128, format!("full count, seed {seed}"))?;
         ensure(space.valid_count() == valid as u128, format!("valid count, seed {seed}"))?;
@@ -63,8 +70,12 @@ fn counts_without_an_axis() -> Result<(), Failed> {
                 point.remove(axis);
                 point
             };
-            let expected: BTreeSet<Vec<u8>> = ordinals(&space.enumerate()).into_iter().map(without).collect();
-            ensure(space.count_without(axis) == Ok(expected.len() as u128), format!("axis {axis}, seed {seed}"))?;
+            let expected: BTreeSet<Vec<u8>> =
+                ordinals(&space.enumerate()).into_iter().map(without).collect();
+            ensure(
+                space.count_without(axis) == Ok(expected.len() as u128),
+                format!("axis {axis}, seed {seed}"),
+            )?;
         }
     }
     Ok(())
@@ -82,21 +93,99 @@ fn keys_round_trip() -> Result<(), Failed> {
         let keys: BTreeSet<Key> = points.iter().map(|point| space.key(point)).collect();
         ensure(keys.len() == points.len(), "two points have one key")?;
         for point in &points {
-            ensure(read(&space, space.key(point).as_str()).as_ref() == Some(point), format!("{}", space.key(point)))?;
+            ensure(
+                read(&space, space.key(point).as_str()).as_ref() == Some(point),
+                format!("{}", space.key(point)),
+            )?;
         }
     }
     Ok(())
+}
+
+/// What the loader and the tools make of the same keys: the same key, or an error from both.
+fn loader_and_tools_read_alike() -> Result<(), Failed> {
+    let mut sources = SourceSet::default();
+    let id = sources.add("lamplight.toml", MIXED_AXES);
+    let manifest = manifest::parse(&sources, id).map_err(|problems| format!("{problems:?}"))?;
+    let space = &manifest.programs[0].space;
+    let axes: Vec<bundle::Axis> = space.axes().iter().map(bundle_axis).collect();
+    let (mut random, mut fine, mut wrong) = (Random(7), 0, 0);
+    for _ in 0..20_000 {
+        let text = random_key(&mut random, &axes);
+        let loader = bundle::canonical(&axes, &text).ok();
+        let tools = read(space, &text).map(|point| space.key(&point).to_string());
+        ensure(loader == tools, format!("`{text}`: loader {loader:?}, tools {tools:?}"))?;
+        *(if loader.is_some() { &mut fine } else { &mut wrong }) += 1;
+    }
+    ensure(fine > 1000 && wrong > 1000, format!("{fine} keys are fine, {wrong} are not"))
+}
+
+/// Axes of every kind and mode.
+const MIXED_AXES: &str = "[program.p]
+wesl = \"p.wesl\"
+[program.p.axis]
+count = { values = [-1, 0, 1, 12], default = 1 }
+exposure = { values = [1, 2], mode = \"dynamic\" }
+lit = { values = [false, true], default = true }
+shadow = { values = [\"none\", \"hard\", \"pcf_3x3\"] }
+taps = { values = [5, 9], mode = \"spec\" }
+two_sided = { values = [false, true] }
+";
+
+fn bundle_axis(axis: &lamplight::permute::Axis) -> bundle::Axis {
+    bundle::Axis {
+        name: axis.name.clone(),
+        values: axis.value_names(),
+        default: axis.values[axis.default].to_string(),
+        mode: axis.mode.name().to_owned(),
+    }
+}
+
+/// A key with few parts, each perhaps with blanks, without its value, or misspelt.
+fn random_key(random: &mut Random, axes: &[bundle::Axis]) -> String {
+    const SPOILT: [&str; 12] = [
+        "",
+        "=",
+        "lit=",
+        "=hard",
+        "shadow==hard",
+        "default",
+        "taps=05",
+        "count=+1",
+        "shdow=hard",
+        "lit=True",
+        "count=\"1\"",
+        "two_sided=1",
+    ];
+    const BLANKS: [&str; 6] = ["", "", "", "", " ", "\t "];
+    let parts = (0..random.below(4)).map(|_| {
+        let axis = &axes[random.below(axes.len())];
+        let mut blank = || BLANKS[random.below(BLANKS.len())];
+        let [a, b, c, d] = [blank(), blank(), blank(), blank()];
+        let value = &axis.values[random.below(axis.values.len())];
+        match random.below(8) {
+            0 => SPOILT[random.below(SPOILT.len())].to_owned(),
+            1 => format!("{a}{}{b}", axis.name),
+            _ => format!("{a}{}{b}={c}{value}{d}", axis.name),
+        }
+    });
+    parts.collect::<Vec<_>>().join(",")
 }
 
 /// A space, and one with an axis and a value more.
 fn grown() -> Result<[Space; 2], Failed> {
     let parsed = |axes: &str| -> Result<Space, Failed> {
         let mut sources = SourceSet::default();
-        let id = sources.add("lamplight.toml", format!("[program.p]\nwesl = \"p.wesl\"\n[program.p.axis]\n{axes}"));
+        let id = sources.add(
+            "lamplight.toml",
+            format!("[program.p]\nwesl = \"p.wesl\"\n[program.p.axis]\n{axes}"),
+        );
         let manifest = manifest::parse(&sources, id).map_err(|problems| format!("{problems:?}"))?;
         Ok(manifest.programs[0].space.clone())
     };
-    let small = parsed("max_lights = { values = [1, 4, 10], default = 4 }\nshadow = { values = [\"none\", \"hard\"] }")?;
+    let small = parsed(
+        "max_lights = { values = [1, 4, 10], default = 4 }\nshadow = { values = [\"none\", \"hard\"] }",
+    )?;
     let large = parsed(
         "fog = { values = [\"none\", \"linear\"] }\nmax_lights = { values = [1, 2, 4, 10], default = 4 }\n\
          shadow = { values = [\"vsm\", \"none\", \"hard\", \"evsm\"], default = \"none\" }\ntwo_sided = { values = [false, true] }",
@@ -111,30 +200,49 @@ fn keys_survive_growth() -> Result<(), Failed> {
         let later = read(&large, key.as_str()).ok_or("a key is lost")?;
         ensure(large.key(&later) == key, format!("{key} became {}", large.key(&later)))?;
         let (before, after) = (small.settings(&point).values, large.settings(&later).values);
-        ensure(before.iter().all(|(name, value)| after.get(name) == Some(value)), format!("{key} means something else"))?;
+        ensure(
+            before.iter().all(|(name, value)| after.get(name) == Some(value)),
+            format!("{key} means something else"),
+        )?;
     }
     Ok(())
 }
 
 fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
     for (seed, space) in random_spaces(150).enumerate() {
-        let valid: Vec<Vec<u8>> = product(&space).into_iter().filter(|point| is_valid(&space, point)).collect();
+        let valid: Vec<Vec<u8>> =
+            product(&space).into_iter().filter(|point| is_valid(&space, point)).collect();
         let cover = pairwise(&space);
         let points = ordinals(&cover.points);
-        ensure(points.iter().all(|point| is_valid(&space, point)), format!("an invalid point, seed {seed}"))?;
+        ensure(
+            points.iter().all(|point| is_valid(&space, point)),
+            format!("an invalid point, seed {seed}"),
+        )?;
         ensure(pairs(&points) == pairs(&valid), format!("the pairs differ, seed {seed}"))?;
-        let infeasible: BTreeSet<Pair> = pairs(&product(&space)).difference(&pairs(&valid)).copied().collect();
-        ensure(infeasible == cover.infeasible.iter().copied().collect(), format!("infeasible pairs, seed {seed}"))?;
+        let infeasible: BTreeSet<Pair> =
+            pairs(&product(&space)).difference(&pairs(&valid)).copied().collect();
+        ensure(
+            infeasible == cover.infeasible.iter().copied().collect(),
+            format!("infeasible pairs, seed {seed}"),
+        )?;
     }
-    let small = |axes| Space::new(axes, Vec::new(), Lists::default()).map(|space| pairwise(&space).points.len());
-    ensure(small(Vec::new()) == Ok(1) && small(vec![axis("a".to_owned(), 3)]) == Ok(3), "spaces without pairs are covered too")
+    let small = |axes| {
+        Space::new(axes, Vec::new(), Lists::default()).map(|space| pairwise(&space).points.len())
+    };
+    ensure(
+        small(Vec::new()) == Ok(1) && small(vec![axis("a".to_owned(), 3)]) == Ok(3),
+        "spaces without pairs are covered too",
+    )
 }
 
 fn pairs(points: &[Vec<u8>]) -> BTreeSet<Pair> {
     let mut pairs = BTreeSet::new();
     for point in points {
         for second in 0..point.len() {
-            pairs.extend((0..second).map(|first| Pair { first: (first, point[first].into()), second: (second, point[second].into()) }));
+            pairs.extend((0..second).map(|first| Pair {
+                first: (first, point[first].into()),
+                second: (second, point[second].into()),
+            }));
         }
     }
     pairs
@@ -148,8 +256,17 @@ fn huge_space_answers_at_once() -> Result<(), Failed> {
     let mut constraints = Vec::new();
     for axis in 1..12 {
         for value in 0..10 {
-            let next = Formula::Is(axis, [value, (value + 1) % 10].into_iter().filter(|next| axis % 4 != 3 || *next == value).collect());
-            constraints.push(constraint(Formula::Any(vec![Formula::Not(Box::new(is(axis - 1, value))), next])));
+            let next = Formula::Is(
+                axis,
+                [value, (value + 1) % 10]
+                    .into_iter()
+                    .filter(|next| axis % 4 != 3 || *next == value)
+                    .collect(),
+            );
+            constraints.push(constraint(Formula::Any(vec![
+                Formula::Not(Box::new(is(axis - 1, value))),
+                next,
+            ])));
         }
     }
     let space = Space::new(axes, constraints, Lists::default()).map_err(|_| "too complex")?;
@@ -164,8 +281,10 @@ fn huge_space_answers_at_once() -> Result<(), Failed> {
 fn entangled_space_is_refused() -> Result<(), Failed> {
     let mut random = Random(7);
     let axes: Vec<_> = (0..100).map(|index| axis(format!("a{index:03}"), 2)).collect();
-    let literal = |random: &mut Random| Formula::Is(random.below(100), ValueSet::single(random.below(2)));
-    let clause = |random: &mut Random| constraint(Formula::Any((0..3).map(|_| literal(random)).collect()));
+    let literal =
+        |random: &mut Random| Formula::Is(random.below(100), ValueSet::single(random.below(2)));
+    let clause =
+        |random: &mut Random| constraint(Formula::Any((0..3).map(|_| literal(random)).collect()));
     let constraints = (0..350).map(|_| clause(&mut random)).collect();
     let started = Instant::now();
     let outcome = Space::new(axes, constraints, Lists::default());
@@ -181,16 +300,27 @@ fn lock_is_stable() -> Result<(), Failed> {
     for point in small.enumerate() {
         let later = read(&large, small.key(&point).as_str()).ok_or("a key is lost")?;
         let dense = before.dense("p", &small, &point);
-        ensure(dense.is_some() && dense == after.dense("p", &large, &later), format!("{} has another number", small.key(&point)))?;
+        ensure(
+            dense.is_some() && dense == after.dense("p", &large, &later),
+            format!("{} has another number", small.key(&point)),
+        )?;
     }
-    let numbers: BTreeSet<_> = large.enumerate().iter().map(|point| after.dense("p", &large, point)).collect();
-    ensure(numbers.len() as u128 == large.count() && !numbers.contains(&None), "numbers are distinct")?;
+    let numbers: BTreeSet<_> =
+        large.enumerate().iter().map(|point| after.dense("p", &large, point)).collect();
+    ensure(
+        numbers.len() as u128 == large.count() && !numbers.contains(&None),
+        "numbers are distinct",
+    )?;
     for point in large.enumerate() {
         let dense = after.dense("p", &large, &point).ok_or("no number")?;
-        ensure(after.point("p", &large, dense) == Some(point), format!("{dense} does not come back"))?;
+        ensure(
+            after.point("p", &large, dense) == Some(point),
+            format!("{dense} does not come back"),
+        )?;
     }
     ensure(
-        (0..2000).filter(|dense| after.point("p", &large, *dense).is_some()).count() as u128 == large.count(),
+        (0..2000).filter(|dense| after.point("p", &large, *dense).is_some()).count() as u128
+            == large.count(),
         "no other number is a point",
     )?;
     let mut sources = SourceSet::default();
@@ -219,11 +349,15 @@ fn read_tree_finds_what_composes_alike() -> Result<(), Failed> {
             Some(known) => ensure(*known == compose(&settings), "another composition was found")?,
             None => {
                 composed += 1;
-                tree.insert(&compose(&settings), compose(&settings)).map_err(|_| "a contradiction")?;
+                tree.insert(&compose(&settings), compose(&settings))
+                    .map_err(|_| "a contradiction")?;
             }
         }
     }
-    ensure(composed == 1 + 3 * 4 && tree.leaves().count() == composed, format!("{composed} compositions"))
+    ensure(
+        composed == 1 + 3 * 4 && tree.leaves().count() == composed,
+        format!("{composed} compositions"),
+    )
 }
 
 fn read_tree_refuses_contradictions() -> Result<(), Failed> {
@@ -233,28 +367,48 @@ fn read_tree_refuses_contradictions() -> Result<(), Failed> {
     ensure(tree.insert(&[read("a", true), read("b", true)], 1).is_ok(), "the first is free")?;
     ensure(tree.insert(&[read("b", true)], 2).is_err(), "another first question")?;
     ensure(tree.insert(&[read("a", true)], 3).is_err(), "an answer that was not enough before")?;
-    ensure(tree.insert(&[read("a", true), read("b", true), read("c", true)], 4).is_err(), "a question after the end")?;
+    ensure(
+        tree.insert(&[read("a", true), read("b", true), read("c", true)], 4).is_err(),
+        "a question after the end",
+    )?;
     ensure(tree.insert(&[read("a", false)], 5).is_ok(), "another answer")?;
     ensure(tree.leaves().copied().eq([1, 5]), "leaves are in order")
 }
 
 /// Deep, long and garbled constraints give a diagnostic or a space, never a crash.
 fn hostile_constraints_end() -> Result<(), Failed> {
-    let mut texts =
-        vec!["(".repeat(100_000), "!".repeat(100_000), "b=>".repeat(100_000), vec!["b"; 100_000].join("&&"), "b == ".to_owned()];
+    let mut texts = vec![
+        "(".repeat(100_000),
+        "!".repeat(100_000),
+        "b=>".repeat(100_000),
+        vec!["b"; 100_000].join("&&"),
+        "b == ".to_owned(),
+    ];
     let mut random = Random(1);
     const PIECES: &[&str] = &[
-        "b", "e", "n", "x", "1", "-3", "==", "!=", "<=", "=>", "&&", "||", "!", "(", ")", "in", "[", "]", ",", " ", "é", "\\u00e9", "\\n",
+        "b", "e", "n", "x", "1", "-3", "==", "!=", "<=", "=>", "&&", "||", "!", "(", ")", "in",
+        "[", "]", ",", " ", "é", "\\u00e9", "\\n",
     ];
-    texts.extend((0..500).map(|_| (0..random.below(12)).map(|_| PIECES[random.below(PIECES.len())]).collect::<Vec<_>>().join(" ")));
+    texts.extend((0..500).map(|_| {
+        (0..random.below(12))
+            .map(|_| PIECES[random.below(PIECES.len())])
+            .collect::<Vec<_>>()
+            .join(" ")
+    }));
     for text in texts {
         let mut sources = SourceSet::default();
         let axes = "b = { values = [false, true] }\ne = { values = [\"x\", \"y\"] }\nn = { values = [1, 2] }";
-        let text = format!("[program.p]\nwesl = \"p\"\n[program.p.axis]\n{axes}\n[[program.p.constraint]]\nrequire = \"{text}\"\n");
+        let text = format!(
+            "[program.p]\nwesl = \"p\"\n[program.p.axis]\n{axes}\n[[program.p.constraint]]\nrequire = \"{text}\"\n"
+        );
         let id = sources.add("lamplight.toml", text);
         if let Err(problems) = manifest::parse(&sources, id) {
-            let spans = problems.iter().flat_map(|problem| &problem.labels).map(|label| label.span.range());
-            ensure(spans.into_iter().all(|range| sources.get(id).text.get(range).is_some()), "a span is no text")?;
+            let spans =
+                problems.iter().flat_map(|problem| &problem.labels).map(|label| label.span.range());
+            ensure(
+                spans.into_iter().all(|range| sources.get(id).text.get(range).is_some()),
+                "a span is no text",
+            )?;
         }
     }
     Ok(())
@@ -279,8 +433,12 @@ fn hostile_manifests_end() -> Result<(), Failed> {
         let mut sources = SourceSet::default();
         let id = sources.add("lamplight.toml", String::from_utf8_lossy(&bytes).into_owned());
         if let Err(problems) = manifest::parse(&sources, id) {
-            let mut spans = problems.iter().flat_map(|problem| &problem.labels).map(|label| label.span.range());
-            ensure(spans.all(|range| sources.get(id).text.get(range).is_some()), "a span is no text")?;
+            let mut spans =
+                problems.iter().flat_map(|problem| &problem.labels).map(|label| label.span.range());
+            ensure(
+                spans.all(|range| sources.get(id).text.get(range).is_some()),
+                "a span is no text",
+            )?;
         }
     }
     Ok(())
@@ -290,10 +448,16 @@ fn hostile_manifests_end() -> Result<(), Failed> {
 fn thousands_of_keys_are_quick() -> Result<(), Failed> {
     let started = Instant::now();
     let axes: Vec<_> = (0..20).map(|index| axis(format!("a{index:02}"), 4)).collect();
-    let plain = Space::new(axes.clone(), Vec::new(), Lists::default()).map_err(|_| "too complex")?;
+    let plain =
+        Space::new(axes.clone(), Vec::new(), Lists::default()).map_err(|_| "too complex")?;
     let mut random = Random(5);
-    let mut key = || (0..20).map(|axis| format!("a{axis:02}=v{}", random.below(4))).collect::<Vec<_>>().join(",");
-    let include = (0..5000).map(|_| read(&plain, &key())).collect::<Option<Vec<_>>>().ok_or("a key is lost")?;
+    let mut key = || {
+        (0..20).map(|axis| format!("a{axis:02}=v{}", random.below(4))).collect::<Vec<_>>().join(",")
+    };
+    let include = (0..5000)
+        .map(|_| read(&plain, &key()))
+        .collect::<Option<Vec<_>>>()
+        .ok_or("a key is lost")?;
     let nothing = Slice { values: vec![ValueSet::EMPTY; 20], span: NOWHERE };
     let lists = Lists { only: vec![nothing], include: include.clone(), ..Lists::default() };
     let space = Space::new(axes, Vec::new(), lists).map_err(|_| "too complex")?;
@@ -306,5 +470,8 @@ fn thousands_of_keys_are_quick() -> Result<(), Failed> {
 fn report_is_data() -> Result<(), Failed> {
     let [_, large] = grown()?;
     let report = serde_json::to_value(report::report("p", &large))?;
-    ensure(report["wanted"] == 64 && report["axes"][0]["factor"] == 2.0 && report["stages"].is_null(), report.to_string())
+    ensure(
+        report["wanted"] == 64 && report["axes"][0]["factor"] == 2.0 && report["stages"].is_null(),
+        report.to_string(),
+    )
 }

@@ -25,7 +25,15 @@ pub const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
 
 pub fn axis(name: String, count: usize) -> Axis {
     let values = (0..count).map(|value| Setting::Name(format!("v{value}"))).collect();
-    Axis { name, kind: Kind::Enum, values, default: 0, mode: Mode::Static, doc: None, span: NOWHERE }
+    Axis {
+        name,
+        kind: Kind::Enum,
+        values,
+        default: 0,
+        mode: Mode::Static,
+        doc: None,
+        span: NOWHERE,
+    }
 }
 
 pub fn constraint(formula: Formula) -> Constraint {
@@ -34,14 +42,20 @@ pub fn constraint(formula: Formula) -> Constraint {
 
 /// Up to six axes of up to four values under up to five constraints, perhaps with lists.
 pub fn space(random: &mut Random) -> Space {
-    let axes: Vec<Axis> = (0..1 + random.below(6)).map(|index| axis(format!("a{index}"), 1 + random.below(4))).collect();
+    let axes: Vec<Axis> = (0..1 + random.below(6))
+        .map(|index| axis(format!("a{index}"), 1 + random.below(4)))
+        .collect();
     let constraints = (0..random.below(6)).map(|_| constraint(formula(random, &axes, 3))).collect();
-    let lists = Lists { only: slices(random, &axes), exclude: slices(random, &axes), include: Vec::new() };
+    let lists =
+        Lists { only: slices(random, &axes), exclude: slices(random, &axes), include: Vec::new() };
     Space::new(axes, constraints, lists).expect("small spaces are simple")
 }
 
 fn slices(random: &mut Random, axes: &[Axis]) -> Vec<Slice> {
-    let slice = |random: &mut Random| Slice { values: axes.iter().map(|axis| values(random, axis)).collect(), span: NOWHERE };
+    let slice = |random: &mut Random| Slice {
+        values: axes.iter().map(|axis| values(random, axis)).collect(),
+        span: NOWHERE,
+    };
     (0..random.below(4)).map(|_| slice(random)).collect()
 }
 
@@ -50,7 +64,9 @@ fn values(random: &mut Random, axis: &Axis) -> ValueSet {
 }
 
 fn formula(random: &mut Random, axes: &[Axis], depth: usize) -> Formula {
-    let parts = |random: &mut Random| (0..1 + random.below(3)).map(|_| formula(random, axes, depth - 1)).collect();
+    let parts = |random: &mut Random| {
+        (0..1 + random.below(3)).map(|_| formula(random, axes, depth - 1)).collect()
+    };
     match if depth == 0 { 0 } else { random.below(5) } {
         0 | 1 => {
             let axis = random.below(axes.len());
@@ -67,7 +83,9 @@ pub fn product(space: &Space) -> Vec<Vec<u8>> {
     space.axes().iter().fold(vec![Vec::new()], |points, axis| {
         points
             .iter()
-            .flat_map(|point: &Vec<u8>| (0..axis.values.len() as u8).map(move |value| [point.as_slice(), &[value]].concat()))
+            .flat_map(|point: &Vec<u8>| {
+                (0..axis.values.len() as u8).map(move |value| [point.as_slice(), &[value]].concat())
+            })
             .collect()
     })
 }
@@ -77,9 +95,13 @@ pub fn is_valid(space: &Space, point: &[u8]) -> bool {
 }
 
 pub fn is_wanted(space: &Space, point: &[u8]) -> bool {
-    let inside = |slice: &Slice| slice.values.iter().zip(point).all(|(set, value)| set.contains((*value).into()));
+    let inside = |slice: &Slice| {
+        slice.values.iter().zip(point).all(|(set, value)| set.contains((*value).into()))
+    };
     let lists = space.lists();
-    is_valid(space, point) && (lists.only.is_empty() || lists.only.iter().any(inside)) && !lists.exclude.iter().any(inside)
+    is_valid(space, point)
+        && (lists.only.is_empty() || lists.only.iter().any(inside))
+        && !lists.exclude.iter().any(inside)
 }
 
 pub fn ordinals(points: &[Assignment]) -> Vec<Vec<u8>> {

@@ -9,7 +9,12 @@ use super::{library, plan};
 /// What is asked of the frames of one painter.
 pub type Form = fn(&Bench<'_>) -> Result<(), String>;
 
-pub const FORMS: &[(&str, Form)] = &[("spot_edge", spot_edge), ("attenuation", attenuation), ("hemisphere", hemisphere), ("sh9", sh9)];
+pub const FORMS: &[(&str, Form)] = &[
+    ("spot_edge", spot_edge),
+    ("attenuation", attenuation),
+    ("hemisphere", hemisphere),
+    ("sh9", sh9),
+];
 
 /// Pixels across and down.
 const SIZE: u32 = 128;
@@ -24,7 +29,11 @@ fn spot_edge(bench: &Bench<'_>) -> Result<(), String> {
         ("light", "cutoff", &[angle.cos()]),
         ("light", "color", &[1.0; 3]),
     ];
-    let plan = bench.plan("ambient=none,attenuation=none,cone=hard,lights=spot,max_lights=1,specular=none", "floor", numbers)?;
+    let plan = bench.plan(
+        "ambient=none,attenuation=none,cone=hard,lights=spot,max_lights=1,specular=none",
+        "floor",
+        numbers,
+    )?;
     let fragments = bench.fragments(&plan, SIZE)?;
     let (mut lit, mut widest) = (0, 0.0_f64);
     for fragment in &fragments {
@@ -42,7 +51,10 @@ fn spot_edge(bench: &Bench<'_>) -> Result<(), String> {
     // A pixel is a tenth of a unit wide.
     let radius = height * angle.tan();
     if lit < 1000 || fragments.len() - lit < 1000 || widest > radius || widest < radius - 0.1 {
-        return Err(format!("{lit} of {} fragments in a disk of radius {widest}, which should be {radius}", fragments.len()));
+        return Err(format!(
+            "{lit} of {} fragments in a disk of radius {widest}, which should be {radius}",
+            fragments.len()
+        ));
     }
     Ok(())
 }
@@ -59,7 +71,8 @@ fn attenuation(bench: &Bench<'_>) -> Result<(), String> {
     ];
     let light = DVec3::new(0.0, 1.5, 0.0);
     for (name, falloff) in FALLOFFS {
-        let key = format!("ambient=none,attenuation={name},lights=point,max_lights=1,specular=none");
+        let key =
+            format!("ambient=none,attenuation={name},lights=point,max_lights=1,specular=none");
         let numbers: super::frames::Numbers<'_> = &[
             ("light", "position", &light.to_array()),
             ("light", "attenuation", &[1.0, 0.3, 0.1]),
@@ -71,7 +84,8 @@ fn attenuation(bench: &Bench<'_>) -> Result<(), String> {
             let offset = light - fragment.position;
             close(name, fragment.light(), falloff(offset.length()) * offset.normalize().y, 1e-4)?;
         }
-        let mut line: Vec<&Fragment> = fragments.iter().filter(|f| f.position.z.abs() < 0.1 && f.position.x > 0.0).collect();
+        let mut line: Vec<&Fragment> =
+            fragments.iter().filter(|f| f.position.z.abs() < 0.1 && f.position.x > 0.0).collect();
         line.sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
         let falls = line.windows(2).all(|pair| pair[1].light() <= pair[0].light() + 2e-3);
         if line.len() < 20 || !falls {
@@ -84,16 +98,21 @@ fn attenuation(bench: &Bench<'_>) -> Result<(), String> {
 /// The share of the sky by the normal: .95 at 26 degrees from the pole, one half at the horizon, one quarter below it.
 fn hemisphere(bench: &Bench<'_>) -> Result<(), String> {
     let (sky, ground) = (DVec3::new(0.2, 0.5, 1.0), DVec3::new(0.4, 0.3, 0.1));
-    let numbers: super::frames::Numbers<'_> = &[("surroundings", "sky", &sky.to_array()), ("surroundings", "ground", &ground.to_array())];
-    let fragments = bench.fragments(&bench.plan("ambient=hemisphere,lights=none", "spheres", numbers)?, SIZE)?;
+    let numbers: super::frames::Numbers<'_> =
+        &[("surroundings", "sky", &sky.to_array()), ("surroundings", "ground", &ground.to_array())];
+    let fragments = bench
+        .fragments(&bench.plan("ambient=hemisphere,lights=none", "spheres", numbers)?, SIZE)?;
     for fragment in &fragments {
         let wanted = fragment.base * ground.lerp(sky, 0.5 + 0.5 * fragment.normal.y);
         close("light", fragment.colour.distance(wanted), 0.0, 1e-4)?;
     }
     for (height, share) in [(0.9, 0.95), (0.0, 0.5), (-0.5, 0.25)] {
-        let nearest = fragments.iter().min_by(|a, b| (a.normal.y - height).abs().total_cmp(&(b.normal.y - height).abs()));
+        let nearest = fragments
+            .iter()
+            .min_by(|a, b| (a.normal.y - height).abs().total_cmp(&(b.normal.y - height).abs()));
         let found = nearest.ok_or("nothing was drawn")?;
-        let weight = (found.colour / found.base - ground).dot(sky - ground) / (sky - ground).length_squared();
+        let weight = (found.colour / found.base - ground).dot(sky - ground)
+            / (sky - ground).length_squared();
         close(&format!("the sky's share where the normal is {height} high"), weight, share, 0.01)?;
     }
     Ok(())
@@ -108,7 +127,8 @@ fn sh9(bench: &Bench<'_>) -> Result<(), String> {
         (DVec3::NEG_Y, DVec3::new(0.669539, 0.613045, 0.545154)),
         (DVec3::Z, DVec3::new(0.793449, 0.800246, 0.793947)),
     ];
-    let preset = library().presets.iter().find(|preset| preset.name == "oglpg_7_14").ok_or("no preset")?;
+    let preset =
+        library().presets.iter().find(|preset| preset.name == "oglpg_7_14").ok_or("no preset")?;
     let plan = plan(preset)?;
     let coefficients = plan.probe.ok_or("no light probe")?.map(DVec3::from_array);
     let fragments = bench.fragments(&plan, SIZE)?;
@@ -117,11 +137,17 @@ fn sh9(bench: &Bench<'_>) -> Result<(), String> {
         close("light", fragment.colour.distance(wanted), 0.0, 1e-3)?;
     }
     for (axis, wanted) in AXES {
-        let nearest = fragments.iter().max_by(|a, b| a.normal.dot(axis).total_cmp(&b.normal.dot(axis)));
+        let nearest =
+            fragments.iter().max_by(|a, b| a.normal.dot(axis).total_cmp(&b.normal.dot(axis)));
         let found = nearest.ok_or("nothing was drawn")?;
         // As much as the light changes over the angle that is missing.
         let missing = found.normal.dot(axis).clamp(-1.0, 1.0).acos();
-        close(&format!("{axis}"), (found.colour / found.base).distance(wanted), 0.0, 1e-3 + missing)?;
+        close(
+            &format!("{axis}"),
+            (found.colour / found.base).distance(wanted),
+            0.0,
+            1e-3 + missing,
+        )?;
         if missing > 0.4 {
             return Err(format!("no fragment looks along {axis}"));
         }

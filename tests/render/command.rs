@@ -12,9 +12,13 @@ const WRONG: &[(&[&str], i32, &str)] = &[
     (&["hpg_4_spot", "--scene", "flor"], 1, "did you mean `floor`?"),
     (&["--set", "shadow=har"], 1, "shadow"),
     (&["--set", "lights=none,shadow=hard"], 1, "break this constraint"),
-    (&["--program", "blur"], 1, "forward, depth_view"),
+    (&["--program", "blur"], 1, "depth_view, forward"),
     (&["hpg_4_spot", "--environment", "nowhere.hdr"], 1, "nowhere.hdr"),
-    (&["hpg_4_spot", "--executor", "eval", "--size", "8x8", "-o", "/proc/no/such.png"], 4, "/proc/no/such.png"),
+    (
+        &["hpg_4_spot", "--executor", "eval", "--size", "8x8", "-o", "/proc/no/such.png"],
+        4,
+        "/proc/no/such.png",
+    ),
     (&[], 2, "preset"),
     (&["hpg_4_spot", "--executor", "spirv"], 2, "eval"),
     (&["hpg_4_spot", "--size", "0x8"], 2, "4096"),
@@ -37,7 +41,11 @@ fn lamplight(arguments: &[&str]) -> Command {
 
 fn ends_with(output: &Output, code: i32, part: &str) -> Result<(), String> {
     let said = String::from_utf8_lossy(&output.stderr);
-    if output.status.code() == Some(code) && said.contains(part) { Ok(()) } else { Err(format!("{}: {said}", output.status)) }
+    if output.status.code() == Some(code) && said.contains(part) {
+        Ok(())
+    } else {
+        Err(format!("{}: {said}", output.status))
+    }
 }
 
 fn wrong() -> Result<(), Failed> {
@@ -50,7 +58,9 @@ fn wrong() -> Result<(), Failed> {
 
 /// Without a Vulkan driver the command says what to install.
 fn missing_driver() -> Result<(), Failed> {
-    let output = lamplight(&["hpg_4_spot", "--size", "8x8"]).env("VK_DRIVER_FILES", "/nowhere.json").output()?;
+    let output = lamplight(&["hpg_4_spot", "--size", "8x8"])
+        .env("VK_DRIVER_FILES", "/nowhere.json")
+        .output()?;
     Ok(ends_with(&output, 4, "apt-get install mesa-vulkan-drivers")?)
 }
 
@@ -60,12 +70,31 @@ fn file() -> Result<(), Failed> {
     let draw = |name: &str, more: &[&str]| -> Result<_, String> {
         let path = folder.path().join(name);
         let text = path.to_string_lossy();
-        let arguments = [&["hpg_5_shadow", "--executor", "eval", "--size", "48x32", "--samples", "1", "-o", &*text], more].concat();
+        let arguments = [
+            &[
+                "hpg_5_shadow",
+                "--executor",
+                "eval",
+                "--size",
+                "48x32",
+                "--samples",
+                "1",
+                "-o",
+                &*text,
+            ],
+            more,
+        ]
+        .concat();
         let output = lamplight(&arguments).output().map_err(|error| error.to_string())?;
         ends_with(&output, 0, "")?;
         read(&path)
     };
-    let (first, again, other) = (draw("a.png", &[])?, draw("b.png", &[])?, draw("c.png", &["--set", "shadow=none"])?);
+    let (first, again, other) =
+        (draw("a.png", &[])?, draw("b.png", &[])?, draw("c.png", &["--set", "shadow=none"])?);
     let size = (first.width, first.height) == (48, 32);
-    if size && first == again && first != other { Ok(()) } else { Err("the pictures are not as asked for".into()) }
+    if size && first == again && first != other {
+        Ok(())
+    } else {
+        Err("the pictures are not as asked for".into())
+    }
 }

@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use lamplight::harness::render::Picture;
+use lamplight::picture::Picture;
 
 use super::{read, reviewed_path};
 
@@ -23,10 +23,15 @@ pub struct Difference {
 impl Difference {
     pub fn new(a: &Picture, b: &Picture) -> Result<Self, String> {
         if (a.width, a.height) != (b.width, b.height) {
-            return Err(format!("{} x {} pixels, not {} x {}", a.width, a.height, b.width, b.height));
+            return Err(format!(
+                "{} x {} pixels, not {} x {}",
+                a.width, a.height, b.width, b.height
+            ));
         }
         let (lab_a, lab_b) = (seen(a), seen(b));
-        let distance = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+        let distance = |(a, b): (&[f64; 3], &[f64; 3])| {
+            (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+        };
         let distances = lab_a.iter().zip(&lab_b).map(distance).collect();
         Ok(Self { width: a.width, height: a.height, distances })
     }
@@ -49,20 +54,25 @@ impl Difference {
     /// White where the distance is 10 and more.
     fn picture(&self) -> Picture {
         let byte = |distance: &f64| [(distance * 25.5).min(255.0) as u8; 3];
-        Picture { width: self.width, height: self.height, pixels: self.distances.iter().flat_map(byte).collect() }
+        Picture {
+            width: self.width,
+            height: self.height,
+            pixels: self.distances.iter().flat_map(byte).collect(),
+        }
     }
 }
 
 /// Blurred, in CIELAB.
 fn seen(picture: &Picture) -> Vec<[f64; 3]> {
-    let linear: Vec<[f64; 3]> = picture.pixels.chunks(3).map(|rgb| [0, 1, 2].map(|i| decoded(rgb[i]))).collect();
+    let linear: Vec<[f64; 3]> =
+        picture.pixels.chunks(3).map(|rgb| [0, 1, 2].map(|i| decoded(rgb[i]))).collect();
     let (width, height) = (picture.width as usize, picture.height as usize);
     let at = |x: usize, y: usize| linear[y * width + x];
     let blurred = |index: usize| {
         let (x, y) = (index % width, index / width);
         let (mut sum, mut count) = ([0.0; 3], 0.0);
-        for (i, j) in
-            (y.saturating_sub(1)..(y + 2).min(height)).flat_map(|j| (x.saturating_sub(1)..(x + 2).min(width)).map(move |i| (i, j)))
+        for (i, j) in (y.saturating_sub(1)..(y + 2).min(height))
+            .flat_map(|j| (x.saturating_sub(1)..(x + 2).min(width)).map(move |i| (i, j)))
         {
             (0..3).for_each(|channel| sum[channel] += at(i, j)[channel]);
             count += 1.0;
@@ -81,7 +91,8 @@ fn lab([r, g, b]: [f64; 3]) -> [f64; 3] {
     let x = (0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505;
     let y = 0.2126 * r + 0.7152 * g + 0.0722 * b;
     let z = (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089;
-    let f = |t: f64| if t > 216.0 / 24389.0 { t.cbrt() } else { (24389.0 / 27.0 * t + 16.0) / 116.0 };
+    let f =
+        |t: f64| if t > 216.0 / 24389.0 { t.cbrt() } else { (24389.0 / 27.0 * t + 16.0) / 116.0 };
     [116.0 * f(y) - 16.0, 500.0 * (f(x) - f(y)), 200.0 * (f(y) - f(z))]
 }
 
@@ -93,7 +104,9 @@ pub fn reviewed(picture: &Picture, name: &str, backend: &str) -> Result<(), Stri
     if !difference.is_visible() {
         return Ok(());
     }
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("render").join(format!("{name}.{backend}.png"));
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("render")
+        .join(format!("{name}.{backend}.png"));
     let shown = beside(&[&wanted, picture, &difference.picture()]);
     lamplight::output::write(&path, &shown.png()?).map_err(|error| error.to_string())?;
     Err(format!(
@@ -107,7 +120,11 @@ pub fn reviewed(picture: &Picture, name: &str, backend: &str) -> Result<(), Stri
 /// Pictures of one size, from left to right.
 fn beside(pictures: &[&Picture]) -> Picture {
     let (width, height) = (pictures[0].width, pictures[0].height);
-    let row = |y: u32| pictures.iter().flat_map(move |picture| &picture.pixels[(y * width * 3) as usize..((y + 1) * width * 3) as usize]);
+    let row = |y: u32| {
+        pictures.iter().flat_map(move |picture| {
+            &picture.pixels[(y * width * 3) as usize..((y + 1) * width * 3) as usize]
+        })
+    };
     let pixels = (0..height).flat_map(row).copied().collect();
     Picture { width: width * pictures.len() as u32, height, pixels }
 }

@@ -1,11 +1,11 @@
 //! Frames as numbers: what each fragment was given, and its colour.
 
 use glam::DVec3;
+use lamplight::bundle::Language;
 use lamplight::catalogue::preset::Number;
-use lamplight::compose::Language;
-use lamplight::harness::frame::Painter;
-use lamplight::harness::render::{Linear, Plan, Prepared, Shot, prepare};
+use lamplight::execute::Session;
 use lamplight::permute::{Quoted, key};
+use lamplight::picture::{Linear, Plan, Prepared, Shot, prepare};
 use lamplight::source::SourceSet;
 
 use super::{library, said, shot, watched};
@@ -13,7 +13,7 @@ use crate::fragments::{Watched, places};
 
 /// A painter with the language it draws in.
 pub struct Bench<'a> {
-    pub painter: &'a dyn Painter,
+    pub painter: &'a dyn Session,
     pub language: Language,
 }
 
@@ -63,7 +63,8 @@ impl Bench<'_> {
     }
 
     pub fn prepared(&self, plan: &Plan, size: u32) -> Result<Prepared, String> {
-        prepare(self.painter, &library().programs, plan, &shot([size; 2], 1, self.language)).map_err(said)
+        prepare(self.painter, &library().programs, plan, &shot([size; 2], 1, self.language))
+            .map_err(said)
     }
 
     /// With a shadow map for each of so many parts of the depth.
@@ -81,13 +82,25 @@ impl Bench<'_> {
         let watched = Watched { size: [size; 2], targets: &targets };
         let places = places(prepared.stages.fragment.as_ref().ok_or("no fragment stage")?)?;
         let fragment = |pixel: usize| {
-            let words: Vec<f64> = watched.inputs(pixel).map(|word| f64::from(f32::from_bits(word))).collect();
-            let part = |location, component| places.get(&(location, component)).map_or(0.0, |index| words[*index]);
-            let vector = |location| DVec3::new(part(location, 0), part(location, 1), part(location, 2));
+            let words: Vec<f64> =
+                watched.inputs(pixel).map(|word| f64::from(f32::from_bits(word))).collect();
+            let part = |location, component| {
+                places.get(&(location, component)).map_or(0.0, |index| words[*index])
+            };
+            let vector =
+                |location| DVec3::new(part(location, 0), part(location, 1), part(location, 2));
             let [r, g, b, _] = watched.colour(pixel);
-            Fragment { position: vector(0), normal: vector(1).normalize_or_zero(), base: vector(2), colour: DVec3::new(r, g, b) }
+            Fragment {
+                position: vector(0),
+                normal: vector(1).normalize_or_zero(),
+                base: vector(2),
+                colour: DVec3::new(r, g, b),
+            }
         };
-        Ok((0..(size * size) as usize).filter(|pixel| watched.is_drawn(*pixel)).map(fragment).collect())
+        Ok((0..(size * size) as usize)
+            .filter(|pixel| watched.is_drawn(*pixel))
+            .map(fragment)
+            .collect())
     }
 }
 

@@ -1,20 +1,30 @@
 //! The gallery's pages, and pictures without a driver.
 
-use lamplight::compose::Language;
-use lamplight::harness::render::{Picture, Rasterizer, gallery, open, render};
+use lamplight::bundle::Language;
+use lamplight::picture::{Picture, gallery, render};
 use lamplight::scene::Equirect;
 use libtest_mimic::{Failed, Trial};
 
 use super::difference::Difference;
-use super::{library, on_device, plan, read, reviewed_path, said, shot};
+use super::{library, on_device, plan, read, reviewed_path, said, shot, start};
 
 /// Presets that the evaluator draws too: shading at vertices and fragments, textures, cube maps, a
 /// flat and a cube shadow map, blurred moments, both sides.
-const DRAWN: &[&str] =
-    &["hpg_1_vertex", "hpg_5_shadow", "hpg_7_vsm", "igl_2_cube", "ncl_11_flat", "ncl_11_lightmap", "oglpg_7_11", "oglpg_7_13"];
+const DRAWN: &[&str] = &[
+    "hpg_1_vertex",
+    "hpg_5_shadow",
+    "hpg_7_vsm",
+    "igl_2_cube",
+    "ncl_11_flat",
+    "ncl_11_lightmap",
+    "oglpg_7_11",
+    "oglpg_7_13",
+];
 
 pub fn trials() -> Vec<Trial> {
-    let drawn = DRAWN.iter().map(|name| Trial::test(format!("render/{name}/eval"), move || without_driver(name)));
+    let drawn = DRAWN
+        .iter()
+        .map(|name| Trial::test(format!("render/{name}/eval"), move || without_driver(name)));
     let others = [
         Trial::test("render/gallery_is_current", gallery_is_current),
         Trial::test("render/png_round_trip", png_round_trip),
@@ -26,30 +36,43 @@ pub fn trials() -> Vec<Trial> {
 
 /// The evaluator's picture is that of Vulkan.
 fn without_driver(name: &str) -> Result<(), Failed> {
-    let preset = library().presets.iter().find(|preset| preset.name == name).ok_or("no such preset")?;
+    let preset =
+        library().presets.iter().find(|preset| preset.name == name).ok_or("no such preset")?;
     on_device("vulkan", |vulkan| {
         let (plan, shot) = (plan(preset)?, shot([64, 64], 1, Language::Wesl));
         let wanted = render(vulkan, &library().programs, &plan, &shot).map_err(said)?;
-        let found = render(&Rasterizer, &library().programs, &plan, &shot).map_err(said)?;
+        let found =
+            render(start("eval")?.as_ref(), &library().programs, &plan, &shot).map_err(said)?;
         let difference = Difference::new(&wanted, &found)?;
         let (mean, most) = (difference.mean(), difference.most());
         // Edges are drawn once, so that a pixel may fall to either side.
-        if mean < 0.3 && most < 8.0 { Ok(()) } else { Err(format!("{mean:.2} apart on average, {most:.1} for all but 1 %")) }
+        if mean < 0.3 && most < 8.0 {
+            Ok(())
+        } else {
+            Err(format!("{mean:.2} apart on average, {most:.1} for all but 1 %"))
+        }
     })
 }
 
 /// The committed pages say what the presets are and compose to now, and every picture is there.
 fn gallery_is_current() -> Result<(), Failed> {
-    let cards = library().presets.iter().map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
+    let cards = library()
+        .presets
+        .iter()
+        .map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
     let cards: Vec<gallery::Card> = cards.collect::<Result<_, _>>().map_err(said)?;
     let cards: Vec<&gallery::Card> = cards.iter().collect();
     let folder = reviewed_path("README").parent().ok_or("no folder")?.to_owned();
     let mut files = gallery::composed(&cards);
     files.push(("README.md".to_owned(), gallery::markdown(&cards)));
     for (path, wanted) in files {
-        let found = std::fs::read_to_string(folder.join(&path)).map_err(|error| format!("{path}: {error}"))?;
+        let found = std::fs::read_to_string(folder.join(&path))
+            .map_err(|error| format!("{path}: {error}"))?;
         if found != wanted {
-            return Err(format!("{path} is not current: run `lamplight render --all --size 192x192 -o docs/gallery`").into());
+            return Err(format!(
+                "{path} is not current: run `lamplight render --all --size 192x192 -o docs/gallery`"
+            )
+            .into());
         }
     }
     let adapters = std::fs::read_to_string(folder.join("adapters.txt"))?;
@@ -76,11 +99,16 @@ fn radiance_file() -> Result<(), Failed> {
     let image = Equirect::from_radiance(&bytes)?;
     let radiance: Vec<_> = image.samples().map(|(_, _, radiance)| radiance.to_array()).collect();
     let wanted = [[1.0, 0.5, 0.25], [8.0, 8.0, 8.0]];
-    let close = radiance.iter().zip(&wanted).all(|(a, b)| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 0.01 * b));
+    let close = radiance
+        .iter()
+        .zip(&wanted)
+        .all(|(a, b)| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 0.01 * b));
     if radiance.len() != 2 || !close {
         return Err(format!("{radiance:?}").into());
     }
-    for wrong in [&bytes[..20], &bytes[..bytes.len() - 3], b"", b"#?RADIANCE\n\n-Y 99999999 +X 99999999\n"] {
+    for wrong in
+        [&bytes[..20], &bytes[..bytes.len() - 3], b"", b"#?RADIANCE\n\n-Y 99999999 +X 99999999\n"]
+    {
         if Equirect::from_radiance(wrong).is_ok() {
             return Err(format!("{} bytes were taken for an image", wrong.len()).into());
         }
@@ -91,14 +119,20 @@ fn radiance_file() -> Result<(), Failed> {
 /// The comparison sees a shadow that is missing, and does not see a rim that is moved a little.
 fn difference_is_seen() -> Result<(), Failed> {
     let disk = |middle: f64, shade: u8| {
-        let inside = |index: u32| (f64::from(index % 64) - middle).hypot(f64::from(index / 64) - 32.0) < 9.0;
-        let pixels = (0..64 * 64).flat_map(|index| [if inside(index) { shade } else { 200 }; 3]).collect();
+        let inside =
+            |index: u32| (f64::from(index % 64) - middle).hypot(f64::from(index / 64) - 32.0) < 9.0;
+        let pixels =
+            (0..64 * 64).flat_map(|index| [if inside(index) { shade } else { 200 }; 3]).collect();
         Picture { width: 64, height: 64, pixels }
     };
     let plain = disk(32.0, 120);
     let seen = Difference::new(&plain, &disk(32.0, 200))?.is_visible();
     let unseen = !Difference::new(&plain, &disk(32.2, 120))?.is_visible();
     let same = !Difference::new(&plain, &plain)?.is_visible();
-    let _ = open("nothing").err().ok_or("there is no such executor")?;
-    if seen && unseen && same { Ok(()) } else { Err(format!("seen {seen}, unseen {unseen}, same {same}").into()) }
+    let _ = start("nothing").err().ok_or("there is no such executor")?;
+    if seen && unseen && same {
+        Ok(())
+    } else {
+        Err(format!("seen {seen}, unseen {unseen}, same {same}").into())
+    }
 }

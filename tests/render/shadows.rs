@@ -1,18 +1,24 @@
 //! Shadows of whole frames, against rays.
 
 use glam::{DMat4, DVec3};
-use lamplight::harness::render::Prepared;
+use lamplight::picture::Prepared;
 use lamplight::scene::sets::{self, Scene};
 
 use super::closed_forms::Form;
 use super::frames::{Bench, Fragment, Numbers, uniform};
 
-pub const FORMS: &[(&str, Form)] =
-    &[("shadow_octants", octants), ("shadow_border", border), ("shadow_acne", acne), ("shadow_penumbra", penumbra), ("cascades", cascades)];
+pub const FORMS: &[(&str, Form)] = &[
+    ("shadow_octants", octants),
+    ("shadow_border", border),
+    ("shadow_acne", acne),
+    ("shadow_penumbra", penumbra),
+    ("cascades", cascades),
+];
 
 /// Pixels across and down.
 const SIZE: u32 = 128;
-const DIRECTIONAL: &str = "ambient=none,lights=directional,max_lights=1,shadow_light=directional,specular=none";
+const DIRECTIONAL: &str =
+    "ambient=none,lights=directional,max_lights=1,shadow_light=directional,specular=none";
 
 /// The casters as rays meet them.
 struct Casters {
@@ -34,7 +40,15 @@ enum Way {
 impl Casters {
     fn new(scene: &Scene) -> Self {
         let place = |index: usize| scene.objects[index].world_from_object;
-        let extent = |index: usize| scene.objects[index].shape.vertices.iter().map(|v| v.position).reduce(DVec3::max).unwrap();
+        let extent = |index: usize| {
+            scene.objects[index]
+                .shape
+                .vertices
+                .iter()
+                .map(|v| v.position)
+                .reduce(DVec3::max)
+                .unwrap()
+        };
         Self {
             floor_half: extent(0).x,
             ball: place(1).transform_point3(DVec3::ZERO),
@@ -59,7 +73,10 @@ impl Casters {
     }
 
     fn of_box(&self, from: DVec3, towards: DVec3, margin: f64) -> Way {
-        let (from, ray) = (self.object_from_box.transform_point3(from), self.object_from_box.transform_vector3(towards));
+        let (from, ray) = (
+            self.object_from_box.transform_point3(from),
+            self.object_from_box.transform_vector3(towards),
+        );
         let meets = |half: DVec3| {
             let (low, high) = ((-half - from) / ray, (half - from) / ray);
             let (enter, leave) = (low.min(high).max_element(), low.max(high).min_element());
@@ -109,7 +126,8 @@ impl Casters {
         // What lies on a caster is not asked of the same: it is lit on this side.
         let on_ball = from.distance(self.ball) < 1.02;
         let on_floor = fragment.position.y < 1e-3;
-        let on_box = !on_floor && self.object_from_box.transform_point3(from).abs().cmple(self.box_half + 0.01).all();
+        let on_box = !on_floor
+            && self.object_from_box.transform_point3(from).abs().cmple(self.box_half + 0.01).all();
         let asked = [true, !on_ball, !on_box, true];
         let ways = || ways.iter().zip(asked).filter(|(_, asked)| *asked).map(|(way, _)| *way);
         if ways().any(|way| way == Way::Blocked) {
@@ -137,11 +155,19 @@ fn octants(bench: &Bench<'_>) -> Result<(), String> {
     for index in 0..8 {
         let sign = |bit: u32| if index & bit == 0 { 1.0 } else { -1.0 };
         let towards = DVec3::new(0.55 * sign(1), 0.75 * sign(2), 0.45 * sign(4)).normalize();
-        let numbers: Numbers<'_> = &[("light", "axis", &(-towards).to_array()), ("light", "color", &[1.0; 3])];
-        let prepared = bench.prepared(&bench.plan(&format!("{DIRECTIONAL},shadow=hard"), "casters", numbers)?, SIZE)?;
+        let numbers: Numbers<'_> =
+            &[("light", "axis", &(-towards).to_array()), ("light", "color", &[1.0; 3])];
+        let prepared = bench.prepared(
+            &bench.plan(&format!("{DIRECTIONAL},shadow=hard"), "casters", numbers)?,
+            SIZE,
+        )?;
         let margin = 3.0 * uniform(&prepared, "caster", "texel").ok_or("no texel")?;
         let (mut counts, mut wrong) = ([0, 0], Vec::new());
-        for fragment in bench.fragments_of(&prepared, SIZE)?.iter().filter(|fragment| fragment.normal.dot(towards) > 0.25) {
+        for fragment in bench
+            .fragments_of(&prepared, SIZE)?
+            .iter()
+            .filter(|fragment| fragment.normal.dot(towards) > 0.25)
+        {
             let wanted = match casters.way(fragment, towards, margin) {
                 Way::Unclear => continue,
                 Way::Clear => 1,
@@ -156,7 +182,9 @@ fn octants(bench: &Bench<'_>) -> Result<(), String> {
         let enough = counts[0] > 100 && (towards.y < 0.0 || counts[1] > 1000);
         if !wrong.is_empty() || !enough {
             let [dark, lit] = counts;
-            return Err(format!("light from {towards}: of {dark} dark and {lit} lit fragments are wrong {wrong:.3?}"));
+            return Err(format!(
+                "light from {towards}: of {dark} dark and {lit} lit fragments are wrong {wrong:.3?}"
+            ));
         }
     }
     Ok(())
@@ -167,10 +195,15 @@ const TOWARDS: DVec3 = DVec3::new(-0.3, 0.8, 0.25);
 
 /// Fragments of the floor that the ball alone may shadow, each with its distance from the border
 /// in the map and its visibility.
-fn around_ball(bench: &Bench<'_>, shadow: &str, more: Numbers<'_>) -> Result<(Vec<(f64, f64)>, f64), String> {
+fn around_ball(
+    bench: &Bench<'_>,
+    shadow: &str,
+    more: Numbers<'_>,
+) -> Result<(Vec<(f64, f64)>, f64), String> {
     let (casters, towards) = (casters()?, TOWARDS.normalize());
     let axis = (-towards).to_array();
-    let mut numbers: Vec<(&str, &str, &[f64])> = vec![("light", "axis", &axis), ("light", "color", &[1.0; 3])];
+    let mut numbers: Vec<(&str, &str, &[f64])> =
+        vec![("light", "axis", &axis), ("light", "color", &[1.0; 3])];
     numbers.extend(more);
     let plan = bench.plan(&format!("{DIRECTIONAL},shadow={shadow}"), "casters", &numbers)?;
     let prepared = bench.prepared(&plan, 2 * SIZE)?;
@@ -178,7 +211,10 @@ fn around_ball(bench: &Bench<'_>, shadow: &str, more: Numbers<'_>) -> Result<(Ve
     let fragments = bench.fragments_of(&prepared, 2 * SIZE)?;
     let on_floor = fragments.iter().filter(|fragment| fragment.position.y.abs() < 1e-4);
     let alone = on_floor.filter(|fragment| {
-        let others = [casters.of_box(fragment.position, towards, 0.5), casters.of_ring(fragment.position, towards)];
+        let others = [
+            casters.of_box(fragment.position, towards, 0.5),
+            casters.of_ring(fragment.position, towards),
+        ];
         others == [Way::Clear; 2]
     });
     let measured = alone.filter_map(|fragment| {
@@ -199,9 +235,14 @@ fn border(bench: &Bench<'_>) -> Result<(), String> {
         d if *d < -texel - 2.0 * faces => *visible > 0.01,
         _ => false,
     });
-    let (wrong, near) = (wrong.count(), measured.iter().filter(|(distance, _)| distance.abs() < 4.0 * texel).count());
+    let (wrong, near) = (
+        wrong.count(),
+        measured.iter().filter(|(distance, _)| distance.abs() < 4.0 * texel).count(),
+    );
     if wrong > 0 || near < 100 {
-        return Err(format!("{wrong} fragments are wrong, {near} are near the border, a texel is {texel}"));
+        return Err(format!(
+            "{wrong} fragments are wrong, {near} are near the border, a texel is {texel}"
+        ));
     }
     Ok(())
 }
@@ -211,9 +252,15 @@ fn border(bench: &Bench<'_>) -> Result<(), String> {
 fn acne(bench: &Bench<'_>) -> Result<(), String> {
     const WAYS: [(&str, Numbers<'_>); 5] = [
         ("nothing", &[("depth_pass", "polygon_offset", &[0.0, 0.0])]),
-        ("a constant", &[("depth_pass", "polygon_offset", &[0.0, 0.0]), ("caster", "bias", &[0.01])]),
+        (
+            "a constant",
+            &[("depth_pass", "polygon_offset", &[0.0, 0.0]), ("caster", "bias", &[0.01])],
+        ),
         ("polygon offset", &[("depth_pass", "polygon_offset", &[2.0, 4.0])]),
-        ("an offset along the normal", &[("depth_pass", "polygon_offset", &[0.0, 0.0]), ("caster", "normal_offset", &[3.0])]),
+        (
+            "an offset along the normal",
+            &[("depth_pass", "polygon_offset", &[0.0, 0.0]), ("caster", "normal_offset", &[3.0])],
+        ),
         ("back faces alone", &[("depth_pass", "cull_front", &[1.0])]),
     ];
     let light = DVec3::new(-4.0, 5.0, -1.5);
@@ -221,16 +268,23 @@ fn acne(bench: &Bench<'_>) -> Result<(), String> {
     let cutoff = 0.5_f64.cos();
     for (name, way) in WAYS {
         let (position, direction) = (light.to_array(), axis.to_array());
-        let mut numbers: Vec<(&str, &str, &[f64])> =
-            vec![("light", "position", &position), ("light", "axis", &direction), ("light", "color", &[1.0; 3])];
+        let mut numbers: Vec<(&str, &str, &[f64])> = vec![
+            ("light", "position", &position),
+            ("light", "axis", &direction),
+            ("light", "color", &[1.0; 3]),
+        ];
         let cutoffs = [cutoff];
         numbers.push(("light", "cutoff", &cutoffs));
         numbers.extend(way);
         let key = "ambient=none,attenuation=none,cone=hard,lights=spot,max_lights=1,shadow=hard,specular=none";
         let fragments = bench.fragments(&bench.plan(key, "floor", &numbers)?, SIZE)?;
         let towards = |fragment: &Fragment| (light - fragment.position).normalize();
-        let lit: Vec<&Fragment> = fragments.iter().filter(|fragment| (-towards(fragment)).dot(axis) > cutoff + 1e-3).collect();
-        let dark = lit.iter().filter(|fragment| visibility(fragment, towards(fragment)) < 0.999).count();
+        let lit: Vec<&Fragment> = fragments
+            .iter()
+            .filter(|fragment| (-towards(fragment)).dot(axis) > cutoff + 1e-3)
+            .collect();
+        let dark =
+            lit.iter().filter(|fragment| visibility(fragment, towards(fragment)) < 0.999).count();
         let fails = if name == "nothing" { dark < lit.len() / 20 } else { dark > 0 };
         if lit.len() < 1000 || fails {
             return Err(format!("with {name}, {dark} of {} fragments are in shadow", lit.len()));
@@ -245,13 +299,16 @@ fn penumbra(bench: &Bench<'_>) -> Result<(), String> {
         let (measured, texel) = around_ball(bench, shadow, &[])?;
         let step = if shadow == "vsm" { 2.0 * texel } else { texel };
         let bin = |index: i32| {
-            let inside = measured.iter().filter(|(distance, _)| (distance / step).floor() == f64::from(index));
+            let inside = measured
+                .iter()
+                .filter(|(distance, _)| (distance / step).floor() == f64::from(index));
             let values: Vec<f64> = inside.map(|(_, visible)| *visible).collect();
             (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
         };
         let means: Vec<f64> = (-14..14).filter_map(bin).collect();
         let rises = means.windows(2).all(|pair| pair[1] >= pair[0] - 0.02);
-        let (first, last) = (means.first().copied().unwrap_or(1.0), means.last().copied().unwrap_or(0.0));
+        let (first, last) =
+            (means.first().copied().unwrap_or(1.0), means.last().copied().unwrap_or(0.0));
         let between = means.iter().filter(|mean| **mean > 0.02 && **mean < 0.98).count();
         if !rises || first > 0.05 || last < 0.95 || between < 3 {
             return Err(format!("{shadow} goes from dark to light by {means:.3?}"));
@@ -288,21 +345,35 @@ fn cascades(bench: &Bench<'_>) -> Result<(), String> {
             wrong += usize::from((visibility(fragment, towards) - wanted as f64).abs() > 0.01);
         }
         if wrong > 0 || counts[1] < 100 {
-            return Err(format!("of {counts:?} dark and lit fragments of a slice {wrong} are wrong"));
+            return Err(format!(
+                "of {counts:?} dark and lit fragments of a slice {wrong} are wrong"
+            ));
         }
     }
-    let (fine, coarse, whole) = (texel(&nearest)?, texel(&single)?, bench.fragments_of(&single, SIZE)?.len());
+    let (fine, coarse, whole) =
+        (texel(&nearest)?, texel(&single)?, bench.fragments_of(&single, SIZE)?.len());
     if slices.len() != 3 || fine > 0.8 * coarse || fragments < whole {
-        return Err(format!("{} slices, texels of {fine} and {coarse}, {fragments} of {whole} fragments", slices.len()));
+        return Err(format!(
+            "{} slices, texels of {fine} and {coarse}, {fragments} of {whole} fragments",
+            slices.len()
+        ));
     }
     let (parts, one) = (bench.photograph(&nearest, SIZE)?, bench.photograph(&single, SIZE)?);
-    let pixels = (0..SIZE * SIZE).map(|index| (parts.drawn(index % SIZE, index / SIZE), one.drawn(index % SIZE, index / SIZE)));
+    let pixels = (0..SIZE * SIZE).map(|index| {
+        (parts.drawn(index % SIZE, index / SIZE), one.drawn(index % SIZE, index / SIZE))
+    });
     let (mut drawn, mut apart) = (0, 0);
     for (part, one) in pixels {
         drawn += usize::from(one.is_some());
-        let is_alike = part.zip(one).map_or(part.is_none() && one.is_none(), |(part, one)| part.distance(one) < 0.01);
+        let is_alike = part
+            .zip(one)
+            .map_or(part.is_none() && one.is_none(), |(part, one)| part.distance(one) < 0.01);
         apart += usize::from(!is_alike);
     }
     // The borders of shadows are elsewhere within a texel.
-    if 25 * apart > drawn { Err(format!("{apart} of {drawn} pixels differ from those with one map")) } else { Ok(()) }
+    if 25 * apart > drawn {
+        Err(format!("{apart} of {drawn} pixels differ from those with one map"))
+    } else {
+        Ok(())
+    }
 }

@@ -1,15 +1,34 @@
-//! The files that are made from other files: light-probe modules and the catalogue.
+//! The files that are made from other files: light-probe modules, the catalogue, the guide as a
+//! book.
 
-use crate::{Outcome, test};
+use std::process::Command;
+
+use crate::{Failure, Outcome, test};
 
 /// Writes them, or with `--check` fails if any is not up to date.
 ///
-/// The modules come first: the second run is of a binary that carries them.
+/// The modules come first: the second run is of a binary that carries them. The book is only
+/// written: its pages are checked by the tests `guide::`.
 pub fn run(arguments: &[String]) -> Outcome {
     let check: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let lamplight = ["run", "--quiet", "--package", "lamplight", "--", "catalogue"];
+    let lamplight = ["run", "--quiet", "--package", "lamplight", "--", "catalogue", "--force"];
     for made in [["--modules", "shaderlib"], ["--output", "docs/catalogue"]] {
         test::cargo(&[&lamplight[..], &made, &check].concat(), &[])?;
     }
-    Ok(())
+    if check.is_empty() { book() } else { Ok(()) }
+}
+
+const INSTALL: &str = "cargo install mdbook --locked --no-default-features --features search";
+
+/// `docs/guide/` as HTML in `target/guide/`, where mdbook is installed.
+fn book() -> Outcome {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/guide");
+    match Command::new("mdbook").args(["build", folder]).status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(_) => Err(Failure::check("failed: mdbook build docs/guide")),
+        Err(_) => {
+            eprintln!("the guide was not made into a book, which needs mdbook: {INSTALL}");
+            Ok(())
+        }
+    }
 }

@@ -52,7 +52,10 @@ fn command(job: &Job) -> Option<Command> {
 }
 
 /// Judges every covered job, on all cores. Returns how many were judged, and each refusal.
-pub fn validate(mut jobs: Vec<Job>, progress: &(dyn Fn(usize) + Sync)) -> std::io::Result<(usize, Vec<String>)> {
+pub fn validate(
+    mut jobs: Vec<Job>,
+    progress: &(dyn Fn(usize) + Sync),
+) -> std::io::Result<(usize, Vec<String>)> {
     jobs.retain(Job::is_covered);
     jobs.sort();
     let batches: Vec<&[Job]> = jobs
@@ -96,7 +99,8 @@ fn judge(batch: &[Job]) -> Refusals {
     for job in batch {
         let output = run(std::slice::from_ref(job))?;
         if !output.status.success() {
-            let words = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).trim().to_owned();
+            let words =
+                String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).trim().to_owned();
             refusals.push(format!("{} ({}): {words}", job.file.display(), job.target));
         }
     }

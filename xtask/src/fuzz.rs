@@ -38,18 +38,23 @@ struct Request {
 pub fn run(arguments: &[String]) -> Outcome {
     match arguments {
         [mode, kind, file] if mode == "--judge" => judge_file(find(kind)?, Path::new(file)),
-        [mode, kind, seed, seconds] if mode == "--work" => work(find(kind)?, number(seed)?, number(seconds)?),
+        [mode, kind, seed, seconds] if mode == "--work" => {
+            work(find(kind)?, number(seed)?, number(seconds)?)
+        }
         _ => watch(&request(arguments)?),
     }
 }
 
 fn request(arguments: &[String]) -> Result<Request, Failure> {
-    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let now =
+        SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let mut request = Request { seconds: 60, seed: now, kinds: Vec::new() };
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {
-            "--seconds" => request.seconds = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?,
+            "--seconds" => {
+                request.seconds = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?
+            }
             "--seed" => request.seed = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?,
             kind => request.kinds.push(find(kind)?),
         }
@@ -77,7 +82,11 @@ fn watch(request: &Request) -> Outcome {
     for kind in &request.kinds {
         findings += fuzz(kind, request.seed, share)?;
     }
-    if findings == 0 { Ok(()) } else { Err(Failure::check(format!("{findings} findings in tests/regressions/"))) }
+    if findings == 0 {
+        Ok(())
+    } else {
+        Err(Failure::check(format!("{findings} findings in tests/regressions/")))
+    }
 }
 
 /// Runs workers until the time is over; each finding ends one.
@@ -85,7 +94,12 @@ fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, Failure> {
     let (started, mut told, mut round) = (Instant::now(), BTreeSet::new(), 0);
     while started.elapsed().as_secs() < seconds {
         let rest = seconds - started.elapsed().as_secs();
-        let worker = spawn(&["--work", kind.name, &seed.wrapping_add(round).to_string(), &rest.to_string()])?;
+        let worker = spawn(&[
+            "--work",
+            kind.name,
+            &seed.wrapping_add(round).to_string(),
+            &rest.to_string(),
+        ])?;
         let Some(reason) = outcome(worker, Some(&current(kind))) else { break };
         round += 1;
         let input = fs::read(current(kind)).map_err(environment)?;
@@ -103,7 +117,12 @@ fn current(kind: &Kind) -> PathBuf {
 
 fn spawn(arguments: &[&str]) -> Result<Child, Failure> {
     let program = std::env::current_exe().map_err(environment)?;
-    Command::new(program).arg("fuzz").args(arguments).stderr(Stdio::piped()).spawn().map_err(environment)
+    Command::new(program)
+        .arg("fuzz")
+        .args(arguments)
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(environment)
 }
 
 /// What is wrong, by how a worker ended; `sign` is a file that shows it is alive.
@@ -137,7 +156,10 @@ fn outcome(mut worker: Child, sign: Option<&Path>) -> Option<String> {
 fn work(kind: &Kind, seed: u64, seconds: u64) -> Outcome {
     let place = current(kind);
     fs::create_dir_all(place.parent().unwrap_or(Path::new("."))).map_err(environment)?;
-    let (corpus, words): (_, Vec<&str>) = (mutate::corpus(&root(), kind), kind.words.split(' ').filter(|word| !word.is_empty()).collect());
+    let (corpus, words): (_, Vec<&str>) = (
+        mutate::corpus(&root(), kind),
+        kind.words.split(' ').filter(|word| !word.is_empty()).collect(),
+    );
     let (mut random, started, mut inputs) = (Random(seed), Instant::now(), 0u64);
     judge::quiet();
     while started.elapsed().as_secs() < seconds {
@@ -164,7 +186,10 @@ fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> Outcome {
     let small = shrunk(kind, input, reason)?;
     let folder = root().join("tests/regressions").join(kind.name);
     fs::create_dir_all(&folder).map_err(environment)?;
-    let name: String = reason.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    let name: String = reason
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' })
+        .collect();
     println!("  kept as tests/regressions/{}/{name} ({} bytes)", kind.name, small.len());
     fs::write(folder.join(name), small).map_err(environment)
 }

@@ -4,10 +4,12 @@ use std::io::{IsTerminal, Write, stderr};
 use std::path::{Path, PathBuf};
 
 use lamplight::bundle::{self, DirectoryWriter};
-use lamplight::cache::{Cache, Folder, Recorder, Run, Told, Trace};
+use lamplight::cache::{Cache, Folder};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::generate::{Generated, Progress, Request, Summary, Tools, generate};
+use lamplight::generate::{
+    Generated, Progress, Recorder, Request, Run, Summary, Told, Tools, Trace, generate,
+};
 use lamplight::project;
 use lamplight::source::SourceSet;
 
@@ -32,20 +34,36 @@ pub fn run(arguments: &[String]) -> Outcome {
     let start = std::time::Instant::now();
     let path = root().join("shaderlib").join(project::MANIFEST);
     let mut sources = SourceSet::default();
-    let input = |sources: &SourceSet, diagnostics: Diagnostics| Failure::input(render(sources, &diagnostics, Form::Human));
-    let (manifest, packages) = project::declared(&path, &mut sources).map_err(|diagnostics| input(&sources, diagnostics))?;
+    let input = |sources: &SourceSet, diagnostics: Diagnostics| {
+        Failure::input(render(sources, &diagnostics, Form::Human))
+    };
+    let (manifest, packages) = project::declared(&path, &mut sources)
+        .map_err(|diagnostics| input(&sources, diagnostics))?;
     let (declared, recorder) = (sources.clone(), Recorder::default());
     let (packages, out, request) = (recorder.observe(packages), bundle(), Request::default());
-    let cache = Cache::new(vec![Box::new(Folder::new(root().join("target/lamplight-cache")))]);
-    let as_run = || Run { manifest: &path, declared: &declared, request: &request, packages: &packages, out: &out };
+    let folder = Folder::new(root().join("target/lamplight-cache"))
+        .map_err(|foreign| Failure::input(foreign.to_string()))?;
+    let cache = Cache::new(vec![Box::new(folder)]);
+    let as_run = || Run {
+        manifest: &path,
+        declared: &declared,
+        request: &request,
+        packages: &packages,
+        out: &out,
+    };
     if let Some(Trace { summary, told, .. }) = Trace::find(&cache, as_run()) {
         eprint!("{}", told.text(Form::Human));
-        return finish(&Summary { up_to_date: true, seconds: start.elapsed().as_secs_f64(), ..summary });
+        return finish(&Summary {
+            up_to_date: true,
+            seconds: start.elapsed().as_secs_f64(),
+            ..summary
+        });
     }
     let writer = DirectoryWriter::create(&out).map_err(environment)?;
     let tools = Tools { sink: &writer, cache: Some(&cache), progress: &show };
     let generated = generate(&mut sources, &packages, &manifest, &request, &tools);
-    let Generated { contents, summary, warnings } = generated.map_err(|diagnostics| input(&sources, diagnostics))?;
+    let Generated { contents, summary, warnings } =
+        generated.map_err(|diagnostics| input(&sources, diagnostics))?;
     writer.finish(&contents).map_err(environment)?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
     let trace = Trace::new(&recorder, &out, summary.clone(), Told::new(&path, &sources, &warnings));
@@ -66,6 +84,7 @@ fn environment(error: bundle::Error) -> Failure {
 fn show(progress: Progress) {
     if stderr().is_terminal() {
         let end = if progress.done == progress.total { "\n" } else { "" };
-        let _ = write!(stderr(), "\r{}: {} of {}{end}", progress.stage, progress.done, progress.total);
+        let _ =
+            write!(stderr(), "\r{}: {} of {}{end}", progress.stage, progress.done, progress.total);
     }
 }

@@ -14,16 +14,37 @@ struct Need {
 
 const NEEDS: &[Need] = &[
     Need { package: "libvulkan1", what: "the Vulkan loader", found: || library("libvulkan.so.1") },
-    Need { package: "mesa-vulkan-drivers", what: "the software Vulkan driver (lavapipe)", found: lavapipe },
+    Need {
+        package: "mesa-vulkan-drivers",
+        what: "the software Vulkan driver (lavapipe)",
+        found: lavapipe,
+    },
     Need { package: "libegl1", what: "EGL", found: || library("libEGL.so.1") },
     Need { package: "libgles2", what: "the GL ES loader", found: || library("libGLESv2.so.2") },
-    Need { package: "libgl1-mesa-dri", what: "the software GL driver (llvmpipe)", found: || installed("libgl1-mesa-dri") },
-    Need { package: "chromium", what: "SwiftShader", found: || Path::new("/usr/lib/chromium/vk_swiftshader_icd.json").exists() },
+    Need {
+        package: "libgl1-mesa-dri",
+        what: "the software GL driver (llvmpipe)",
+        found: || installed("libgl1-mesa-dri"),
+    },
+    Need {
+        package: "chromium",
+        what: "SwiftShader",
+        found: || Path::new("/usr/lib/chromium/vk_swiftshader_icd.json").exists(),
+    },
     Need { package: "nodejs", what: "node, for the typed keys", found: || program("node") },
     Need { package: "spirv-tools", what: "spirv-val", found: || program("spirv-val") },
-    Need { package: "glslang-tools", what: "glslangValidator", found: || program("glslangValidator") },
+    Need {
+        package: "glslang-tools",
+        what: "glslangValidator",
+        found: || program("glslangValidator"),
+    },
+    Need { package: "clang", what: "clang++, for MSL", found: || program("clang++") },
     Need { package: "parallel", what: "GNU parallel, for shards", found: || program("parallel") },
-    Need { package: "redis-server", what: "redis-server, for shared caches", found: || program("redis-server") },
+    Need {
+        package: "redis-server",
+        what: "redis-server, for shared caches",
+        found: || program("redis-server"),
+    },
 ];
 
 /// Installs what is missing where that is allowed; says exactly what to install where it is not.
@@ -32,35 +53,56 @@ pub fn prepare() -> Outcome {
     if missing.is_empty() {
         return Ok(());
     }
-    for need in &missing {
-        eprintln!("missing: {} (Debian package {})", need.what, need.package);
+    for (package, what) in &missing {
+        eprintln!("missing: {what} (Debian package {package})");
     }
-    let packages: Vec<&str> = missing.iter().map(|need| need.package).collect();
+    let packages: Vec<&str> = missing.iter().map(|(package, _)| *package).collect();
     install(&packages)?;
-    match self::missing().as_slice() {
-        [] => Ok(()),
-        still => Err(Failure::environment(format!("installed {}, yet {} is not found", packages.join(" "), still[0].what))),
+    match self::missing().first() {
+        None => Ok(()),
+        Some((_, what)) => Err(Failure::environment(format!(
+            "installed {}, yet {what} is not found",
+            packages.join(" "),
+        ))),
     }
 }
 
-fn missing() -> Vec<&'static Need> {
-    NEEDS.iter().filter(|need| !(need.found)()).collect()
+/// Package and purpose of what is not there.
+fn missing() -> Vec<(&'static str, &'static str)> {
+    let listed = NEEDS.iter().filter(|need| !(need.found)());
+    listed.map(|need| (need.package, need.what)).collect()
 }
 
 fn install(packages: &[&str]) -> Outcome {
-    let by_hand = format!("sudo apt-get update && sudo apt-get install -y --no-install-recommends {}", packages.join(" "));
+    let by_hand = format!(
+        "sudo apt-get update && sudo apt-get install -y --no-install-recommends {}",
+        packages.join(" ")
+    );
     let Some(prefix) = privilege() else {
-        return Err(Failure::environment(format!("these tests need more than is installed here; run\n\n    {by_hand}\n")));
+        return Err(Failure::environment(format!(
+            "these tests need more than is installed here; run\n\n    {by_hand}\n"
+        )));
     };
     let run = |arguments: &[&str]| {
-        let line: Vec<&str> = prefix.iter().copied().chain(["apt-get"]).chain(arguments.iter().copied()).collect();
-        Command::new(line[0]).args(&line[1..]).env("DEBIAN_FRONTEND", "noninteractive").status().is_ok_and(|status| status.success())
+        let line: Vec<&str> =
+            prefix.iter().copied().chain(["apt-get"]).chain(arguments.iter().copied()).collect();
+        Command::new(line[0])
+            .args(&line[1..])
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .status()
+            .is_ok_and(|status| status.success())
     };
-    let arguments: Vec<&str> = ["install", "-y", "-qq", "--no-install-recommends"].iter().chain(packages).copied().collect();
+    let arguments: Vec<&str> = ["install", "-y", "-qq", "--no-install-recommends"]
+        .iter()
+        .chain(packages)
+        .copied()
+        .collect();
     if run(&["update", "-qq"]) && run(&arguments) {
         Ok(())
     } else {
-        Err(Failure::environment(format!("apt-get could not install what the tests need; run\n\n    {by_hand}\n")))
+        Err(Failure::environment(format!(
+            "apt-get could not install what the tests need; run\n\n    {by_hand}\n"
+        )))
     }
 }
 
@@ -86,18 +128,30 @@ pub fn program(name: &str) -> bool {
 }
 
 fn library(name: &str) -> bool {
-    let folders = ["/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu", "/usr/lib64", "/usr/lib", "/usr/local/lib"];
+    let folders = [
+        "/usr/lib/x86_64-linux-gnu",
+        "/usr/lib/aarch64-linux-gnu",
+        "/usr/lib64",
+        "/usr/lib",
+        "/usr/local/lib",
+    ];
     folders.iter().any(|folder| Path::new(folder).join(name).exists())
 }
 
 fn lavapipe() -> bool {
     let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
-    folders.iter().flat_map(std::fs::read_dir).flatten().flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("lvp_icd"))
+    folders
+        .iter()
+        .flat_map(std::fs::read_dir)
+        .flatten()
+        .flatten()
+        .any(|entry| entry.file_name().to_string_lossy().starts_with("lvp_icd"))
 }
 
 fn installed(package: &str) -> bool {
     if !program("dpkg") {
         return library("dri/swrast_dri.so") || library("libgallium_dri.so");
     }
-    quiet("dpkg-query", &["-W", "-f=${Status}", package]).is_some_and(|status| status.contains("install ok installed"))
+    quiet("dpkg-query", &["-W", "-f=${Status}", package])
+        .is_some_and(|status| status.contains("install ok installed"))
 }

@@ -54,15 +54,24 @@ const COMMANDS: &[Command] = &[
     ("test", "install what the tests need, then run every test", test::run),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
     ("validate", "run the external validators over a bundle", validate::run),
-    ("docs", "write the catalogue and the modules made from data (--check: only compare)", docs::run),
-    ("bench", "measure, beside peers where there are any: compose, eval, gen, load or scale", bench::run),
+    (
+        "docs",
+        "write the catalogue, the modules made from data, the guide as a book (--check: only compare)",
+        docs::run,
+    ),
+    (
+        "bench",
+        "measure, beside peers where there are any: compose, eval, gen, load or scale",
+        bench::run,
+    ),
     ("fuzz", "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...", fuzz::run),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let command = arguments.first().and_then(|name| COMMANDS.iter().find(|(known, ..)| known == name));
+    let command =
+        arguments.first().and_then(|name| COMMANDS.iter().find(|(known, ..)| known == name));
     let outcome = match command {
         Some((.., run)) => run(&arguments[1..]),
         None => Err(Failure::usage(usage())),

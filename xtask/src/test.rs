@@ -7,7 +7,9 @@ use std::process::Command;
 pub fn run(arguments: &[String]) -> Outcome {
     machine::prepare()?;
     // With every feature: shared stores are tested against a server.
-    let test = |what: &[&str], rest| cargo(&[&["test", "--package", "lamplight", "--features", "store"], what].concat(), rest);
+    let test = |what: &[&str], rest| {
+        cargo(&[&["test", "--package", "lamplight", "--features", "store"], what].concat(), rest)
+    };
     test(&["--doc"], &[])?;
     test(&["--test", "all"], arguments)
 }

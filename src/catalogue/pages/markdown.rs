@@ -2,7 +2,10 @@
 
 /// Text with what is outside of backticks kept from meaning anything to Markdown.
 pub fn prose(text: &str) -> String {
-    let parts = text.split('`').enumerate().map(|(index, part)| if index % 2 == 0 { escaped(part) } else { part.to_owned() });
+    let parts = text
+        .split('`')
+        .enumerate()
+        .map(|(index, part)| if index % 2 == 0 { escaped(part) } else { part.to_owned() });
     parts.collect::<Vec<_>>().join("`")
 }
 

@@ -79,8 +79,9 @@ fn index(contents: &Contents) -> String {
         }
         let link = format!("[`{}`]({})", module.path, page_of(&module.path));
         let functions = module.items.iter().filter(|item| item.kind == Kind::Function);
-        let names: Vec<String> =
-            functions.map(|item| format!("[{}]({}#{})", prose(&item.name), page_of(&module.path), item.name)).collect();
+        let names: Vec<String> = functions
+            .map(|item| format!("[{}]({}#{})", prose(&item.name), page_of(&module.path), item.name))
+            .collect();
         let _ = writeln!(text, "| {link} | {} | {} |", names.join(", "), cell(module.summary()));
     }
     text

@@ -17,7 +17,8 @@ pub fn page(module: &Module, plots: &BTreeMap<String, String>) -> String {
     }
     if let Some(item) = module.items.first() {
         let import = format!("import lamplight::{}::{{..}};", module.path);
-        let _ = write!(text, "\n| WESL | GLSL |\n|---|---|\n| `{import}` | `{}` |\n", item.include());
+        let _ =
+            write!(text, "\n| WESL | GLSL |\n|---|---|\n| `{import}` | `{}` |\n", item.include());
     }
     contents(&mut text, module);
     for item in &module.items {
@@ -31,8 +32,18 @@ pub fn page(module: &Module, plots: &BTreeMap<String, String>) -> String {
 fn contents(text: &mut String, module: &Module) {
     text.push_str("\n| | |\n|---|---|\n");
     for item in &module.items {
-        let kind = if item.kind == Kind::Function { String::new() } else { format!("{} ", item.kind.name()) };
-        let _ = writeln!(text, "| {kind}[`{}`](#{}) | {} |", item.name, item.name.to_lowercase(), cell(item.summary()));
+        let kind = if item.kind == Kind::Function {
+            String::new()
+        } else {
+            format!("{} ", item.kind.name())
+        };
+        let _ = writeln!(
+            text,
+            "| {kind}[`{}`](#{}) | {} |",
+            item.name,
+            item.name.to_lowercase(),
+            cell(item.summary())
+        );
     }
 }
 

@@ -17,11 +17,16 @@ pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
         let (here, place) = preset
             .source
             .split_once(", example")
-            .map_or((preset.source.as_str(), ""), |(here, _)| (here, &preset.source[here.len() + 2..]));
+            .map_or((preset.source.as_str(), ""), |(here, _)| {
+                (here, &preset.source[here.len() + 2..])
+            });
         let (here, place) = here.split_once(", chapter 4, ").unwrap_or((here, place));
         if here != work {
-            let _ =
-                write!(text, "\n## {}\n\n| preset | place | permutation | scene | numbers | |\n|---|---|---|---|---|---|\n", prose(here));
+            let _ = write!(
+                text,
+                "\n## {}\n\n| preset | place | permutation | scene | numbers | |\n|---|---|---|---|---|---|\n",
+                prose(here)
+            );
             work = here;
         }
         row(&mut text, preset, place);
@@ -36,9 +41,14 @@ pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
 }
 
 fn row(text: &mut String, preset: &Preset, place: &str) {
-    let passes = preset.passes.iter().map(|pass| format!("`{}:{}`, then ", pass.program, pass.key)).collect::<String>();
-    let numbers =
-        preset.numbers.iter().flat_map(|(group, fields)| fields.iter().map(move |(name, value)| format!("`{group}.{name}` = {value}")));
+    let passes = preset
+        .passes
+        .iter()
+        .map(|pass| format!("`{}:{}`, then ", pass.program, pass.key))
+        .collect::<String>();
+    let numbers = preset.numbers.iter().flat_map(|(group, fields)| {
+        fields.iter().map(move |(name, value)| format!("`{group}.{name}` = {value}"))
+    });
     let probe = preset.probe.iter().map(|probe| format!("probe `{probe}`"));
     let numbers: Vec<String> = numbers.chain(probe).collect();
     let _ = writeln!(

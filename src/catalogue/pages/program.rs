@@ -25,13 +25,24 @@ fn entry(text: &mut String, program: &Program) {
     let files: Vec<String> = program.files().map(|file| format!("`{}`", file.path)).collect();
     let targets: Vec<&str> = program.targets.iter().map(|target| target.name()).collect();
     let space = &program.space;
-    let _ = write!(text, "\n| | |\n|---|---|\n| files | {} |\n| targets | {} |\n", files.join(", "), targets.join(", "));
-    let _ =
-        write!(text, "| full product | {} |\n| valid | {} |\n| shipped | {} |\n", space.full_count(), space.valid_count(), space.count());
+    let _ = write!(
+        text,
+        "\n| | |\n|---|---|\n| files | {} |\n| targets | {} |\n",
+        files.join(", "),
+        targets.join(", ")
+    );
+    let _ = write!(
+        text,
+        "| full product | {} |\n| valid | {} |\n| shipped | {} |\n",
+        space.full_count(),
+        space.valid_count(),
+        space.count()
+    );
     axes(text, space.axes());
     for (index, constraint) in space.constraints().iter().enumerate() {
         let start = if index == 0 { "\nConstraints:\n\n" } else { "" };
-        let doc = constraint.doc.as_ref().map_or(String::new(), |doc| format!("  \n  {}", prose(doc)));
+        let doc =
+            constraint.doc.as_ref().map_or(String::new(), |doc| format!("  \n  {}", prose(doc)));
         let _ = writeln!(text, "{start}- `{}`{doc}", constraint.text);
     }
 }
@@ -42,10 +53,19 @@ fn axes(text: &mut String, axes: &[Axis]) {
     }
     text.push_str("\n| axis | values | mode | |\n|---|---|---|---|\n");
     for axis in axes {
-        let value = |(ordinal, name): (usize, String)| if ordinal == axis.default { format!("**`{name}`**") } else { format!("`{name}`") };
+        let value = |(ordinal, name): (usize, String)| {
+            if ordinal == axis.default { format!("**`{name}`**") } else { format!("`{name}`") }
+        };
         let values: Vec<String> = axis.value_names().into_iter().enumerate().map(value).collect();
         let doc = axis.doc.as_deref().unwrap_or_default();
-        let _ = writeln!(text, "| `{}` | {} | {} | {} |", axis.name, values.join(", "), axis.mode.name(), cell(doc));
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | {} |",
+            axis.name,
+            values.join(", "),
+            axis.mode.name(),
+            cell(doc)
+        );
     }
     text.push_str("\nThe default of each axis is bold.\n");
 }

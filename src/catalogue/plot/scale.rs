@@ -17,15 +17,17 @@ impl Scale {
     /// Round values within the interval, about as many as asked for.
     pub fn ticks(&self, count: f64) -> Vec<f64> {
         let step = step((self.to - self.from) / count);
-        let (first, last) = ((self.from / step - 1e-9).ceil() as i64, (self.to / step + 1e-9).floor() as i64);
+        let (first, last) =
+            ((self.from / step - 1e-9).ceil() as i64, (self.to / step + 1e-9).floor() as i64);
         (first..=last).map(|index| index as f64 * step).collect()
     }
 }
 
 /// Bounds of the values, opened to the next tick; an interval even where they are all the same.
 pub fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) =
-        values.filter(|value| value.is_finite()).fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
     if low > high {
         return (0.0, 1.0);
     }
@@ -43,7 +45,11 @@ fn step(size: f64) -> f64 {
     if let Some(step) = degrees.into_iter().find(|step| (size - step).abs() < 1e-9) {
         return step;
     }
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= size * 0.999).unwrap_or(10.0 * power)
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|factor| factor * power)
+        .find(|step| *step >= size * 0.999)
+        .unwrap_or(10.0 * power)
 }
 
 /// A tick's value, as short as it goes.

@@ -18,13 +18,16 @@ const BOTTOM: f64 = 252.0;
 /// Lines and letters.
 const INK: &str = "#7d8794";
 /// One for each curve, in order; told apart by dashes too.
-const CURVES: [(&str, &str); 4] = [("#3987e5", ""), ("#e0701b", "8 4"), ("#2da05a", "2 3"), ("#b05fd0", "10 3 2 3")];
+const CURVES: [(&str, &str); 4] =
+    [("#3987e5", ""), ("#e0701b", "8 4"), ("#2da05a", "2 3"), ("#b05fd0", "10 3 2 3")];
 /// Points nearer to a line than this are on it.
 const FLAT: f64 = 0.04;
 
 /// The plot with the values of its curves, each at the [`SAMPLES`] inputs of the plot.
 pub fn draw(title: &str, plot: &Plot, curves: &[Vec<f64>]) -> String {
-    let (from, to) = plot.y.map_or_else(|| fitted(curves.iter().flatten().copied()), |range| (range.from, range.to));
+    let (from, to) = plot
+        .y
+        .map_or_else(|| fitted(curves.iter().flatten().copied()), |range| (range.from, range.to));
     let x = Scale { from: plot.x.from, to: plot.x.to, start: LEFT, end: RIGHT };
     let y = Scale { from, to, start: BOTTOM, end: TOP };
     let mut svg = head(title);
@@ -57,12 +60,22 @@ fn axes(svg: &mut String, x: &Scale, y: &Scale) {
     }
     let _ = writeln!(svg, "</g>\n<g fill=\"{INK}\">");
     for value in y.ticks(5.0) {
-        let _ =
-            writeln!(svg, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>", LEFT - 8.0, place(y.place(value) + 4.0), number(value));
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
+            LEFT - 8.0,
+            place(y.place(value) + 4.0),
+            number(value)
+        );
     }
     for value in x.ticks(6.0) {
-        let _ =
-            writeln!(svg, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", place(x.place(value)), BOTTOM + 18.0, number(value));
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+            place(x.place(value)),
+            BOTTOM + 18.0,
+            number(value)
+        );
     }
     svg.push_str("</g>\n");
 }
@@ -82,14 +95,27 @@ fn dashed(dashes: &str) -> String {
 
 /// The name, the legend, what was fixed, and what the horizontal axis is.
 fn captions(svg: &mut String, title: &str, plot: &Plot) {
-    let _ = writeln!(svg, "<text x=\"{LEFT}\" y=\"22\" fill=\"{INK}\" font-weight=\"600\">{}</text>", escaped(title));
+    let _ = writeln!(
+        svg,
+        "<text x=\"{LEFT}\" y=\"22\" fill=\"{INK}\" font-weight=\"600\">{}</text>",
+        escaped(title)
+    );
     let mut right = RIGHT;
     for (index, text) in legend(plot).iter().enumerate().rev() {
         let (colour, dashes) = CURVES[index % CURVES.len()];
         let start = right - 7.0 * text.chars().count() as f64;
-        let _ = writeln!(svg, "<text x=\"{}\" y=\"22\" fill=\"{INK}\">{}</text>", place(start), escaped(text));
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"22\" fill=\"{INK}\">{}</text>",
+            place(start),
+            escaped(text)
+        );
         let line = format!("M{} 18h22", place(start - 28.0));
-        let _ = writeln!(svg, "<path d=\"{line}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"{}/>", dashed(dashes));
+        let _ = writeln!(
+            svg,
+            "<path d=\"{line}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"{}/>",
+            dashed(dashes)
+        );
         right = start - 44.0;
     }
     let middle = (LEFT + RIGHT) / 2.0;
@@ -106,7 +132,12 @@ fn legend(plot: &Plot) -> Vec<String> {
     let named = |curves: &super::Curves, index: usize, value: &f64| {
         if index == 0 { format!("{} = {}", curves.name, number(*value)) } else { number(*value) }
     };
-    plot.curves.iter().flat_map(|curves| curves.values.iter().enumerate().map(|(index, value)| named(curves, index, value))).collect()
+    plot.curves
+        .iter()
+        .flat_map(|curves| {
+            curves.values.iter().enumerate().map(|(index, value)| named(curves, index, value))
+        })
+        .collect()
 }
 
 /// The curve within the frame: broken where a value is not finite, straight where it is.
@@ -116,7 +147,12 @@ fn path(values: &[f64], x: &Scale, y: &Scale) -> String {
         .iter()
         .enumerate()
         .map(|(index, value)| {
-            value.is_finite().then(|| (x.place(x.from + step * index as f64), y.place(*value).clamp(TOP - 4.0, BOTTOM + 4.0)))
+            value.is_finite().then(|| {
+                (
+                    x.place(x.from + step * index as f64),
+                    y.place(*value).clamp(TOP - 4.0, BOTTOM + 4.0),
+                )
+            })
         })
         .collect();
     let pieces = points.split(Option::is_none).filter(|piece| piece.len() > 1);
@@ -127,7 +163,11 @@ fn piece_path(points: &[(f64, f64)]) -> String {
     let mut kept = vec![false; points.len()];
     (kept[0], kept[points.len() - 1]) = (true, true);
     keep(points, &mut kept, 0, points.len() - 1);
-    let corners = points.iter().zip(kept).filter(|(_, kept)| *kept).map(|((x, y), _)| format!("{} {}", place(*x), place(*y)));
+    let corners = points
+        .iter()
+        .zip(kept)
+        .filter(|(_, kept)| *kept)
+        .map(|((x, y), _)| format!("{} {}", place(*x), place(*y)));
     format!("M{}", corners.collect::<Vec<_>>().join("L"))
 }
 
@@ -137,7 +177,10 @@ fn keep(points: &[(f64, f64)], kept: &mut [bool], first: usize, last: usize) {
         let ((ax, ay), (bx, by), (px, py)) = (points[first], points[last], points[index]);
         ((bx - ax) * (py - ay) - (by - ay) * (px - ax)).abs() / (bx - ax).hypot(by - ay)
     };
-    let Some(farthest) = (first + 1..last).max_by(|a, b| distance(*a).total_cmp(&distance(*b))) else { return };
+    let Some(farthest) = (first + 1..last).max_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+    else {
+        return;
+    };
     if distance(farthest) > FLAT {
         kept[farthest] = true;
         keep(points, kept, first, farthest);

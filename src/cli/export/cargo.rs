@@ -15,7 +15,11 @@ pub fn contents(modules: Contents) -> Contents {
         ("README.md", README.to_owned()),
         ("wesl.toml", wesl_toml("cargo", ROOT)),
     ];
-    own.into_iter().map(|(path, text)| (path.to_owned(), text)).chain(licenses()).chain(below(ROOT, modules)).collect()
+    own.into_iter()
+        .map(|(path, text)| (path.to_owned(), text))
+        .chain(licenses())
+        .chain(below(ROOT, modules))
+        .collect()
 }
 
 /// A workspace of its own, so that it builds wherever it was written to.

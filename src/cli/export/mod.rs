@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
+use super::overwrite::Overwrite;
 use crate::output;
 use crate::project::LIBRARY;
 use crate::source::{Embedded, Files as _};
@@ -22,6 +23,8 @@ pub struct Arguments {
     /// What to write: the library's files, or a package that is ready to publish.
     #[arg(long, value_enum, default_value_t)]
     form: Form,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 #[derive(Clone, Copy, Default, ValueEnum)]
@@ -38,8 +41,10 @@ enum Form {
 /// Path below the package's folder and text.
 type Contents = BTreeMap<String, String>;
 
-const LICENSES: [(&str, &str); 2] =
-    [("LICENSE-MIT", include_str!("../../../LICENSE-MIT")), ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE"))];
+const LICENSES: [(&str, &str); 2] = [
+    ("LICENSE-MIT", include_str!("../../../LICENSE-MIT")),
+    ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE")),
+];
 
 /// What search finds the packages by; the first three are the community's for shader packages.
 const KEYWORDS: [&str; 5] = ["WGSL", "WESL", "WebGPU", "lighting", "shadow"];
@@ -52,11 +57,12 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Form::Cargo => (cargo::NAME, cargo::contents(modules()?)),
         Form::Npm => (npm::NAME, npm::contents(modules()?, texts(&["glsl"])?)),
     };
+    let files: Contents =
+        contents.into_iter().map(|(path, text)| (format!("{name}/{path}"), text)).collect();
+    let files_as_bytes = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
+    output::write_folder(&arguments.folder, files_as_bytes, arguments.overwrite.replace())?;
     let folder = arguments.folder.join(name);
-    for (path, text) in &contents {
-        output::write(&folder.join(path), text.as_bytes())?;
-    }
-    Ok(writeln!(stdout(), "{}: {} files", folder.display(), contents.len())?)
+    Ok(writeln!(stdout(), "{}: {} files", folder.display(), files.len())?)
 }
 
 fn files() -> Result<Contents, Failure> {
@@ -67,7 +73,10 @@ fn files() -> Result<Contents, Failure> {
 
 /// What others import. Programs are entry points, with conditions over axes of Lamplight's.
 fn modules() -> Result<Contents, Failure> {
-    Ok(texts(&["wesl", "wgsl"])?.into_iter().filter(|(path, _)| !path.starts_with("programs/")).collect())
+    Ok(texts(&["wesl", "wgsl"])?
+        .into_iter()
+        .filter(|(path, _)| !path.starts_with("programs/"))
+        .collect())
 }
 
 fn texts(extensions: &[&str]) -> Result<Contents, Failure> {
@@ -90,7 +99,9 @@ fn licenses() -> impl Iterator<Item = (String, String)> {
 /// A package's `wesl.toml`: in a table as the specification has it, and at the top for tools that
 /// came before it.
 fn wesl_toml(manager: &str, root: &str) -> String {
-    let keys = format!("edition = \"{EDITION}\"\npackage-manager = \"{manager}\"\nroot = \"{root}\"\ninclude = [\"**/*.wesl\"]\n");
+    let keys = format!(
+        "edition = \"{EDITION}\"\npackage-manager = \"{manager}\"\nroot = \"{root}\"\ninclude = [\"**/*.wesl\"]\n"
+    );
     format!("{keys}\n[package]\nname = \"{LIBRARY}\"\n{keys}")
 }
 

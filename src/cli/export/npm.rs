@@ -17,7 +17,10 @@ pub fn contents(modules: Contents, glsl: Contents) -> Contents {
         ("wesl.toml", wesl_toml("npm", "shaders")),
     ];
     let own = own.into_iter().map(|(path, text)| (path.to_owned(), text));
-    own.chain(licenses()).chain(below("shaders", modules)).chain(below("glsl/lamplight", glsl)).collect()
+    own.chain(licenses())
+        .chain(below("shaders", modules))
+        .chain(below("glsl/lamplight", glsl))
+        .collect()
 }
 
 fn manifest() -> Value {
@@ -42,7 +45,10 @@ fn manifest() -> Value {
 /// JSON is JavaScript: the module is one object, its texts as strings.
 fn bundle(modules: &Contents) -> String {
     let bundle = json!({ "name": LIBRARY, "edition": EDITION, "modules": modules });
-    format!("export const weslBundle = {};\n\nexport default weslBundle;\n", pretty(&bundle).trim_end())
+    format!(
+        "export const weslBundle = {};\n\nexport default weslBundle;\n",
+        pretty(&bundle).trim_end()
+    )
 }
 
 fn pretty(value: &Value) -> String {

@@ -9,24 +9,25 @@ use std::time::Instant;
 
 use clap::Args;
 
+use super::executor;
 use super::failure::{DiagnosticForm, Failure};
 use super::input::{LanguageName, axis_value};
+use super::overwrite::Overwrite;
+use crate::bundle::Language;
 use crate::catalogue::preset::{self, Preset};
 use crate::catalogue::probe;
-use crate::compose::Language;
 use crate::diagnostic::{Diagnostics, nearest};
-use crate::harness::executors::{self, swiftshader};
-use crate::harness::frame::{Painter, Programs};
-use crate::harness::on_thread;
-use crate::harness::render::{self, Plan, Shot, Surroundings};
+use crate::execute::executors::Entry;
+use crate::execute::on_thread;
 use crate::output;
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, key};
+use crate::picture::frame::Programs;
+use crate::picture::{self, Plan, Shot, Surroundings, is_own_png};
 use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
-use crate::source::SourceSet;
 
-/// Places in each pixel, where no other number is asked for and a device draws.
-const SAMPLES: u32 = 4;
+/// Bytes of a Radiance file: 8192 x 4096 without compression.
+const MOST_ENVIRONMENT_BYTES: u64 = 256 << 20;
 
 /// Draw a scene with one permutation.
 #[derive(Args)]
@@ -61,21 +62,24 @@ pub struct Arguments {
     /// Shadow maps of a directional light, each of a part of the viewer's depth.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     cascades: u32,
-    /// What draws: `vulkan`, `gl`, `swiftshader` or `eval`, which needs no driver.
+    /// What draws: `lamplight list executors`; `eval` needs no driver.
     #[arg(long, value_name = "E", default_value = "vulkan")]
-    executor: String,
+    pub executor: String,
     /// The source language.
     #[arg(long, value_enum, default_value = "wesl")]
     lang: LanguageName,
     /// What is around the scene: `studio`, `daylight`, `constant`, or a Radiance file (`.hdr`).
     #[arg(long, value_name = "NAME|FILE", default_value = "studio")]
     environment: String,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
     const LARGEST: u32 = 4096;
     let (width, height) = text.split_once('x').ok_or("expected WxH, such as 512x512")?;
-    let number = |text: &str| text.parse::<u32>().ok().filter(|number| (1..=LARGEST).contains(number));
+    let number =
+        |text: &str| text.parse::<u32>().ok().filter(|number| (1..=LARGEST).contains(number));
     match (number(width), number(height)) {
         (Some(width), Some(height)) => Ok([width, height]),
         _ => Err(format!("expected two numbers from 1 to {LARGEST}")),
@@ -83,45 +87,37 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 }
 
 pub fn run(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure> {
-    on_thread(|| draw(&arguments)).unwrap_or_else(|| Err(Failure::environment("the renderer stopped with an internal error")))
+    on_thread(|| draw(&arguments))
+        .unwrap_or_else(|| Err(Failure::environment("the renderer stopped with an internal error")))
 }
 
 fn draw(arguments: &Arguments) -> Result<(), Failure> {
-    let programs = Programs::load().map_err(|(sources, problems)| Failure::Input(sources, problems))?;
-    let shot = shot(arguments)?;
+    let programs =
+        Programs::load().map_err(|(sources, problems)| Failure::Input(sources, problems))?;
+    let entry = executor::find_drawing(&arguments.executor)?;
+    let shot = shot(arguments, entry)?;
     if arguments.all {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
-        return gallery::run(open(&arguments.executor)?.as_ref(), &programs, &shot, &folder);
+        let folder = output::Folder::open(&folder, arguments.overwrite.replace())?;
+        return gallery::run(executor::open(entry)?.as_ref(), &programs, &shot, folder);
     }
     let plan = plan(&programs, arguments)?;
-    let painter = open(&arguments.executor)?;
+    let painter = executor::open(entry)?;
     let start = Instant::now();
-    let picture = render::render(painter.as_ref(), &programs, &plan, &shot).map_err(|problems| input(&programs, problems))?;
+    let picture = picture::render(painter.as_ref(), &programs, &plan, &shot)
+        .map_err(|problems| input(&programs, problems))?;
     let name = arguments.preset.as_deref().unwrap_or("render");
     let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
-    write(&path, &picture.png().map_err(Failure::environment)?)?;
+    let png = picture.png().map_err(Failure::environment)?;
+    output::write_file(&path, &png, is_own_png, arguments.overwrite.replace())?;
     let last = plan.last().map_or("", |pass| pass.key.as_str());
     let [width, height] = shot.size;
-    let (path, scene, adapter, seconds) = (path.display(), &plan.scene, painter.adapter(), start.elapsed().as_secs_f64());
-    Ok(writeln!(stdout(), "{path}: {width} x {height} of {scene}, `{last}`, in {seconds:.2} s, {adapter}")?)
-}
-
-/// Writes a file that is what was asked for.
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    output::write(path, bytes).map_err(|error| Failure::environment(format!("cannot write `{}`: {error}", path.display())))
-}
-
-/// Opens an executor that draws.
-pub fn open(name: &str) -> Result<Box<dyn Painter>, Failure> {
-    if !render::painters().any(|known| known == name) {
-        let known: Vec<&str> = render::painters().collect();
-        let what = if executors::find(name).is_some() { "draws no pictures" } else { "is no executor" };
-        return Err(Failure::usage(format!("`{name}` {what} (executors that do: {})", known.join(", "))));
-    }
-    if name == swiftshader::EXECUTOR.name {
-        swiftshader::announce();
-    }
-    render::open(name).map_err(Failure::environment)
+    let (path, scene, adapter, seconds) =
+        (path.display(), &plan.scene, painter.adapter(), start.elapsed().as_secs_f64());
+    Ok(writeln!(
+        stdout(),
+        "{path}: {width} x {height} of {scene}, `{last}`, in {seconds:.2} s, {adapter}"
+    )?)
 }
 
 fn input(programs: &Programs, problems: Diagnostics) -> Failure {
@@ -131,10 +127,20 @@ fn input(programs: &Programs, problems: Diagnostics) -> Failure {
 fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
     let mut plan = match &arguments.preset {
         Some(name) => of_preset(programs, arguments, name)?,
-        None if arguments.set.is_empty() && arguments.program.is_none() && arguments.scene.is_none() => {
-            return Err(Failure::usage("name a preset (`lamplight list presets`), or a permutation with `--set`"));
+        None if arguments.set.is_empty()
+            && arguments.program.is_none()
+            && arguments.scene.is_none() =>
+        {
+            return Err(Failure::usage(
+                "name a preset (`lamplight list presets`), or a permutation with `--set`",
+            ));
         }
-        None => of_point(programs, arguments, program(programs, arguments.program.as_deref().unwrap_or("forward"))?, None)?,
+        None => of_point(
+            programs,
+            arguments,
+            program(programs, arguments.program.as_deref().unwrap_or("forward"))?,
+            None,
+        )?,
     };
     if let Some(scene) = &arguments.scene {
         let known = sets::SETS.iter().map(|(name, _, _)| *name);
@@ -151,13 +157,19 @@ fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<P
     let Some(preset) = presets.iter().find(|preset| preset.name == name) else {
         return Err(unknown("preset", name, presets.iter().map(|preset| preset.name.as_str())));
     };
-    let plan = Plan::of_preset(programs, preset, &probes).map_err(|problems| input(programs, problems))?;
+    let plan =
+        Plan::of_preset(programs, preset, &probes).map_err(|problems| input(programs, problems))?;
     if arguments.set.is_empty() && arguments.program.is_none() {
         return Ok(plan);
     }
     let program = program(programs, arguments.program.as_deref().unwrap_or(&preset.program))?;
     // Another permutation needs other passes; numbers and scene are the preset's.
-    let changed = of_point(programs, arguments, program, (program.name == preset.program).then_some(preset.key.as_str()))?;
+    let changed = of_point(
+        programs,
+        arguments,
+        program,
+        (program.name == preset.program).then_some(preset.key.as_str()),
+    )?;
     Ok(Plan { passes: changed.passes, ..plan })
 }
 
@@ -180,38 +192,50 @@ fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Cl
     const FEW: usize = 12;
     let hint = match nearest(name, known.clone()) {
         Some(nearest) => format!("\nhelp: did you mean `{nearest}`?"),
-        None if known.clone().count() <= FEW => format!("\nhelp: there are {}", known.collect::<Vec<_>>().join(", ")),
+        None if known.clone().count() <= FEW => {
+            format!("\nhelp: there are {}", known.collect::<Vec<_>>().join(", "))
+        }
         None => String::new(),
     };
     Failure::input(format!("there is no {what} `{name}`{hint}"))
 }
 
-fn of_point(programs: &Programs, arguments: &Arguments, program: &Program, over: Option<&str>) -> Result<Plan, Failure> {
+fn of_point(
+    programs: &Programs,
+    arguments: &Arguments,
+    program: &Program,
+    over: Option<&str>,
+) -> Result<Plan, Failure> {
     let point = point(programs, arguments, program, over)?;
     Plan::of_point(programs, program, &point).map_err(|problems| input(programs, problems))
 }
 
 /// The point of the program's space that is asked for, over that of a key.
-fn point(programs: &Programs, arguments: &Arguments, program: &Program, over: Option<&str>) -> Result<Assignment, Failure> {
-    let is_set = |part: &&str| arguments.set.iter().any(|(axis, _)| axis == part.split('=').next().unwrap_or(part));
-    let kept = over.filter(|key| *key != key::DEFAULT).map(|key| key.split(',').filter(|part| !is_set(part)).collect::<Vec<_>>());
-    let kept = kept.unwrap_or_default().into_iter().map(str::to_owned);
-    let parts: Vec<String> = kept.chain(arguments.set.iter().map(|(axis, value)| format!("{axis}={value}"))).collect();
+fn point(
+    programs: &Programs,
+    arguments: &Arguments,
+    program: &Program,
+    over: Option<&str>,
+) -> Result<Assignment, Failure> {
+    let chosen: Vec<String> =
+        arguments.set.iter().map(|(axis, value)| format!("{axis}={value}")).collect();
     let mut texts = programs.texts();
-    let id = texts.add("--set", parts.join(","));
-    let wrong = |texts: SourceSet, problems| Failure::Input(texts, problems);
-    let point = match key::parse(&program.space, &Quoted::whole(&texts, id)) {
-        Ok(point) => point,
-        Err(problems) => return Err(wrong(texts, problems)),
-    };
-    let problems = super::input::broken(program, &point, &texts, id);
-    if problems.is_empty() { Ok(point) } else { Err(wrong(texts, problems)) }
+    let base = texts.add("preset", over.unwrap_or_default());
+    let id = texts.add("--set", chosen.join(","));
+    let (base, over) = (Quoted::whole(&texts, base), Quoted::whole(&texts, id));
+    let point = key::parse(&program.space, &base)
+        .and_then(|base| key::parse_over(&program.space, base, &over));
+    let checked = point.and_then(|point| {
+        let problems = super::input::broken(program, &point, &texts, id);
+        if problems.is_empty() { Ok(point) } else { Err(problems) }
+    });
+    checked.map_err(|problems| Failure::Input(texts, problems))
 }
 
-fn shot(arguments: &Arguments) -> Result<Shot, Failure> {
+fn shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
     Ok(Shot {
         size: arguments.size,
-        samples: arguments.samples.unwrap_or(if arguments.executor == render::RASTERIZER { 1 } else { SAMPLES }),
+        samples: arguments.samples.or(executor.samples).unwrap_or(1),
         cascades: arguments.cascades,
         exposure: arguments.exposure.clamp(-32.0, 32.0),
         language: Language::from(arguments.lang),
@@ -225,11 +249,14 @@ fn surroundings(name: &str) -> Result<Surroundings, Failure> {
         return Ok(Surroundings::Formula(formula));
     }
     let known = ENVIRONMENTS.iter().map(|(name, _, _)| *name);
-    let bytes = match std::fs::read(name) {
+    let bytes = match crate::input::read(Path::new(name), MOST_ENVIRONMENT_BYTES) {
         Ok(bytes) => bytes,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(unknown("environment or file", name, known)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            return Err(unknown("environment or file", name, known));
+        }
         Err(error) => return Err(Failure::input(format!("cannot read `{name}`: {error}"))),
     };
-    let image = Equirect::from_radiance(&bytes).map_err(|error| Failure::input(format!("`{name}`: {error}")))?;
+    let image = Equirect::from_radiance(&bytes)
+        .map_err(|error| Failure::input(format!("`{name}`: {error}")))?;
     Ok(Surroundings::Image(Arc::new(image)))
 }

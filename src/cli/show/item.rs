@@ -26,7 +26,10 @@ fn item_text(item: &Item) -> String {
     }
     if item.members.iter().any(|member| !member.doc.is_empty()) {
         let heading = if item.kind == Kind::Struct { "Fields" } else { "Parameters" };
-        text += &format!("\n{heading}\n{}", rows(&item.members.iter().map(member_row).collect::<Vec<_>>(), 2));
+        text += &format!(
+            "\n{heading}\n{}",
+            rows(&item.members.iter().map(member_row).collect::<Vec<_>>(), 2)
+        );
     }
     for section in SECTIONS.iter().skip(1) {
         if let Some(words) = item.section(section) {
@@ -45,8 +48,11 @@ fn member_row(member: &Member) -> Vec<String> {
 }
 
 fn item_json(item: &Item) -> Value {
-    let members =
-        item.members.iter().map(|member| json!({ "name": member.name, "type": member.ty, "doc": member.doc })).collect::<Vec<_>>();
+    let members = item
+        .members
+        .iter()
+        .map(|member| json!({ "name": member.name, "type": member.ty, "doc": member.doc }))
+        .collect::<Vec<_>>();
     json!({
         item.kind.name(): item.path(),
         "doc": item.paragraphs(),
@@ -73,7 +79,11 @@ fn module_text(module: &Module) -> String {
         text += &format!("\n{}{}", wrapped_code(signature), wrapped(item.summary(), 6));
     }
     if let Some(item) = module.items.first() {
-        text += &format!("\nWESL\n  import {LIBRARY}::{}::{{..}};\n\nGLSL\n  {}\n", module.path, item.include());
+        text += &format!(
+            "\nWESL\n  import {LIBRARY}::{}::{{..}};\n\nGLSL\n  {}\n",
+            module.path,
+            item.include()
+        );
     }
     text
 }

@@ -46,7 +46,11 @@ struct Library {
 }
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
-    let path = arguments.path.strip_prefix(LIBRARY).and_then(|rest| rest.strip_prefix("::")).unwrap_or(&arguments.path);
+    let path = arguments
+        .path
+        .strip_prefix(LIBRARY)
+        .and_then(|rest| rest.strip_prefix("::"))
+        .unwrap_or(&arguments.path);
     let library = library()?;
     let shown = find(&library, path).ok_or_else(|| missing(path, &library))?;
     let text = if arguments.json { format!("{:#}\n", shown.json) } else { shown.text };
@@ -54,38 +58,61 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 }
 
 fn library() -> Result<Library, Failure> {
-    let (mut sources, manifest) = project::library_manifest().map_err(|(sources, problems)| Failure::Input(sources, problems))?;
+    let (mut sources, manifest) = project::library_manifest()
+        .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     match catalogue::examples(&mut sources, &manifest) {
-        Ok((presets, probes)) => Ok(Library { modules: catalogue::library(), manifest, presets, probes }),
+        Ok((presets, probes)) => {
+            Ok(Library { modules: catalogue::library(), manifest, presets, probes })
+        }
         Err(problems) => Err(Failure::Input(sources, problems)),
     }
 }
 
 fn find(library: &Library, path: &str) -> Option<Shown> {
-    let item = || library.modules.iter().flat_map(|module| &module.items).find(|item| item.path() == path).map(item::item);
+    let item = || {
+        library
+            .modules
+            .iter()
+            .flat_map(|module| &module.items)
+            .find(|item| item.path() == path)
+            .map(item::item)
+    };
     let module = || library.modules.iter().find(|module| module.path == path).map(item::module);
     let program = || library.manifest.program(path).map(program::program);
     let preset = || library.presets.iter().find(|preset| preset.name == path).map(preset::preset);
     let probe = || library.probes.iter().find(|probe| probe.name == path).map(preset::probe);
-    item().or_else(module).or_else(program).or_else(|| axis(library, path)).or_else(preset).or_else(probe)
+    item()
+        .or_else(module)
+        .or_else(program)
+        .or_else(|| axis(library, path))
+        .or_else(preset)
+        .or_else(probe)
 }
 
 /// `PROGRAM.AXIS`, or the axis alone where one program has it.
 fn axis(library: &Library, path: &str) -> Option<Shown> {
-    let (wanted, name) = path.split_once('.').map_or((None, path), |(program, name)| (Some(program), name));
-    let programs = library.manifest.programs.iter().filter(|program| wanted.is_none_or(|wanted| wanted == program.name));
+    let (wanted, name) =
+        path.split_once('.').map_or((None, path), |(program, name)| (Some(program), name));
+    let programs = library
+        .manifest
+        .programs
+        .iter()
+        .filter(|program| wanted.is_none_or(|wanted| wanted == program.name));
     let mut found = programs.filter_map(|program| Some((program, program.space.axis(name)?)));
     let (program, axis) = found.next()?;
     found.next().is_none().then(|| program::axis(program, axis))
 }
 
 fn missing(path: &str, library: &Library) -> Failure {
-    let items: Vec<String> = library.modules.iter().flat_map(|module| module.items.iter().map(Item::path)).collect();
+    let items: Vec<String> =
+        library.modules.iter().flat_map(|module| module.items.iter().map(Item::path)).collect();
     let axes: Vec<String> = library
         .manifest
         .programs
         .iter()
-        .flat_map(|program| program.space.axes().iter().map(|axis| format!("{}.{}", program.name, axis.name)))
+        .flat_map(|program| {
+            program.space.axes().iter().map(|axis| format!("{}.{}", program.name, axis.name))
+        })
         .collect();
     let others = library
         .modules
@@ -96,7 +123,12 @@ fn missing(path: &str, library: &Library) -> Failure {
         .chain(library.presets.iter().map(|preset| preset.name.as_str()))
         .chain(library.probes.iter().map(|probe| probe.name.as_str()));
     let known = items.iter().chain(&axes).map(String::as_str).chain(others);
-    let same_name = items.iter().find(|item| item.rsplit("::").next() == path.rsplit("::").next()).map(String::as_str);
-    let hint = same_name.or_else(|| nearest(path, known)).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    let same_name = items
+        .iter()
+        .find(|item| item.rsplit("::").next() == path.rsplit("::").next())
+        .map(String::as_str);
+    let hint = same_name
+        .or_else(|| nearest(path, known))
+        .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
     Failure::input(format!("the library has no `{path}`{hint}"))
 }

@@ -19,7 +19,11 @@ pub fn preset(preset: &Preset) -> Shown {
     let numbers: Vec<Vec<String>> = preset
         .numbers
         .iter()
-        .flat_map(|(group, fields)| fields.iter().map(move |(name, value)| vec![format!("{group}.{name}"), value.to_string()]))
+        .flat_map(|(group, fields)| {
+            fields
+                .iter()
+                .map(move |(name, value)| vec![format!("{group}.{name}"), value.to_string()])
+        })
         .collect();
     if !numbers.is_empty() {
         text += &format!("\nNumbers\n{}", rows(&numbers, 2));
@@ -43,7 +47,11 @@ pub fn preset_json(preset: &Preset) -> Value {
 }
 
 fn permutation(pass: &Pass) -> String {
-    if pass.key == "default" { pass.program.clone() } else { format!("{} {}", pass.program, pass.key) }
+    if pass.key == "default" {
+        pass.program.clone()
+    } else {
+        format!("{} {}", pass.program, pass.key)
+    }
 }
 
 /// A light probe with its coefficients.
@@ -52,16 +60,27 @@ pub fn probe(probe: &Probe) -> Shown {
     let table: Vec<Vec<String>> = ORDER
         .iter()
         .zip(&probe.coefficients)
-        .map(|(name, row)| vec![(*name).to_owned(), number(row[0]), number(row[1]), row[2].to_string()])
+        .map(|(name, row)| {
+            vec![(*name).to_owned(), number(row[0]), number(row[1]), row[2].to_string()]
+        })
         .collect();
     let function = format!("ambient::probes::probe_{}", probe.name);
-    let text = format!("{}\n\n{}{}\n{}\n  {function}\n", probe.name, wrapped(&probe.title, 2), wrapped(&probe.source, 2), rows(&table, 2));
+    let text = format!(
+        "{}\n\n{}{}\n{}\n  {function}\n",
+        probe.name,
+        wrapped(&probe.title, 2),
+        wrapped(&probe.source, 2),
+        rows(&table, 2)
+    );
     Shown { text, json: probe_json(probe) }
 }
 
 /// A light probe as an object.
 pub fn probe_json(probe: &Probe) -> Value {
-    let rows: serde_json::Map<String, Value> =
-        ORDER.iter().zip(&probe.coefficients).map(|(name, row)| ((*name).to_owned(), json!(row))).collect();
+    let rows: serde_json::Map<String, Value> = ORDER
+        .iter()
+        .zip(&probe.coefficients)
+        .map(|(name, row)| ((*name).to_owned(), json!(row)))
+        .collect();
     json!({ "probe": probe.name, "title": probe.title, "source": probe.source, "coefficients": rows })
 }

@@ -46,8 +46,17 @@ pub fn axis_json(program: &str, axis: &Axis) -> Value {
 
 /// The constraints that name the axis.
 fn constraints(program: &Program, axis: &Axis) -> Vec<String> {
-    let names = |text: &str| text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').any(|word| word == axis.name);
-    program.space.constraints().iter().map(|constraint| constraint.text.clone()).filter(|text| names(text)).collect()
+    let names = |text: &str| {
+        text.split(|letter: char| !letter.is_alphanumeric() && letter != '_')
+            .any(|word| word == axis.name)
+    };
+    program
+        .space
+        .constraints()
+        .iter()
+        .map(|constraint| constraint.text.clone())
+        .filter(|text| names(text))
+        .collect()
 }
 
 fn program_text(program: &Program) -> String {
@@ -55,8 +64,14 @@ fn program_text(program: &Program) -> String {
     let mut text = format!("{}\n", program.name);
     text += &program.doc.as_ref().map_or(String::new(), |doc| format!("\n{}", wrapped(doc, 2)));
     let facts = [
-        ["files".to_owned(), program.files().map(|file| file.path.as_str()).collect::<Vec<_>>().join(" ")],
-        ["targets".to_owned(), program.targets.iter().map(|target| target.name()).collect::<Vec<_>>().join(" ")],
+        [
+            "files".to_owned(),
+            program.files().map(|file| file.path.as_str()).collect::<Vec<_>>().join(" "),
+        ],
+        [
+            "targets".to_owned(),
+            program.targets.iter().map(|target| target.name()).collect::<Vec<_>>().join(" "),
+        ],
         ["full product".to_owned(), space.full_count().to_string()],
         ["valid".to_owned(), space.valid_count().to_string()],
         ["shipped".to_owned(), space.count().to_string()],
@@ -66,16 +81,28 @@ fn program_text(program: &Program) -> String {
         let axes: Vec<Vec<String>> = space.axes().iter().map(axis_row).collect();
         text += &format!("\nAxes, defaults in brackets\n{}", rows(&axes, 2));
     }
-    text + &heading("Constraints", &space.constraints().iter().map(|constraint| constraint.text.clone()).collect::<Vec<_>>())
+    text + &heading(
+        "Constraints",
+        &space.constraints().iter().map(|constraint| constraint.text.clone()).collect::<Vec<_>>(),
+    )
 }
 
 fn axis_row(axis: &Axis) -> Vec<String> {
-    let value = |(ordinal, name): (usize, String)| if ordinal == axis.default { format!("[{name}]") } else { name };
-    vec![axis.name.clone(), axis.value_names().into_iter().enumerate().map(value).collect::<Vec<_>>().join(" ")]
+    let value = |(ordinal, name): (usize, String)| {
+        if ordinal == axis.default { format!("[{name}]") } else { name }
+    };
+    vec![
+        axis.name.clone(),
+        axis.value_names().into_iter().enumerate().map(value).collect::<Vec<_>>().join(" "),
+    ]
 }
 
 fn heading(name: &str, lines: &[String]) -> String {
-    if lines.is_empty() { String::new() } else { format!("\n{name}\n{}", lines.iter().map(|line| wrapped(line, 2)).collect::<String>()) }
+    if lines.is_empty() {
+        String::new()
+    } else {
+        format!("\n{name}\n{}", lines.iter().map(|line| wrapped(line, 2)).collect::<String>())
+    }
 }
 
 fn program_json(program: &Program) -> Value {

@@ -8,12 +8,18 @@ use crate::source::{LIMITS, Span};
 
 /// Evaluates the expanded tokens of a condition. Operands that `&&` and `||` skip are not
 /// evaluated: they may divide by zero, and settings in them do not count as read.
-pub fn evaluate(expander: &mut Expander<'_, '_>, tokens: &[Tok], directive: Span) -> Result<bool, Diagnostic> {
+pub fn evaluate(
+    expander: &mut Expander<'_, '_>,
+    tokens: &[Tok],
+    directive: Span,
+) -> Result<bool, Diagnostic> {
     let mut parser = Parser { expander, tokens, at: 0, depth: 0, directive };
     let value = parser.binary(0, true)?;
     match parser.peek() {
         None => Ok(value != 0),
-        Some(extra) => Err(parser.error(&extra, "unexpected text in a condition", "an operator was expected")),
+        Some(extra) => {
+            Err(parser.error(&extra, "unexpected text in a condition", "an operator was expected"))
+        }
     }
 }
 
@@ -62,11 +68,15 @@ impl Parser<'_, '_, '_> {
     fn binary(&mut self, least: u8, live: bool) -> Result<i32, Diagnostic> {
         let mut left = self.unary(live)?;
         while let Some(operator) = self.peek() {
-            let Some((_, precedence)) = BINARY.iter().find(|(symbol, precedence)| *symbol == operator.symbol && *precedence > least) else {
+            let Some((_, precedence)) = BINARY
+                .iter()
+                .find(|(symbol, precedence)| *symbol == operator.symbol && *precedence > least)
+            else {
                 break;
             };
             self.at += 1;
-            let skipped = (operator.symbol == known::AND_AND && left == 0) || (operator.symbol == known::OR_OR && left != 0);
+            let skipped = (operator.symbol == known::AND_AND && left == 0)
+                || (operator.symbol == known::OR_OR && left != 0);
             let right = self.binary(*precedence, live && !skipped)?;
             left = self.apply(&operator, left, right, live)?;
         }
@@ -91,7 +101,13 @@ impl Parser<'_, '_, '_> {
             known::PLUS => left.wrapping_add(right),
             known::MINUS => left.wrapping_sub(right),
             known::STAR => left.wrapping_mul(right),
-            _ if right == 0 && live => return Err(self.error(operator, "division by zero in a condition", "the right side is 0")),
+            _ if right == 0 && live => {
+                return Err(self.error(
+                    operator,
+                    "division by zero in a condition",
+                    "the right side is 0",
+                ));
+            }
             _ if right == 0 => 0,
             known::SLASH => left.wrapping_div(right),
             _ => left.wrapping_rem(right),
@@ -115,7 +131,13 @@ impl Parser<'_, '_, '_> {
             _ if token.setting != NO_SETTING => self.setting(&token, live)?,
             _ if token.kind == Kind::Number => self.literal(&token)?,
             _ if token.kind == Kind::Identifier => self.undefined(&token, live)?,
-            _ => return Err(self.error(&token, "a condition needs a value here", "a number, a macro or `defined(..)` was expected")),
+            _ => {
+                return Err(self.error(
+                    &token,
+                    "a condition needs a value here",
+                    "a number, a macro or `defined(..)` was expected",
+                ));
+            }
         };
         self.depth -= 1;
         Ok(value)
@@ -125,7 +147,11 @@ impl Parser<'_, '_, '_> {
         let value = self.binary(0, live)?;
         let close = self.next()?;
         if close.symbol != known::CLOSE {
-            return Err(self.error(&close, "unexpected text in a condition", "an operator or `)` was expected"));
+            return Err(self.error(
+                &close,
+                "unexpected text in a condition",
+                "an operator or `)` was expected",
+            ));
         }
         Ok(value)
     }
@@ -137,7 +163,11 @@ impl Parser<'_, '_, '_> {
             name = self.next()?;
         }
         if name.kind != Kind::Identifier || (parenthesised && self.next()?.symbol != known::CLOSE) {
-            return Err(self.error(defined, "`defined` needs the name of a macro", "expected `defined NAME` or `defined(NAME)`"));
+            return Err(self.error(
+                defined,
+                "`defined` needs the name of a macro",
+                "expected `defined NAME` or `defined(NAME)`",
+            ));
         }
         Ok(i32::from(self.expander.table.has(name.symbol)))
     }
@@ -166,7 +196,11 @@ impl Parser<'_, '_, '_> {
         };
         match value {
             Ok(value) if text.len() - digits.len() <= 1 => Ok(value as i32),
-            _ => Err(self.error(token, &format!("`{text}` is not an integer of 32 bits"), "conditions count in integers")),
+            _ => Err(self.error(
+                token,
+                &format!("`{text}` is not an integer of 32 bits"),
+                "conditions count in integers",
+            )),
         }
     }
 
@@ -177,9 +211,18 @@ impl Parser<'_, '_, '_> {
         }
         let name = self.expander.table.spellings.text(token.symbol);
         if self.expander.table.has(token.symbol) {
-            return Err(self.error(token, &format!("the macro `{name}` has no value without its arguments"), "used in a condition"));
+            return Err(self.error(
+                token,
+                &format!("the macro `{name}` has no value without its arguments"),
+                "used in a condition",
+            ));
         }
-        let error = self.coded(codes::UNDEFINED_MACRO, token, &format!("the macro `{name}` is not defined"), "used in a condition");
+        let error = self.coded(
+            codes::UNDEFINED_MACRO,
+            token,
+            &format!("the macro `{name}` is not defined"),
+            "used in a condition",
+        );
         Err(error.suggest(name, self.expander.table.names()))
     }
 
@@ -192,7 +235,12 @@ impl Parser<'_, '_, '_> {
     }
 
     fn end_error(&self) -> Diagnostic {
-        let message = if self.tokens.is_empty() { "a condition is missing" } else { "a condition ends too early" };
-        Diagnostic::error(codes::INVALID_CONDITION, message).at(self.directive, "a value was expected at the end")
+        let message = if self.tokens.is_empty() {
+            "a condition is missing"
+        } else {
+            "a condition ends too early"
+        };
+        Diagnostic::error(codes::INVALID_CONDITION, message)
+            .at(self.directive, "a value was expected at the end")
     }
 }

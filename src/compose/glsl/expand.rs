@@ -92,12 +92,24 @@ impl<'g, 's> Expander<'g, 's> {
     }
 
     /// Counts included text as expansion too.
-    pub fn spend(&mut self, tokens: usize, bytes: usize, place: crate::source::Span) -> Result<(), Fatal> {
+    pub fn spend(
+        &mut self,
+        tokens: usize,
+        bytes: usize,
+        place: crate::source::Span,
+    ) -> Result<(), Fatal> {
         self.work += tokens;
         self.bytes += bytes;
         if self.work > LIMITS.tokens || self.bytes > LIMITS.expansion_bytes {
-            let message = format!("the expansion has more than {} tokens or {} MiB", LIMITS.tokens, LIMITS.expansion_bytes >> 20);
-            return Err(Box::new(Diagnostic::error(codes::EXPANSION_TOO_LARGE, message).at(place, "the limit is reached here")));
+            let message = format!(
+                "the expansion has more than {} tokens or {} MiB",
+                LIMITS.tokens,
+                LIMITS.expansion_bytes >> 20
+            );
+            return Err(Box::new(
+                Diagnostic::error(codes::EXPANSION_TOO_LARGE, message)
+                    .at(place, "the limit is reached here"),
+            ));
         }
         Ok(())
     }
@@ -109,16 +121,28 @@ impl<'g, 's> Expander<'g, 's> {
     /// Copies up to the next name of a macro.
     fn copy_plain(&mut self, input: &mut Input<'_>, out: &mut Vec<Tok>) {
         let defined = if self.in_condition { known::DEFINED } else { known::HASH };
-        let is_plain = |kind, symbol| kind != Kind::Identifier || (symbol != defined && !self.table.has(symbol));
+        let is_plain = |kind, symbol| {
+            kind != Kind::Identifier || (symbol != defined && !self.table.has(symbol))
+        };
         match input {
             Input::Source { module, at, end } => {
-                let tokens = &self.graph.modules[*module as usize].tokens[*at as usize..*end as usize];
-                let plain = tokens.iter().take_while(|token| is_plain(token.kind, token.symbol)).count();
-                out.extend(tokens[..plain].iter().zip(*at..).map(|(token, index)| Tok::copy(*module, index, token)));
+                let tokens =
+                    &self.graph.modules[*module as usize].tokens[*at as usize..*end as usize];
+                let plain =
+                    tokens.iter().take_while(|token| is_plain(token.kind, token.symbol)).count();
+                out.extend(
+                    tokens[..plain]
+                        .iter()
+                        .zip(*at..)
+                        .map(|(token, index)| Tok::copy(*module, index, token)),
+                );
                 *at += plain as u32;
             }
             Input::Tokens { tokens, at } => {
-                let plain = tokens[*at..].iter().take_while(|token| is_plain(token.kind, token.symbol)).count();
+                let plain = tokens[*at..]
+                    .iter()
+                    .take_while(|token| is_plain(token.kind, token.symbol))
+                    .count();
                 out.extend_from_slice(&tokens[*at..*at + plain]);
                 *at += plain;
             }
@@ -160,23 +184,33 @@ impl<'g, 's> Expander<'g, 's> {
 
     fn peek_input(&self, input: &Input<'_>) -> Option<Tok> {
         match *input {
-            Input::Source { module, at, end } if at < end => {
-                Some(Tok::copy(module, at, &self.graph.modules[module as usize].tokens[at as usize]))
-            }
+            Input::Source { module, at, end } if at < end => Some(Tok::copy(
+                module,
+                at,
+                &self.graph.modules[module as usize].tokens[at as usize],
+            )),
             Input::Source { .. } => None,
             Input::Tokens { tokens, at } => tokens.get(at).copied(),
         }
     }
 
     fn pop_finished(&mut self, floor: usize) {
-        while self.frames.len() > floor && self.frames.last().is_some_and(|frame| frame.at == frame.tokens.len()) {
+        while self.frames.len() > floor
+            && self.frames.last().is_some_and(|frame| frame.at == frame.tokens.len())
+        {
             if let Some(frame) = self.frames.pop() {
                 self.table.set_active(frame.name, false);
             }
         }
     }
 
-    fn token(&mut self, token: Tok, floor: usize, input: &mut Input<'_>, out: &mut Vec<Tok>) -> Result<(), Fatal> {
+    fn token(
+        &mut self,
+        token: Tok,
+        floor: usize,
+        input: &mut Input<'_>,
+        out: &mut Vec<Tok>,
+    ) -> Result<(), Fatal> {
         if token.kind != Kind::Identifier || token.painted {
             out.push(token);
             return Ok(());
@@ -187,7 +221,9 @@ impl<'g, 's> Expander<'g, 's> {
         }
         match self.table.get(token.symbol) {
             None => out.push(token),
-            Some(Meaning::User { definition, .. }) => return self.user(definition, token, floor, input, out),
+            Some(Meaning::User { definition, .. }) => {
+                return self.user(definition, token, floor, input, out);
+            }
             Some(meaning) => {
                 let (symbol, setting) = self.number(meaning, &token);
                 out.push(Tok { symbol, setting, kind: Kind::Number, expanded: true, ..token });
@@ -201,15 +237,24 @@ impl<'g, 's> Expander<'g, 's> {
             Meaning::Setting(setting) => (self.reads.symbol(setting), setting),
             Meaning::Number(symbol) => (symbol, NO_SETTING),
             Meaning::Line => {
-                let line = self.modules()[token.module as usize].line(token.start) as i64 + self.line_shift;
+                let line = self.modules()[token.module as usize].line(token.start) as i64
+                    + self.line_shift;
                 (self.table.spellings.intern(&line.to_string()), NO_SETTING)
             }
-            Meaning::File | Meaning::User { .. } => (self.table.spellings.intern(&self.file_number.to_string()), NO_SETTING),
+            Meaning::File | Meaning::User { .. } => {
+                (self.table.spellings.intern(&self.file_number.to_string()), NO_SETTING)
+            }
         }
     }
 
     /// `defined NAME` or `defined(NAME)`, unexpanded.
-    fn copy_defined(&mut self, token: Tok, floor: usize, input: &mut Input<'_>, out: &mut Vec<Tok>) {
+    fn copy_defined(
+        &mut self,
+        token: Tok,
+        floor: usize,
+        input: &mut Input<'_>,
+        out: &mut Vec<Tok>,
+    ) {
         out.push(token);
         let open = self.peek(floor, input).is_some_and(|token| token.symbol == known::OPEN);
         for _ in 0..if open { 3 } else { 1 } {
@@ -217,7 +262,14 @@ impl<'g, 's> Expander<'g, 's> {
         }
     }
 
-    fn user(&mut self, definition: &'g Macro, name: Tok, floor: usize, input: &mut Input<'_>, out: &mut Vec<Tok>) -> Result<(), Fatal> {
+    fn user(
+        &mut self,
+        definition: &'g Macro,
+        name: Tok,
+        floor: usize,
+        input: &mut Input<'_>,
+        out: &mut Vec<Tok>,
+    ) -> Result<(), Fatal> {
         let Some(parameters) = definition.parameters else {
             return self.replace(definition, name, name, &[]);
         };
@@ -226,10 +278,18 @@ impl<'g, 's> Expander<'g, 's> {
             return Ok(());
         }
         let Some((arguments, close)) = self.arguments(name, floor, input)? else {
-            self.call_error(name, definition, "is not closed before the next directive or the end of the file".into());
+            self.call_error(
+                name,
+                definition,
+                "is not closed before the next directive or the end of the file".into(),
+            );
             return Ok(());
         };
-        let given = if parameters == 0 && arguments.iter().all(Vec::is_empty) { 0 } else { arguments.len() };
+        let given = if parameters == 0 && arguments.iter().all(Vec::is_empty) {
+            0
+        } else {
+            arguments.len()
+        };
         if given != parameters {
             self.call_error(name, definition, format!("has {given} arguments, not {parameters}"));
             return Ok(());
@@ -239,12 +299,22 @@ impl<'g, 's> Expander<'g, 's> {
 
     fn call_error(&mut self, name: Tok, definition: &Macro, what: String) {
         let text = self.table.spellings.text(name.symbol);
-        let error = Diagnostic::error(codes::MACRO_ARGUMENTS, format!("the call of macro `{text}` {what}"));
-        self.errors.push(error.at(name.span(self.modules()), "called here").at(definition.name_span, "defined here"));
+        let error =
+            Diagnostic::error(codes::MACRO_ARGUMENTS, format!("the call of macro `{text}` {what}"));
+        self.errors.push(
+            error
+                .at(name.span(self.modules()), "called here")
+                .at(definition.name_span, "defined here"),
+        );
     }
 
     /// The arguments between the parentheses, and the closing one; `None` where that is missing.
-    fn arguments(&mut self, name: Tok, floor: usize, input: &mut Input<'_>) -> Result<Option<Call>, Fatal> {
+    fn arguments(
+        &mut self,
+        name: Tok,
+        floor: usize,
+        input: &mut Input<'_>,
+    ) -> Result<Option<Call>, Fatal> {
         self.take(floor, input);
         let mut arguments = vec![Vec::new()];
         let mut depth = 0usize;
@@ -273,15 +343,32 @@ impl<'g, 's> Expander<'g, 's> {
 
     fn too_deep(&self, token: &Tok) -> Diagnostic {
         let message = format!("macro calls nest deeper than {}", LIMITS.nesting);
-        Diagnostic::error(codes::NESTING_TOO_DEEP, message).at(token.span(self.modules()), "one too many")
+        Diagnostic::error(codes::NESTING_TOO_DEEP, message)
+            .at(token.span(self.modules()), "one too many")
     }
 
     /// Puts the macro's body, with its arguments, in front of what is still to be scanned.
-    fn replace(&mut self, definition: &'g Macro, name: Tok, close: Tok, arguments: &[Vec<Tok>]) -> Result<(), Fatal> {
-        let end = if close.module == name.module && close.end > name.end { close.end } else { name.end };
-        let site = Tok { end, before: NONE, after: NONE, expanded: true, setting: NO_SETTING, painted: false, ..name };
+    fn replace(
+        &mut self,
+        definition: &'g Macro,
+        name: Tok,
+        close: Tok,
+        arguments: &[Vec<Tok>],
+    ) -> Result<(), Fatal> {
+        let end =
+            if close.module == name.module && close.end > name.end { close.end } else { name.end };
+        let site = Tok {
+            end,
+            before: NONE,
+            after: NONE,
+            expanded: true,
+            setting: NO_SETTING,
+            painted: false,
+            ..name
+        };
         let mut tokens = self.substitute(definition, site, arguments)?;
-        let bytes = tokens.iter().map(|token| self.table.spellings.text(token.symbol).len() + 1).sum();
+        let bytes =
+            tokens.iter().map(|token| self.table.spellings.text(token.symbol).len() + 1).sum();
         self.spend(tokens.len() + 1, bytes, name.span(self.modules()))?;
         if let Some(first) = tokens.first_mut() {
             first.before = name.before;
@@ -295,7 +382,12 @@ impl<'g, 's> Expander<'g, 's> {
         Ok(())
     }
 
-    fn substitute(&mut self, definition: &'g Macro, site: Tok, arguments: &[Vec<Tok>]) -> Result<Vec<Tok>, Fatal> {
+    fn substitute(
+        &mut self,
+        definition: &'g Macro,
+        site: Tok,
+        arguments: &[Vec<Tok>],
+    ) -> Result<Vec<Tok>, Fatal> {
         let mut result = Vec::with_capacity(definition.body.len());
         let mut expanded: Vec<Option<Vec<Tok>>> = vec![None; arguments.len()];
         // Whether the left operand of a pending `##` has a token.
@@ -320,7 +412,12 @@ impl<'g, 's> Expander<'g, 's> {
         Ok(result)
     }
 
-    fn expanded<'a>(&mut self, cache: &'a mut Option<Vec<Tok>>, argument: &[Tok], site: &Tok) -> Result<&'a [Tok], Fatal> {
+    fn expanded<'a>(
+        &mut self,
+        cache: &'a mut Option<Vec<Tok>>,
+        argument: &[Tok],
+        site: &Tok,
+    ) -> Result<&'a [Tok], Fatal> {
         if cache.is_none() {
             let mut tokens = Vec::with_capacity(argument.len());
             self.depth += 1;
@@ -335,8 +432,18 @@ impl<'g, 's> Expander<'g, 's> {
     }
 
     /// Joins the last token of `left` with the first of `right` if asked to; what is left of `right`.
-    fn paste<'a>(&mut self, left: &mut Vec<Tok>, right: &'a [Tok], join: bool, site: &Tok) -> &'a [Tok] {
-        let (true, Some(last), Some((first, rest))) = (join, left.last().copied(), right.split_first()) else { return right };
+    fn paste<'a>(
+        &mut self,
+        left: &mut Vec<Tok>,
+        right: &'a [Tok],
+        join: bool,
+        site: &Tok,
+    ) -> &'a [Tok] {
+        let (true, Some(last), Some((first, rest))) =
+            (join, left.last().copied(), right.split_first())
+        else {
+            return right;
+        };
         for token in [&last, first] {
             if token.setting != NO_SETTING {
                 // The name that comes out depends on the value, so the value is asked for. A value
@@ -344,7 +451,11 @@ impl<'g, 's> Expander<'g, 's> {
                 let _ = self.reads.read(token.setting);
             }
         }
-        let text = format!("{}{}", self.table.spellings.text(last.symbol), self.table.spellings.text(first.symbol));
+        let text = format!(
+            "{}{}",
+            self.table.spellings.text(last.symbol),
+            self.table.spellings.text(first.symbol)
+        );
         match single_token(&text) {
             Some(kind) if !self.es => {
                 let symbol = self.table.spellings.intern(&text);
@@ -353,8 +464,15 @@ impl<'g, 's> Expander<'g, 's> {
                 rest
             }
             _ => {
-                let message = if self.es { "GLSL ES has no `##`".to_owned() } else { format!("`##` makes `{text}`, which is not a token") };
-                self.errors.push(Diagnostic::error(codes::BAD_PASTE, message).at(site.span(self.modules()), "in this expansion"));
+                let message = if self.es {
+                    "GLSL ES has no `##`".to_owned()
+                } else {
+                    format!("`##` makes `{text}`, which is not a token")
+                };
+                self.errors.push(
+                    Diagnostic::error(codes::BAD_PASTE, message)
+                        .at(site.span(self.modules()), "in this expansion"),
+                );
                 right
             }
         }
@@ -375,5 +493,7 @@ fn close_gap(gap: &mut Option<(usize, u32)>, out: &mut [Tok]) {
 /// Whether two macros are defined alike, so that the second definition changes nothing.
 pub fn same_definition(left: &Macro, right: &Macro) -> bool {
     let equal = |(left, right): (&BodyToken, &BodyToken)| left == right;
-    left.parameters == right.parameters && left.body.len() == right.body.len() && left.body.iter().zip(&right.body).all(equal)
+    left.parameters == right.parameters
+        && left.body.len() == right.body.len()
+        && left.body.iter().zip(&right.body).all(equal)
 }

@@ -35,7 +35,11 @@ pub fn split(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnostic> {
         if item[0].symbol != known::SEMICOLON {
             let (first, number) = (items.names.len(), items.list.len() as u32);
             let function = names(item, &mut |name| items.names.push((name, number)));
-            items.list.push(Item { tokens: start..end, function, always: items.names.len() == first });
+            items.list.push(Item {
+                tokens: start..end,
+                function,
+                always: items.names.len() == first,
+            });
         }
         start = end;
     }
@@ -54,7 +58,10 @@ fn end_of(tokens: &[Tok], start: usize) -> Result<usize, &Tok> {
     for (index, token) in tokens.iter().enumerate().skip(start) {
         match token.symbol {
             known::OPEN | known::OPEN_BRACKET | known::OPEN_BRACE => {
-                body |= depth == 0 && token.symbol == known::OPEN_BRACE && index > start && tokens[index - 1].symbol == known::CLOSE;
+                body |= depth == 0
+                    && token.symbol == known::OPEN_BRACE
+                    && index > start
+                    && tokens[index - 1].symbol == known::CLOSE;
                 depth += 1;
                 if depth > LIMITS.nesting {
                     return Err(token);
@@ -156,7 +163,9 @@ fn close_of(item: &[Tok], open: usize) -> usize {
     for (index, token) in item.iter().enumerate().skip(open) {
         match token.symbol {
             known::OPEN | known::OPEN_BRACKET | known::OPEN_BRACE => depth += 1,
-            known::CLOSE | known::CLOSE_BRACKET | known::CLOSE_BRACE => depth = depth.saturating_sub(1),
+            known::CLOSE | known::CLOSE_BRACKET | known::CLOSE_BRACE => {
+                depth = depth.saturating_sub(1)
+            }
             _ => {}
         }
         if depth == 0 {

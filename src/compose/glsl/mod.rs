@@ -4,6 +4,7 @@ mod condition;
 mod expand;
 mod gap;
 mod items;
+mod parts;
 mod preprocess;
 mod reach;
 mod reads;
@@ -11,7 +12,10 @@ mod table;
 mod token;
 mod write;
 
-use crate::compose::{Composed, Keep, Language, Options, Stage};
+use std::ops::Range;
+
+use crate::bundle::{Language, Stage};
+use crate::compose::{Composed, Keep, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::Settings;
 use crate::resolve::glsl::Graph;
@@ -25,20 +29,35 @@ use write::Writer;
 /// The settings are macros: `two_sided` is `TWO_SIDED` (1 or 0), `max_lights` is `MAX_LIGHTS`, and
 /// an enum axis `shadow` is `SHADOW`, with `SHADOW_NONE` and so on for the numbers of its values.
 /// Settings read are those that a condition evaluates and those whose value stands in the output.
-pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<Composed, Diagnostics> {
+pub fn compose(
+    graph: &Graph,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Composed, Diagnostics> {
     let stage = stage(graph, &options.keep)?;
     let preprocessed = preprocess(graph, settings)?;
     let items = items::split(&preprocessed.tokens, &graph.modules).map_err(|error| vec![error])?;
     let kept = reach::reach(&preprocessed.tokens, &items, &preprocessed.spellings, &options.keep)?;
-    let writer = write(graph, &preprocessed, &items, &kept, &options.keep);
+    let (writer, ranges) = write(graph, &preprocessed, &items, &kept, &options.keep);
     let (text, map) = (writer.text, writer.map);
+    let parts = parts::parts(&preprocessed, &items, &kept, ranges);
     let decisions = preprocessed.decisions.clone();
     let reads = reads(graph, preprocessed, &items, &kept)?;
-    Ok(Composed { language: Language::Glsl, stage: Some(stage), text, map, reads, warnings: Vec::new(), decisions })
+    Ok(Composed {
+        language: Language::Glsl,
+        stage: Some(stage),
+        text,
+        map,
+        parts,
+        reads,
+        warnings: Vec::new(),
+        decisions,
+    })
 }
 
 /// File name endings.
-const STAGES: &[(&str, Stage)] = &[("vert", Stage::Vertex), ("frag", Stage::Fragment), ("comp", Stage::Compute)];
+const STAGES: &[(&str, Stage)] =
+    &[("vert", Stage::Vertex), ("frag", Stage::Fragment), ("comp", Stage::Compute)];
 
 fn stage(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
     let name = graph.root.strip_suffix(".glsl").unwrap_or(&graph.root);
@@ -47,13 +66,22 @@ fn stage(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
         Some((_, stage)) => Ok(*stage),
         None if matches!(keep, Keep::Items(_)) => Ok(Stage::Fragment),
         None => Err(vec![
-            Diagnostic::error(codes::UNKNOWN_STAGE, format!("the name `{}` does not say for which stage it is", graph.root))
-                .note("help: end it in `.vert.glsl`, `.frag.glsl` or `.comp.glsl`"),
+            Diagnostic::error(
+                codes::UNKNOWN_STAGE,
+                format!("the name `{}` does not say for which stage it is", graph.root),
+            )
+            .note("help: end it in `.vert.glsl`, `.frag.glsl` or `.comp.glsl`"),
         ]),
     }
 }
 
-fn write<'a>(graph: &'a Graph, preprocessed: &'a Preprocessed<'a, '_>, items: &Items, kept: &[bool], keep: &Keep) -> Writer<'a> {
+fn write<'a>(
+    graph: &'a Graph,
+    preprocessed: &'a Preprocessed<'a, '_>,
+    items: &Items,
+    kept: &[bool],
+    keep: &Keep,
+) -> (Writer<'a>, Written) {
     let tokens: &[Tok] = &preprocessed.tokens;
     let mut writer = Writer::new(&graph.modules, &preprocessed.spellings, tokens.len() * 8);
     match preprocessed.version {
@@ -61,15 +89,32 @@ fn write<'a>(graph: &'a Graph, preprocessed: &'a Preprocessed<'a, '_>, items: &I
         None => writer.made("#version 450\n"),
     }
     preprocessed.header.iter().for_each(|line| writer.line(*line));
+    let mut written = Written { header: 0..writer.text.len(), items: Vec::new(), main: None };
     for (item, _) in items.list.iter().zip(kept).filter(|(_, kept)| **kept) {
         writer.made("\n");
+        let start = writer.text.len();
         writer.item(tokens, item);
+        written.items.push(start..writer.text.len());
     }
     let main = crate::parse::glsl::known::MAIN;
-    if matches!(keep, Keep::Items(_)) && !items.names.iter().any(|(name, item)| *name == main && kept[*item as usize]) {
+    if matches!(keep, Keep::Items(_))
+        && !items.names.iter().any(|(name, item)| *name == main && kept[*item as usize])
+    {
+        let start = writer.text.len();
         writer.made("\nvoid main() {}\n");
+        written.main = Some(start..writer.text.len());
     }
-    writer
+    (writer, written)
+}
+
+/// Bytes of what was written.
+struct Written {
+    /// The directives.
+    header: Range<usize>,
+    /// The kept items, in order.
+    items: Vec<Range<usize>>,
+    /// An entry point that the text needs and the author did not give.
+    main: Option<Range<usize>>,
 }
 
 /// Those of the conditions, then those whose values stand in the kept items.
@@ -82,10 +127,14 @@ fn reads(
     let Preprocessed { tokens, mut reads, .. } = preprocessed;
     let mut errors = Vec::new();
     for (item, _) in items.list.iter().zip(kept).filter(|(_, kept)| **kept) {
-        for token in tokens[item.tokens.clone()].iter().filter(|token| token.setting != NO_SETTING) {
+        for token in tokens[item.tokens.clone()].iter().filter(|token| token.setting != NO_SETTING)
+        {
             if let Err((name, value)) = reads.read(token.setting) {
                 let message = format!("`{value}` is not a declared value of `{name}`");
-                errors.push(Diagnostic::error(codes::BAD_SETTING, message).at(token.span(&graph.modules), "asked for here"));
+                errors.push(
+                    Diagnostic::error(codes::BAD_SETTING, message)
+                        .at(token.span(&graph.modules), "asked for here"),
+                );
             }
         }
     }

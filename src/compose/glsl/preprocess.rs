@@ -28,7 +28,10 @@ pub struct Preprocessed<'g, 's> {
 }
 
 /// Preprocesses the root of a graph; all errors that were found, at least one, otherwise.
-pub fn preprocess<'g, 's>(graph: &'g Graph, settings: &'s Settings) -> Result<Preprocessed<'g, 's>, Diagnostics> {
+pub fn preprocess<'g, 's>(
+    graph: &'g Graph,
+    settings: &'s Settings,
+) -> Result<Preprocessed<'g, 's>, Diagnostics> {
     let (number, es) = language(&graph.modules[0]);
     let mut reads = Reads::new(settings);
     let mut table = Table::new(&graph.symbols, number, es);
@@ -38,7 +41,14 @@ pub fn preprocess<'g, 's>(graph: &'g Graph, settings: &'s Settings) -> Result<Pr
         expander: Expander::new(graph, table, reads, es),
         open: vec![Open { module: 0, part: 0, line_shift: 0, file_number: 0, directive: None }],
         once: vec![false; graph.modules.len()],
-        tokens: Vec::with_capacity(graph.modules.iter().map(|module| module.tokens.len()).sum::<usize>().min(LIMITS.tokens)),
+        tokens: Vec::with_capacity(
+            graph
+                .modules
+                .iter()
+                .map(|module| module.tokens.len())
+                .sum::<usize>()
+                .min(LIMITS.tokens),
+        ),
         version: None,
         header: Vec::new(),
         decisions: Vec::new(),
@@ -47,7 +57,11 @@ pub fn preprocess<'g, 's>(graph: &'g Graph, settings: &'s Settings) -> Result<Pr
     state.run();
     let State { expander, tokens, version, header, decisions, .. } = state;
     let Expander { errors, reads, table, .. } = expander;
-    if errors.is_empty() { Ok(Preprocessed { tokens, version, header, reads, spellings: table.spellings, decisions }) } else { Err(errors) }
+    if errors.is_empty() {
+        Ok(Preprocessed { tokens, version, header, reads, spellings: table.spellings, decisions })
+    } else {
+        Err(errors)
+    }
 }
 
 /// Version and profile of the root file; 450 where it names none.
@@ -90,7 +104,8 @@ impl<'g> State<'g, '_> {
             };
             open.part += 1;
             let open = *open;
-            (self.expander.line_shift, self.expander.file_number) = (open.line_shift, open.file_number);
+            (self.expander.line_shift, self.expander.file_number) =
+                (open.line_shift, open.file_number);
             let before = self.expander.errors.len();
             let chain = self.open.len();
             let result = self.part(open, part);
@@ -122,7 +137,11 @@ impl<'g> State<'g, '_> {
     fn part(&mut self, open: Open, part: &'g Part) -> Result<(), Fatal> {
         match part {
             Part::Text(text) => {
-                let input = Input::Source { module: open.module as u32, at: text.tokens.start, end: text.tokens.end };
+                let input = Input::Source {
+                    module: open.module as u32,
+                    at: text.tokens.start,
+                    end: text.tokens.end,
+                };
                 self.expander.run(input, &mut self.tokens)
             }
             Part::Directive(directive, span) => self.directive(open, directive, *span),
@@ -134,7 +153,9 @@ impl<'g> State<'g, '_> {
             Directive::Include(index) => return self.include(open, *index, span),
             Directive::Define(definition) => self.define(definition),
             Directive::Undef(name) => self.expander.table.unset(*name),
-            Directive::If { .. } | Directive::Ifdef { .. } => return self.choose(open.module, open.part - 1),
+            Directive::If { .. } | Directive::Ifdef { .. } => {
+                return self.choose(open.module, open.part - 1);
+            }
             // These are reached from the branch before, which was active.
             Directive::Elif { end, .. } | Directive::Else { end } => self.jump(*end),
             Directive::Endif | Directive::Empty => {}
@@ -144,7 +165,9 @@ impl<'g> State<'g, '_> {
             Directive::Extension { name, line } => {
                 let name = self.graph.symbols.text(*name);
                 // Includes are resolved, so the output needs neither of the extensions for them.
-                if name != "GL_GOOGLE_include_directive" && name != "GL_ARB_shading_language_include" {
+                if name != "GL_GOOGLE_include_directive"
+                    && name != "GL_ARB_shading_language_include"
+                {
                     self.add_header(*line);
                 }
             }
@@ -164,12 +187,22 @@ impl<'g> State<'g, '_> {
     /// Goes on in the first branch whose condition holds. None is taken where a condition is
     /// wrong: what stands in the others would give errors that say nothing.
     fn choose(&mut self, module: usize, mut index: usize) -> Result<(), Fatal> {
-        while let Some(Part::Directive(directive, span)) = self.graph.modules[module].parts.get(index) {
+        while let Some(Part::Directive(directive, span)) =
+            self.graph.modules[module].parts.get(index)
+        {
             let (holds, next) = match directive {
-                Directive::If { condition, next } => (self.decide(module, condition.clone(), *span, false)?, *next),
-                Directive::Elif { condition, next, .. } => (self.decide(module, condition.clone(), *span, true)?, *next),
-                Directive::Ifdef { name: Ok(name), negated, next } => (Ok(self.expander.table.has(*name) != *negated), *next),
-                Directive::Ifdef { name: Err(error), next, .. } => (Err(vec![(**error).clone()]), *next),
+                Directive::If { condition, next } => {
+                    (self.decide(module, condition.clone(), *span, false)?, *next)
+                }
+                Directive::Elif { condition, next, .. } => {
+                    (self.decide(module, condition.clone(), *span, true)?, *next)
+                }
+                Directive::Ifdef { name: Ok(name), negated, next } => {
+                    (Ok(self.expander.table.has(*name) != *negated), *next)
+                }
+                Directive::Ifdef { name: Err(error), next, .. } => {
+                    (Err(vec![(**error).clone()]), *next)
+                }
                 _ => break,
             };
             match holds {
@@ -186,7 +219,13 @@ impl<'g> State<'g, '_> {
         Ok(())
     }
 
-    fn decide(&mut self, module: usize, condition: Range<u32>, span: Span, later: bool) -> Result<Result<bool, Diagnostics>, Fatal> {
+    fn decide(
+        &mut self,
+        module: usize,
+        condition: Range<u32>,
+        span: Span,
+        later: bool,
+    ) -> Result<Result<bool, Diagnostics>, Fatal> {
         let before = self.expander.reads.count;
         let outcome = self.evaluate(module, condition, span)?;
         if let (Ok(holds), true) = (&outcome, self.expander.reads.count > before) {
@@ -195,11 +234,19 @@ impl<'g> State<'g, '_> {
         Ok(outcome)
     }
 
-    fn evaluate(&mut self, module: usize, condition: Range<u32>, span: Span) -> Result<Result<bool, Diagnostics>, Fatal> {
+    fn evaluate(
+        &mut self,
+        module: usize,
+        condition: Range<u32>,
+        span: Span,
+    ) -> Result<Result<bool, Diagnostics>, Fatal> {
         let mut tokens = Vec::new();
         let before = self.expander.errors.len();
         self.expander.in_condition = true;
-        self.expander.run(Input::Source { module: module as u32, at: condition.start, end: condition.end }, &mut tokens)?;
+        self.expander.run(
+            Input::Source { module: module as u32, at: condition.start, end: condition.end },
+            &mut tokens,
+        )?;
         self.expander.in_condition = false;
         if self.expander.errors.len() > before {
             return Ok(Err(self.expander.errors.split_off(before)));
@@ -211,7 +258,9 @@ impl<'g> State<'g, '_> {
     fn skip_all(&mut self, mut next: usize) {
         let module = self.open.last().map_or(0, |open| open.module);
         let branch = self.graph.modules[module].parts.get(next);
-        if let Some(Part::Directive(Directive::Elif { end, .. } | Directive::Else { end }, _)) = branch {
+        if let Some(Part::Directive(Directive::Elif { end, .. } | Directive::Else { end }, _)) =
+            branch
+        {
             next = *end;
         }
         self.jump(next);
@@ -221,14 +270,26 @@ impl<'g> State<'g, '_> {
         let name = self.graph.symbols.text(definition.name);
         let error = match self.expander.table.get(definition.name) {
             None => None,
-            Some(Meaning::User { definition: earlier, .. }) if same_definition(earlier, definition) => return,
+            Some(Meaning::User { definition: earlier, .. })
+                if same_definition(earlier, definition) =>
+            {
+                return;
+            }
             Some(Meaning::User { definition: earlier, .. }) => {
-                let error = Diagnostic::error(codes::MACRO_REDEFINED, format!("the macro `{name}` is defined twice, differently"));
-                Some(error.at(definition.name_span, "defined again here").at(earlier.name_span, "defined first here"))
+                let error = Diagnostic::error(
+                    codes::MACRO_REDEFINED,
+                    format!("the macro `{name}` is defined twice, differently"),
+                );
+                Some(
+                    error
+                        .at(definition.name_span, "defined again here")
+                        .at(earlier.name_span, "defined first here"),
+                )
             }
             Some(_) => {
                 let message = format!("the macro `{name}` is defined by the composition already");
-                let error = Diagnostic::error(codes::MACRO_REDEFINED, message).at(definition.name_span, "defined again here");
+                let error = Diagnostic::error(codes::MACRO_REDEFINED, message)
+                    .at(definition.name_span, "defined again here");
                 return self.expander.errors.push(error);
             }
         };
@@ -237,17 +298,31 @@ impl<'g> State<'g, '_> {
     }
 
     fn author_error(&mut self, words: Span, directive: Span) {
-        let text = &self.graph.modules[self.open.last().map_or(0, |open| open.module)].text[words.range()];
-        let text = if words.end == directive.end && words.start > directive.start + 6 { text } else { "an `#error` without a message" };
-        self.expander.errors.push(Diagnostic::error(codes::ERROR_DIRECTIVE, text).at(directive, "refused here"));
+        let text =
+            &self.graph.modules[self.open.last().map_or(0, |open| open.module)].text[words.range()];
+        let text = if words.end == directive.end && words.start > directive.start + 6 {
+            text
+        } else {
+            "an `#error` without a message"
+        };
+        self.expander
+            .errors
+            .push(Diagnostic::error(codes::ERROR_DIRECTIVE, text).at(directive, "refused here"));
     }
 
     fn version(&mut self, open: Open, line: Span) {
-        let error = Diagnostic::error(codes::MISPLACED_VERSION, "`#version` must be the first line of the root file");
+        let error = Diagnostic::error(
+            codes::MISPLACED_VERSION,
+            "`#version` must be the first line of the root file",
+        );
         match self.version {
-            Some(first) => self.expander.errors.push(error.at(line, "a second one").at(first, "the first one")),
+            Some(first) => {
+                self.expander.errors.push(error.at(line, "a second one").at(first, "the first one"))
+            }
             // Its part was counted already.
-            None if open.module == 0 && open.part == 1 && self.open.len() == 1 => self.version = Some(line),
+            None if open.module == 0 && open.part == 1 && self.open.len() == 1 => {
+                self.version = Some(line)
+            }
             None => self.expander.errors.push(error.at(line, "not the first line")),
         }
     }
@@ -265,12 +340,22 @@ impl<'g> State<'g, '_> {
     /// `#line N` or `#line N FILE`, which say what `__LINE__` and `__FILE__` are from the next line on.
     fn line(&mut self, open: Open, tokens: Range<u32>, span: Span) -> Result<(), Fatal> {
         let mut expanded = Vec::new();
-        self.expander.run(Input::Source { module: open.module as u32, at: tokens.start, end: tokens.end }, &mut expanded)?;
-        let numbers: Option<Vec<i64>> =
-            expanded.iter().map(|token| self.expander.table.spellings.text(token.symbol).parse::<u32>().ok().map(i64::from)).collect();
-        let (Some([line, file @ ..]), Some(frame)) = (numbers.as_deref(), self.open.last_mut()) else {
+        self.expander.run(
+            Input::Source { module: open.module as u32, at: tokens.start, end: tokens.end },
+            &mut expanded,
+        )?;
+        let numbers: Option<Vec<i64>> = expanded
+            .iter()
+            .map(|token| {
+                self.expander.table.spellings.text(token.symbol).parse::<u32>().ok().map(i64::from)
+            })
+            .collect();
+        let (Some([line, file @ ..]), Some(frame)) = (numbers.as_deref(), self.open.last_mut())
+        else {
             let error = Diagnostic::error(codes::MALFORMED_DIRECTIVE, "`#line` needs a number");
-            self.expander.errors.push(error.at(span, "expected `#line NUMBER` or `#line NUMBER FILE`"));
+            self.expander
+                .errors
+                .push(error.at(span, "expected `#line NUMBER` or `#line NUMBER FILE`"));
             return Ok(());
         };
         frame.line_shift = line - 1 - self.graph.modules[open.module].line(span.start) as i64;
@@ -294,7 +379,13 @@ impl<'g> State<'g, '_> {
             return Err(Box::new(self.too_deep(module, place)));
         }
         self.expander.spend(0, self.graph.modules[module].text.len() + 1, place)?;
-        self.open.push(Open { module, part: 0, line_shift: 0, file_number: open.file_number, directive: Some(span) });
+        self.open.push(Open {
+            module,
+            part: 0,
+            line_shift: 0,
+            file_number: open.file_number,
+            directive: Some(span),
+        });
         self.check_module(module);
         Ok(())
     }
@@ -318,9 +409,13 @@ impl<'g> State<'g, '_> {
             return Diagnostic::error(codes::INCLUDE_TOO_DEEP, message).at(place, "one too many");
         };
         let chain = self.open[start..].iter().map(|open| open.module).chain([module]);
-        let names: Vec<String> = chain.map(|module| format!("`{}`", self.graph.paths[module])).collect();
-        Diagnostic::error(codes::INCLUDE_CYCLE, format!("files include each other without end: {}", names.join(" -> ")))
-            .at(place, "closes the circle")
-            .note("help: give the file an include guard or `#pragma once`")
+        let names: Vec<String> =
+            chain.map(|module| format!("`{}`", self.graph.paths[module])).collect();
+        Diagnostic::error(
+            codes::INCLUDE_CYCLE,
+            format!("files include each other without end: {}", names.join(" -> ")),
+        )
+        .at(place, "closes the circle")
+        .note("help: give the file an include guard or `#pragma once`")
     }
 }

@@ -9,7 +9,12 @@ use crate::parse::glsl::{Kind, Symbol, known};
 
 /// For each item whether it stays: what `keep` names, and all that it reaches by name.
 /// Overloads share a name, so they stay together.
-pub fn reach(tokens: &[Tok], items: &Items, spellings: &Spellings<'_>, keep: &Keep) -> Result<Vec<bool>, Diagnostics> {
+pub fn reach(
+    tokens: &[Tok],
+    items: &Items,
+    spellings: &Spellings<'_>,
+    keep: &Keep,
+) -> Result<Vec<bool>, Diagnostics> {
     if *keep == Keep::All {
         return Ok(vec![true; items.list.len()]);
     }
@@ -28,15 +33,28 @@ pub fn reach(tokens: &[Tok], items: &Items, spellings: &Spellings<'_>, keep: &Ke
     Ok(search.kept)
 }
 
-fn start_at(search: &mut Search, items: &Items, spellings: &Spellings<'_>, names: &[String]) -> Result<(), Diagnostics> {
+fn start_at(
+    search: &mut Search,
+    items: &Items,
+    spellings: &Spellings<'_>,
+    names: &[String],
+) -> Result<(), Diagnostics> {
     let mut errors = Vec::new();
     for name in names {
         match spellings.find(name).filter(|symbol| search.declares(*symbol)) {
             Some(symbol) => search.name(symbol),
             None => {
-                let functions = items.names.iter().filter(|(_, item)| items.list[*item as usize].function);
+                let functions =
+                    items.names.iter().filter(|(_, item)| items.list[*item as usize].function);
                 let known = functions.map(|(symbol, _)| spellings.text(*symbol));
-                errors.push(Diagnostic::error(codes::UNKNOWN_ITEM, format!("there is no function `{name}`")).suggest(name, known));
+                errors.push(
+                    Diagnostic::error(
+                        codes::MISSING_ITEM,
+                        format!("there is no function `{name}`"),
+                    )
+                    .about_item(name)
+                    .suggest(name, known),
+                );
             }
         }
     }

@@ -68,7 +68,11 @@ impl<'s> Reads<'s> {
     /// The settings that were read, in order, with their values.
     pub fn finish(self) -> Vec<(String, Setting)> {
         let entries = &self.entries;
-        self.order.iter().map(|index| &entries[usize::from(*index)]).map(|entry| (entry.name.to_owned(), entry.setting.clone())).collect()
+        self.order
+            .iter()
+            .map(|index| &entries[usize::from(*index)])
+            .map(|entry| (entry.name.to_owned(), entry.setting.clone()))
+            .collect()
     }
 }
 
@@ -76,6 +80,11 @@ fn value(settings: &Settings, name: &str, setting: &Setting) -> Option<i64> {
     match setting {
         Setting::Bool(value) => Some(i64::from(*value)),
         Setting::Int(value) => Some(*value),
-        Setting::Name(chosen) => settings.enums.get(name)?.iter().position(|value| value == chosen).map(|index| index as i64),
+        Setting::Name(chosen) => settings
+            .enums
+            .get(name)?
+            .iter()
+            .position(|value| value == chosen)
+            .map(|index| index as i64),
     }
 }

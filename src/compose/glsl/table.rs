@@ -77,7 +77,8 @@ impl<'g> Table<'g> {
     /// The predefined macros of a language version.
     pub fn new(symbols: &'g Symbols, version: u32, es: bool) -> Self {
         let spellings = Spellings::new(symbols);
-        let mut table = Self { spellings, by_symbol: vec![UNDEFINED; symbols.count()], meanings: Vec::new() };
+        let mut table =
+            Self { spellings, by_symbol: vec![UNDEFINED; symbols.count()], meanings: Vec::new() };
         table.set(known::MACRO_LINE, Meaning::Line);
         table.set(known::MACRO_FILE, Meaning::File);
         table.number("__VERSION__", i64::from(version));
@@ -138,7 +139,9 @@ impl<'g> Table<'g> {
     /// Enters or leaves the expansion of an author's macro.
     pub fn set_active(&mut self, name: Symbol, now: bool) {
         let index = self.by_symbol.get(name.index()).copied().unwrap_or(UNDEFINED);
-        if let Some(Meaning::User { active, .. }) = (index as usize).checked_sub(1).and_then(|index| self.meanings.get_mut(index)) {
+        if let Some(Meaning::User { active, .. }) =
+            (index as usize).checked_sub(1).and_then(|index| self.meanings.get_mut(index))
+        {
             *active = now;
         }
     }

@@ -19,7 +19,12 @@ pub struct Writer<'a> {
 impl<'a> Writer<'a> {
     /// Nothing written.
     pub fn new(modules: &'a [Module], spellings: &'a Spellings<'a>, capacity: usize) -> Self {
-        Self { modules, spellings, text: String::with_capacity(capacity), map: SourceMap::default() }
+        Self {
+            modules,
+            spellings,
+            text: String::with_capacity(capacity),
+            map: SourceMap::default(),
+        }
     }
 
     /// Text of the composer's own.
@@ -61,14 +66,18 @@ impl<'a> Writer<'a> {
     /// How many tokens from the first on can be copied as one piece of their file.
     fn run(&self, tokens: &[Tok]) -> usize {
         let first = &tokens[0];
-        let is_spliced = (first.end - first.start) as usize != self.spellings.text(first.symbol).len();
+        let is_spliced =
+            (first.end - first.start) as usize != self.spellings.text(first.symbol).len();
         if !first.is_plain() || is_spliced {
             return 1;
         }
         let source = &self.modules[first.module as usize].tokens;
         let follows = |pair: &[Tok]| {
             let next = &pair[1];
-            next.is_plain() && next.module == pair[0].module && next.before == pair[0].after + 1 && source[next.before as usize].clean
+            next.is_plain()
+                && next.module == pair[0].module
+                && next.before == pair[0].after + 1
+                && source[next.before as usize].clean
         };
         1 + tokens.windows(2).take_while(|pair| follows(pair)).count()
     }
@@ -92,7 +101,8 @@ impl<'a> Writer<'a> {
         let module = &self.modules[tok.module as usize];
         let token = &module.tokens[tok.before as usize];
         let part = if token.first_of_part { module.text_part(tok.before) } else { None };
-        let previous = || tok.before.checked_sub(1).map_or(0, |previous| module.tokens[previous as usize].end);
+        let previous =
+            || tok.before.checked_sub(1).map_or(0, |previous| module.tokens[previous as usize].end);
         let start = part.map_or_else(previous, |part| part.bytes.start);
         Span { source: module.source, start, end: token.start }
     }
@@ -122,7 +132,10 @@ impl<'a> Writer<'a> {
         let after_item = !module.tokens[first.before as usize].first_of_part;
         let text = self.source(first, span);
         let kept = gap::attached(text, after_item);
-        self.pieces(&[(Span { start: span.start + kept.start as u32, ..span }, &text[kept])], false);
+        self.pieces(
+            &[(Span { start: span.start + kept.start as u32, ..span }, &text[kept])],
+            false,
+        );
     }
 
     fn trailing(&mut self, last: &Tok) {
@@ -133,7 +146,10 @@ impl<'a> Writer<'a> {
         let text = self.source(last, span);
         let kept = gap::trailing(text);
         if !kept.is_empty() {
-            self.pieces(&[(Span { end: span.start + kept.end as u32, ..span }, &text[kept])], false);
+            self.pieces(
+                &[(Span { end: span.start + kept.end as u32, ..span }, &text[kept])],
+                false,
+            );
             self.text.truncate(self.text.trim_end().len());
         }
     }
@@ -154,7 +170,10 @@ impl<'a> Writer<'a> {
         let text = self.source(left, after);
         // Between the two stands a directive, so each is at the edge of its part; or else a macro
         // that expanded to nothing.
-        let ends_part = self.modules[left.module as usize].tokens.get(left.after as usize + 1).is_none_or(|next| next.first_of_part);
+        let ends_part = self.modules[left.module as usize]
+            .tokens
+            .get(left.after as usize + 1)
+            .is_none_or(|next| next.first_of_part);
         let left = (after, if ends_part { text } else { "" });
         self.pieces(&[left, (before, self.source(right, before))], ends_part);
     }
@@ -178,13 +197,23 @@ impl<'a> Writer<'a> {
                         newlines += piece.newlines();
                         indent = indentation(space);
                     }
-                    Piece::Space(space) => indent = if newlines > 0 { indentation(space) } else { " " },
+                    Piece::Space(space) => {
+                        indent = if newlines > 0 { indentation(space) } else { " " }
+                    }
                     Piece::Comment(comment) => {
                         self.space(newlines, indent);
                         let start = span.start + at as u32;
-                        self.segment(Some(Span { start, end: start + comment.len() as u32, ..*span }), true);
+                        self.segment(
+                            Some(Span { start, end: start + comment.len() as u32, ..*span }),
+                            true,
+                        );
                         self.text.push_str(comment.trim_end());
-                        (newlines, indent) = (usize::from(comment.starts_with("//") && at + comment.len() == text.len()), "");
+                        (newlines, indent) = (
+                            usize::from(
+                                comment.starts_with("//") && at + comment.len() == text.len(),
+                            ),
+                            "",
+                        );
                     }
                 }
                 any = true;
@@ -210,5 +239,7 @@ fn glues(left: Option<char>, right: Option<char>) -> bool {
     let (Some(left), Some(right)) = (left, right) else { return false };
     let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let number = |c: char| c.is_ascii_digit() || c == '.';
-    (word(left) && word(right)) || (number(left) && number(right)) || ("+-*/%<>=!&|^#".contains(left) && "+-*/<>=&|^#".contains(right))
+    (word(left) && word(right))
+        || (number(left) && number(right))
+        || ("+-*/%<>=!&|^#".contains(left) && "+-*/<>=&|^#".contains(right))
 }

@@ -7,7 +7,12 @@ use crate::resolve::wesl::Graph;
 
 /// Reports circles among constants, overrides, aliases, structs and variables: one error each.
 pub fn check(graph: &Graph, reached: &Reached, errors: &mut Diagnostics) {
-    let mut edges: Vec<Dependency> = reached.dependencies.iter().filter(|edge| !is_function(graph, edge.used)).copied().collect();
+    let mut edges: Vec<Dependency> = reached
+        .dependencies
+        .iter()
+        .filter(|edge| !is_function(graph, edge.used))
+        .copied()
+        .collect();
     edges.sort_by_key(|edge| (edge.user, edge.span));
     let mut done = vec![false; reached.len()];
     for start in 0..edges.len() {
@@ -19,13 +24,22 @@ pub fn check(graph: &Graph, reached: &Reached, errors: &mut Diagnostics) {
 
 fn is_function(graph: &Graph, thing: Thing) -> bool {
     match thing {
-        Thing::Item { node, item } => graph.nodes[node as usize].module.items[item as usize].kind == ItemKind::Function,
+        Thing::Item { node, item } => {
+            graph.nodes[node as usize].module.items[item as usize].kind == ItemKind::Function
+        }
         Thing::Constant(_) => true,
     }
 }
 
 /// Depth first from the user of the edge `start`, without recursion.
-fn search(graph: &Graph, reached: &Reached, edges: &[Dependency], start: usize, done: &mut [bool], errors: &mut Diagnostics) {
+fn search(
+    graph: &Graph,
+    reached: &Reached,
+    edges: &[Dependency],
+    start: usize,
+    done: &mut [bool],
+    errors: &mut Diagnostics,
+) {
     let first = |thing: Thing| edges.partition_point(|edge| edge.user < thing);
     // Things on the path, each with the next of its edges to follow.
     let mut path: Vec<(Thing, usize)> = vec![(edges[start].user, first(edges[start].user))];
@@ -57,7 +71,8 @@ const TOLD: usize = 12;
 fn report(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) -> Diagnostic {
     let text = |thing: Thing| graph.names.text(name_of(graph, thing));
     let first = text(circle[0].0);
-    let mut chain: Vec<String> = circle.iter().take(TOLD).map(|(thing, _)| format!("`{}`", text(*thing))).collect();
+    let mut chain: Vec<String> =
+        circle.iter().take(TOLD).map(|(thing, _)| format!("`{}`", text(*thing))).collect();
     if circle.len() > TOLD {
         chain.push(format!("{} more", circle.len() - TOLD));
     }

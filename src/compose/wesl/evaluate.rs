@@ -32,7 +32,14 @@ pub struct Evaluator<'a> {
 impl<'a> Evaluator<'a> {
     pub fn new(graph: &'a Graph, settings: &'a Settings) -> Self {
         let states = vec![State::Unknown; graph.totals.conditions as usize];
-        Self { graph, settings, states, reads: Vec::new(), errors: Vec::new(), unknown: HashSet::new() }
+        Self {
+            graph,
+            settings,
+            states,
+            reads: Vec::new(),
+            errors: Vec::new(),
+            unknown: HashSet::new(),
+        }
     }
 
     /// Whether a condition of a node's module holds.
@@ -96,7 +103,11 @@ impl<'a> Evaluator<'a> {
     /// The default of a setting whose number is left open. Not recorded: the text is the same
     /// whatever the value.
     pub fn open(&self, name: Name) -> Option<Setting> {
-        self.settings.open.get(self.graph.names.text(name)).filter(|value| !matches!(value, Setting::Name(_))).cloned()
+        self.settings
+            .open
+            .get(self.graph.names.text(name))
+            .filter(|value| !matches!(value, Setting::Name(_)))
+            .cloned()
     }
 
     /// The value of a setting, recorded; an error at `span` if it has none.
@@ -104,8 +115,11 @@ impl<'a> Evaluator<'a> {
         let text = self.graph.names.text(name);
         let Some(value) = self.settings.values.get(text) else {
             if self.unknown.insert(name) {
-                let error = Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value")).at(span, "asked for here");
-                self.errors.push(error.suggest(text, self.settings.values.keys().map(String::as_str)));
+                let error =
+                    Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value"))
+                        .at(span, "asked for here");
+                self.errors
+                    .push(error.suggest(text, self.settings.values.keys().map(String::as_str)));
             }
             return None;
         };
@@ -143,7 +157,8 @@ impl<'a> Evaluator<'a> {
             Some(value) => {
                 let text = self.graph.names.text(name);
                 let error =
-                    Diagnostic::error(codes::WRONG_KIND, format!("`{text}` is not boolean")).at(span, format!("its value is `{value}`"));
+                    Diagnostic::error(codes::WRONG_KIND, format!("`{text}` is not boolean"))
+                        .at(span, format!("its value is `{value}`"));
                 self.errors.push(error.note(format!("help: compare it: `{text} == {value}`")));
                 false
             }
@@ -173,9 +188,12 @@ impl<'a> Evaluator<'a> {
             (Operand::Integer(value, _), Operand::Name(axis, at)) => {
                 self.compare_integer(node, *axis, at, |axis| ordered(*value, operator, axis))
             }
-            (Operand::Name(axis, at), Operand::Name(..)) => Err(self.undeclared(*axis, self.span(node, at), "enum")),
+            (Operand::Name(axis, at), Operand::Name(..)) => {
+                Err(self.undeclared(*axis, self.span(node, at), "enum"))
+            }
             (Operand::Integer(..), Operand::Integer(..)) => {
-                Err(Diagnostic::error(codes::WRONG_KIND, "a comparison without an axis").at(self.span(node, range), "always the same"))
+                Err(Diagnostic::error(codes::WRONG_KIND, "a comparison without an axis")
+                    .at(self.span(node, range), "always the same"))
             }
         }
     }
@@ -191,17 +209,24 @@ impl<'a> Evaluator<'a> {
         let span = self.span(node, axis_at);
         let known = self.settings.enums.get(axis_text).map_or(&[][..], Vec::as_slice);
         if !known.iter().any(|known| known == text) {
-            return Err(Diagnostic::error(codes::UNKNOWN_VALUE, format!("the axis `{axis_text}` has no value `{text}`"))
-                .at(self.span(node, value_at), "not one of its values")
-                .note(format!("its values are {}", quoted(known)))
-                .suggest(text, known.iter().map(String::as_str)));
+            return Err(Diagnostic::error(
+                codes::UNKNOWN_VALUE,
+                format!("the axis `{axis_text}` has no value `{text}`"),
+            )
+            .at(self.span(node, value_at), "not one of its values")
+            .note(format!("its values are {}", quoted(known)))
+            .suggest(text, known.iter().map(String::as_str)));
         }
         let Some(chosen) = self.setting(axis, span) else { return Ok(false) };
         let equal = chosen.to_string() == text;
         match operator {
             Comparison::Equal => Ok(equal),
             Comparison::NotEqual => Ok(!equal),
-            _ => Err(Diagnostic::error(codes::WRONG_KIND, format!("the values of `{axis_text}` have no order")).at(span, "an enum axis")),
+            _ => Err(Diagnostic::error(
+                codes::WRONG_KIND,
+                format!("the values of `{axis_text}` have no order"),
+            )
+            .at(span, "an enum axis")),
         }
     }
 
@@ -220,7 +245,8 @@ impl<'a> Evaluator<'a> {
             Some(Setting::Int(value)) => Ok(answer(value)),
             Some(value) => {
                 let message = format!("`{}` is not an integer", self.graph.names.text(axis));
-                Err(Diagnostic::error(codes::WRONG_KIND, message).at(span, format!("its value is `{value}`")))
+                Err(Diagnostic::error(codes::WRONG_KIND, message)
+                    .at(span, format!("its value is `{value}`")))
             }
             None => Ok(false),
         }
@@ -228,10 +254,14 @@ impl<'a> Evaluator<'a> {
 
     fn undeclared(&self, axis: Name, span: Span, kind: &str) -> Diagnostic {
         let text = self.graph.names.text(axis);
-        let declared = self.settings.enums.keys().chain(&self.settings.integers).map(String::as_str);
-        Diagnostic::error(codes::WRONG_KIND, format!("`{text}` is compared but is not a declared {kind} axis"))
-            .at(span, "only declared axes can be compared")
-            .suggest(text, declared)
+        let declared =
+            self.settings.enums.keys().chain(&self.settings.integers).map(String::as_str);
+        Diagnostic::error(
+            codes::WRONG_KIND,
+            format!("`{text}` is compared but is not a declared {kind} axis"),
+        )
+        .at(span, "only declared axes can be compared")
+        .suggest(text, declared)
     }
 }
 

@@ -26,8 +26,15 @@ struct Condition {
 impl<'g> Outcomes<'g> {
     pub fn new(graph: &'g Graph) -> Self {
         let own = graph.nodes.iter().enumerate().filter(|(_, node)| node.package == 0);
-        let conditions = own.flat_map(|(index, node)| conditions(&node.module).map(move |id| (index as u32, id)));
-        let open = conditions.map(|(node, id)| Condition { node, id, held: false, failed: false, unknown: false });
+        let conditions = own
+            .flat_map(|(index, node)| conditions(&node.module).map(move |id| (index as u32, id)));
+        let open = conditions.map(|(node, id)| Condition {
+            node,
+            id,
+            held: false,
+            failed: false,
+            unknown: false,
+        });
         Self { graph, open: open.collect() }
     }
 
@@ -47,31 +54,40 @@ impl<'g> Outcomes<'g> {
             evaluator.errors.clear();
         }
         let graph = self.graph;
-        self.open.retain(|condition| !condition.unknown && !(condition.held && (condition.failed || is_later(graph, condition))));
+        self.open.retain(|condition| {
+            !condition.unknown
+                && !(condition.held && (condition.failed || is_later(graph, condition)))
+        });
     }
 
     /// Where the conditions stand that are watched.
     pub fn places(&self) -> impl Iterator<Item = Span> {
         self.graph.nodes.iter().filter(|node| node.package == 0).flat_map(|node| {
-            let conditions = conditions(&node.module).filter_map(|id| node.module.conditions[id as usize].expression);
+            let conditions = conditions(&node.module)
+                .filter_map(|id| node.module.conditions[id as usize].expression);
             conditions.filter_map(|expression| place(&node.module, expression))
         })
     }
 
     /// A warning for each condition that never had another outcome.
     pub fn warnings(&self) -> impl Iterator<Item = Diagnostic> {
-        self.open.iter().filter(|condition| condition.held || condition.failed).filter_map(|condition| {
-            let module = &self.graph.nodes[condition.node as usize].module;
-            let span = place(module, module.conditions[condition.id as usize].expression?)?;
-            Some(constant(span, condition.held))
-        })
+        self.open.iter().filter(|condition| condition.held || condition.failed).filter_map(
+            |condition| {
+                let module = &self.graph.nodes[condition.node as usize].module;
+                let span = place(module, module.conditions[condition.id as usize].expression?)?;
+                Some(constant(span, condition.held))
+            },
+        )
     }
 }
 
 /// The warning about a condition that has always come out one way.
 pub fn constant(span: Span, held: bool) -> Diagnostic {
     let word = if held { "true" } else { "false" };
-    let warning = Diagnostic::warning(codes::CONSTANT_CONDITION, format!("this condition is {word} in every permutation"));
+    let warning = Diagnostic::warning(
+        codes::CONSTANT_CONDITION,
+        format!("this condition is {word} in every permutation"),
+    );
     warning.at(span, if held { "decides nothing" } else { "what it guards is in no permutation" })
 }
 
@@ -82,8 +98,9 @@ fn is_later(graph: &Graph, condition: &Condition) -> bool {
 
 /// Conditions that ask for something: `@if(true)` is meant as it stands.
 fn conditions(module: &Module) -> impl Iterator<Item = ConditionId> {
-    let asks =
-        |(_, condition): &(usize, &crate::parse::wesl::Condition)| condition.expression.is_some_and(|root| place(module, root).is_some());
+    let asks = |(_, condition): &(usize, &crate::parse::wesl::Condition)| {
+        condition.expression.is_some_and(|root| place(module, root).is_some())
+    };
     module.conditions.iter().enumerate().filter(asks).map(|(id, _)| id as ConditionId)
 }
 

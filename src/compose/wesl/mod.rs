@@ -11,7 +11,8 @@ mod write;
 
 use std::collections::BTreeSet;
 
-use super::{Composed, Language, Options};
+use super::{Composed, Options};
+use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::Settings;
 use crate::resolve::wesl::Graph;
@@ -19,7 +20,11 @@ use crate::resolve::wesl::Graph;
 /// Composes the graph's root module for the settings. Pure: same input, same bytes.
 ///
 /// Errors carry the chain of imports that led to the module they are in.
-pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<Composed, Diagnostics> {
+pub fn compose(
+    graph: &Graph,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Composed, Diagnostics> {
     let mut evaluator = evaluate::Evaluator::new(graph, settings);
     let reached = reach::reach(graph, &mut evaluator, options);
     cycle::check(graph, &reached, &mut evaluator.errors);
@@ -28,15 +33,27 @@ pub fn compose(graph: &Graph, settings: &Settings, options: &Options) -> Result<
     if !evaluator.errors.is_empty() {
         return Err(traced(graph, evaluator.errors));
     }
-    let warnings = reached.nodes().flat_map(|node| graph.nodes[node as usize].lints.iter().cloned()).collect();
-    let (text, map) = output;
-    Ok(Composed { language: Language::Wesl, stage: None, text, map, reads: evaluator.reads, warnings, decisions: Vec::new() })
+    let warnings =
+        reached.nodes().flat_map(|node| graph.nodes[node as usize].lints.iter().cloned()).collect();
+    let (text, map, parts) = output;
+    Ok(Composed {
+        language: Language::Wesl,
+        stage: None,
+        text,
+        map,
+        parts,
+        reads: evaluator.reads,
+        warnings,
+        decisions: Vec::new(),
+    })
 }
 
 fn traced(graph: &Graph, errors: Diagnostics) -> Diagnostics {
     // What several uses run into is told once.
     let mut known = BTreeSet::new();
-    let is_new = |error: &Diagnostic| error.labels.first().is_none_or(|label| known.insert((error.code.name, label.span)));
+    let is_new = |error: &Diagnostic| {
+        error.labels.first().is_none_or(|label| known.insert((error.code.name, label.span)))
+    };
     let new = errors.into_iter().filter(is_new).collect::<Diagnostics>();
     new.into_iter().map(|error| graph.traced(error)).collect()
 }

@@ -37,7 +37,12 @@ enum Hold {
 }
 
 /// Chooses the names of all that is kept.
-pub fn choose(graph: &Graph, reached: &Reached, options: &Options, errors: &mut Diagnostics) -> Renames {
+pub fn choose(
+    graph: &Graph,
+    reached: &Reached,
+    options: &Options,
+    errors: &mut Diagnostics,
+) -> Renames {
     let things = kept(graph, reached);
     let mut table = Table::new(graph, reached, &things);
     let mut renames = Renames { indices: vec![0; reached.len()], texts: Vec::new() };
@@ -52,7 +57,9 @@ pub fn choose(graph: &Graph, reached: &Reached, options: &Options, errors: &mut 
             errors.extend(taken.then(|| captured(graph, *thing)));
             continue;
         }
-        let twin = table.loose[name.0 as usize].replace(*thing).filter(|twin| node_of(*twin) == node_of(*thing));
+        let twin = table.loose[name.0 as usize]
+            .replace(*thing)
+            .filter(|twin| node_of(*twin) == node_of(*thing));
         errors.extend(twin.map(|twin| conflict(graph, *thing, twin)));
         let mangled = options.mangle == Mangle::Underscore && hold == Hold::Loose;
         if mangled || taken || table.claims[name.0 as usize] > 1 {
@@ -67,11 +74,14 @@ pub fn choose(graph: &Graph, reached: &Reached, options: &Options, errors: &mut 
 
 /// Everything with a name, in the order of the output.
 fn kept(graph: &Graph, reached: &Reached) -> Vec<Thing> {
-    let constants = (0..graph.constants.len() as u32).map(Thing::Constant).filter(|thing| reached.has(*thing));
+    let constants =
+        (0..graph.constants.len() as u32).map(Thing::Constant).filter(|thing| reached.has(*thing));
     let mut things: Vec<Thing> = constants.collect();
     for node in reached.nodes() {
         let items = &graph.nodes[node as usize].module.items;
-        let named = reached.items(node, items.len()).filter(|item| items[*item as usize].kind != ItemKind::ConstAssert);
+        let named = reached
+            .items(node, items.len())
+            .filter(|item| items[*item as usize].kind != ItemKind::ConstAssert);
         things.extend(named.map(|item| Thing::Item { node, item }));
     }
     things
@@ -104,8 +114,14 @@ struct Table<'a> {
 impl<'a> Table<'a> {
     fn new(graph: &'a Graph, reached: &'a Reached, things: &[Thing]) -> Self {
         let count = graph.names.len();
-        let mut table =
-            Self { graph, reached, claims: vec![0; count], free: vec![false; count], firm: vec![None; count], loose: vec![None; count] };
+        let mut table = Self {
+            graph,
+            reached,
+            claims: vec![0; count],
+            free: vec![false; count],
+            firm: vec![None; count],
+            loose: vec![None; count],
+        };
         for thing in things {
             table.claims[name_of(graph, *thing).0 as usize] += 1;
         }
@@ -130,13 +146,17 @@ impl<'a> Table<'a> {
 
     fn is_taken(&self, text: &str) -> bool {
         self.graph.names.find(text).is_some_and(|name| {
-            self.claims[name.0 as usize] > 0 || self.free[name.0 as usize] || self.reached.nodes().any(|node| self.is_local(node, name))
+            self.claims[name.0 as usize] > 0
+                || self.free[name.0 as usize]
+                || self.reached.nodes().any(|node| self.is_local(node, name))
         })
     }
 
     fn is_local(&self, node: u32, name: Name) -> bool {
         let items = &self.graph.nodes[node as usize].module.items;
-        self.reached.items(node, items.len()).any(|item| items[item as usize].locals.binary_search(&name).is_ok())
+        self.reached
+            .items(node, items.len())
+            .any(|item| items[item as usize].locals.binary_search(&name).is_ok())
     }
 }
 
@@ -177,13 +197,25 @@ fn conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
         true => (codes::DUPLICATE_ITEM, format!("`{name}` is declared twice")),
         false => (codes::NAME_CONFLICT, format!("two things must both be named `{name}`")),
     };
-    declared(graph, other, declared(graph, thing, Diagnostic::error(code, message), "this one"), "and this one")
+    declared(
+        graph,
+        other,
+        declared(graph, thing, Diagnostic::error(code, message), "this one"),
+        "and this one",
+    )
 }
 
 fn captured(graph: &Graph, thing: Thing) -> Diagnostic {
     let name = graph.names.text(name_of(graph, thing));
-    let message = format!("`{name}` must keep its name, but something else that is kept means another thing by it");
-    declared(graph, thing, Diagnostic::error(codes::NAME_CONFLICT, message), "an entry point or an override")
+    let message = format!(
+        "`{name}` must keep its name, but something else that is kept means another thing by it"
+    );
+    declared(
+        graph,
+        thing,
+        Diagnostic::error(codes::NAME_CONFLICT, message),
+        "an entry point or an override",
+    )
 }
 
 fn declared(graph: &Graph, thing: Thing, error: Diagnostic, label: &str) -> Diagnostic {

@@ -103,7 +103,8 @@ pub fn reach(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Options) ->
         dependencies: Vec::new(),
         free: Vec::new(),
     };
-    let mut walk = Walk { graph, evaluator, all: options.keep == Keep::All, reached, queue: Vec::new() };
+    let mut walk =
+        Walk { graph, evaluator, all: options.keep == Keep::All, reached, queue: Vec::new() };
     walk.node(0);
     match &options.keep {
         Keep::EntryPoints => walk.entry_points(),
@@ -140,13 +141,19 @@ impl Walk<'_, '_, '_> {
 
     fn named(&mut self, name: &str) {
         let set = self.graph.names.find(name).and_then(|name| self.graph.nodes[0].sets.get(&name));
-        let kept = set.is_some_and(|set| set.iter().fold(false, |any, item| self.item_if(0, *item) | any));
+        let kept =
+            set.is_some_and(|set| set.iter().fold(false, |any, item| self.item_if(0, *item) | any));
         if !kept {
             let root = &self.graph.nodes[0];
             let known = root.module.items.iter().map(|item| self.graph.names.text(item.name));
-            let message = format!("`{}` has no item `{name}`{}", root.label, if set.is_some() { " in this permutation" } else { "" });
+            let message = format!(
+                "`{}` has no item `{name}`{}",
+                root.label,
+                if set.is_some() { " in this permutation" } else { "" }
+            );
             let code = if set.is_some() { codes::DISABLED_ITEM } else { codes::MISSING_ITEM };
-            self.evaluator.errors.push(Diagnostic::error(code, message).suggest(name, known));
+            let error = Diagnostic::error(code, message).about_item(name).suggest(name, known);
+            self.evaluator.errors.push(error);
         }
     }
 
@@ -177,10 +184,18 @@ impl Walk<'_, '_, '_> {
     fn constant(&mut self, index: u32) {
         let constant = &self.graph.constants[index as usize];
         let open = self.evaluator.open(constant.name);
-        let Some(value) = open.clone().or_else(|| self.evaluator.setting(constant.name, constant.span)) else { return };
+        let Some(value) =
+            open.clone().or_else(|| self.evaluator.setting(constant.name, constant.span))
+        else {
+            return;
+        };
         if let Setting::Name(value) = &value {
-            let message = format!("`{}` is an enum axis and has no constant", self.graph.names.text(constant.name));
-            let error = Diagnostic::error(codes::WRONG_KIND, message).at(constant.span, format!("its value is `{value}`"));
+            let message = format!(
+                "`{}` is an enum axis and has no constant",
+                self.graph.names.text(constant.name)
+            );
+            let error = Diagnostic::error(codes::WRONG_KIND, message)
+                .at(constant.span, format!("its value is `{value}`"));
             self.evaluator.errors.push(error.note("help: choose code with `@if(axis == value)`"));
         }
         self.reached.constants[index as usize] = Some(match (open, &value) {
@@ -222,10 +237,17 @@ impl Walk<'_, '_, '_> {
             }
         });
         for (reference, range) in uses {
-            let Meaning::Thing(used) = self.meaning(node, reference, module.span(range.clone())) else { continue };
+            let Meaning::Thing(used) = self.meaning(node, reference, module.span(range.clone()))
+            else {
+                continue;
+            };
             self.keep(used);
             if item.kind != ItemKind::Function {
-                self.reached.dependencies.push(Dependency { user, used, span: module.span(range.clone()) });
+                self.reached.dependencies.push(Dependency {
+                    user,
+                    used,
+                    span: module.span(range.clone()),
+                });
             }
             let name = name_of(graph, used);
             let written = &module.text[range.start as usize..range.end as usize];
@@ -258,8 +280,14 @@ impl Walk<'_, '_, '_> {
                     return Meaning::Free;
                 }
                 Target::Module => {
-                    let error = Diagnostic::error(codes::NOT_AN_ITEM, "a module is not a value, a function or a type").at(span, "a module");
-                    self.evaluator.errors.push(error.note("help: name one of its items: `module::item`"));
+                    let error = Diagnostic::error(
+                        codes::NOT_AN_ITEM,
+                        "a module is not a value, a function or a type",
+                    )
+                    .at(span, "a module");
+                    self.evaluator
+                        .errors
+                        .push(error.note("help: name one of its items: `module::item`"));
                     return Meaning::Free;
                 }
                 Target::Items { node: other, name } => match self.chosen(other, name) {
@@ -281,7 +309,11 @@ impl Walk<'_, '_, '_> {
                 continue;
             }
             if let Some(first) = chosen {
-                let message = format!("`{}` is declared twice in `{}`", self.graph.names.text(name), here.label);
+                let message = format!(
+                    "`{}` is declared twice in `{}`",
+                    self.graph.names.text(name),
+                    here.label
+                );
                 let first: &crate::parse::wesl::Item = &here.module.items[first as usize];
                 self.evaluator.errors.push(
                     Diagnostic::error(codes::DUPLICATE_ITEM, message)
@@ -296,12 +328,20 @@ impl Walk<'_, '_, '_> {
     }
 
     /// No candidate is left: the name is predeclared, or the use is an error.
-    fn nothing(&mut self, node: u32, reference: u32, span: Span, disabled: &[(u32, Name)]) -> Meaning {
+    fn nothing(
+        &mut self,
+        node: u32,
+        reference: u32,
+        span: Span,
+        disabled: &[(u32, Name)],
+    ) -> Meaning {
         let graph = self.graph;
         let here = &graph.nodes[node as usize];
         let mut imports: &[usize] = &[];
         let text = match &here.module.references[reference as usize] {
-            Reference::Name(name) if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&graph.names.text(*name)) => {
+            Reference::Name(name)
+                if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&graph.names.text(*name)) =>
+            {
                 self.reached.free.push(*name);
                 return Meaning::Free;
             }
@@ -309,18 +349,28 @@ impl Walk<'_, '_, '_> {
                 imports = here.aliases.get(name).map_or(&[], Vec::as_slice);
                 graph.names.text(*name)
             }
-            Reference::Path(path) => path.segments.last().map_or("", |name| graph.names.text(*name)),
+            Reference::Path(path) => {
+                path.segments.last().map_or("", |name| graph.names.text(*name))
+            }
         };
         let message = format!("`{text}` exists but is disabled by its condition");
         let mut error = Diagnostic::error(codes::DISABLED_ITEM, message).at(span, "used here");
         for (other, name) in disabled {
             let module = &graph.nodes[*other as usize].module;
             for item in graph.nodes[*other as usize].sets.get(name).into_iter().flatten() {
-                error = error.at(module.span(module.items[*item as usize].name_range.clone()), "not in this permutation");
+                error = error.at(
+                    module.span(module.items[*item as usize].name_range.clone()),
+                    "not in this permutation",
+                );
             }
         }
-        for import in imports.iter().map(|index| &here.module.imports[*index]).filter(|import| import.condition.is_some()) {
-            error = error.at(here.module.span(import.alias_range.clone()), "imported under a condition");
+        for import in imports
+            .iter()
+            .map(|index| &here.module.imports[*index])
+            .filter(|import| import.condition.is_some())
+        {
+            error = error
+                .at(here.module.span(import.alias_range.clone()), "imported under a condition");
         }
         self.evaluator.errors.push(error);
         Meaning::Free

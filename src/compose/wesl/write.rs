@@ -5,15 +5,29 @@ use std::ops::Range;
 use super::evaluate::Evaluator;
 use super::naming::Renames;
 use super::reach::{Meaning, Reached, Thing};
-use crate::compose::{Segment, SourceMap};
+use crate::compose::{Part, PartKind, Segment, SourceMap};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{Directive, Event, Module, Name};
+use crate::parse::wesl::{Directive, Event, ItemKind, Module, Name};
 use crate::resolve::wesl::Graph;
 use crate::source::{LIMITS, Span};
 
-/// Writes what is kept, with the map back.
-pub fn write(graph: &Graph, reached: &Reached, names: &Renames, evaluator: &mut Evaluator<'_>) -> (String, SourceMap) {
-    let mut writer = Writer { graph, reached, names, text: String::with_capacity(16 << 10), map: SourceMap::default(), copied: None };
+/// Writes what is kept, with the map back and the declarations.
+pub fn write(
+    graph: &Graph,
+    reached: &Reached,
+    names: &Renames,
+    evaluator: &mut Evaluator<'_>,
+) -> (String, SourceMap, Vec<Part>) {
+    let mut writer = Writer {
+        graph,
+        reached,
+        names,
+        text: String::with_capacity(16 << 10),
+        map: SourceMap::default(),
+        copied: None,
+        parts: Vec::with_capacity(64),
+        numbers: vec![u32::MAX; reached.len()],
+    };
     writer.directives(evaluator);
     writer.constants();
     for node in reached.nodes() {
@@ -23,7 +37,8 @@ pub fn write(graph: &Graph, reached: &Reached, names: &Renames, evaluator: &mut 
         let message = format!("the composed text has more than {} bytes", LIMITS.expansion_bytes);
         evaluator.errors.push(Diagnostic::error(codes::OUTPUT_TOO_LARGE, message));
     }
-    (writer.text, writer.map)
+    let parts = writer.parts();
+    (writer.text, writer.map, parts)
 }
 
 struct Writer<'a> {
@@ -34,6 +49,10 @@ struct Writer<'a> {
     map: SourceMap,
     /// Where the last copied text ended, while nothing else followed it.
     copied: Option<Span>,
+    /// What was written so far. Uses are indices into the tables over all things.
+    parts: Vec<Part>,
+    /// By thing: its number among the parts.
+    numbers: Vec<u32>,
 }
 
 impl Writer<'_> {
@@ -51,7 +70,11 @@ impl Writer<'_> {
         }
         let span = module.span(range);
         if self.copied.is_none_or(|last| last.source != span.source || last.end != span.start) {
-            self.map.push(Segment { start: self.text.len() as u32, span: Some(span), verbatim: true });
+            self.map.push(Segment {
+                start: self.text.len() as u32,
+                span: Some(span),
+                verbatim: true,
+            });
         }
         self.copied = Some(span);
         self.text.push_str(&module.text[span.range()]);
@@ -73,13 +96,17 @@ impl Writer<'_> {
     fn directives(&mut self, evaluator: &mut Evaluator<'_>) {
         let mut seen: Vec<(Name, Vec<Name>)> = Vec::new();
         let graph = self.graph;
-        let nodes: Vec<u32> = std::iter::once(0).chain(self.reached.nodes().filter(|node| *node != 0)).collect();
+        let nodes: Vec<u32> =
+            std::iter::once(0).chain(self.reached.nodes().filter(|node| *node != 0)).collect();
         for node in nodes {
             let module = &graph.nodes[node as usize].module;
             for directive in &module.directives {
-                let holds = directive.condition.is_none_or(|condition| evaluator.holds(node, condition));
+                let holds =
+                    directive.condition.is_none_or(|condition| evaluator.holds(node, condition));
                 if holds && is_new(&mut seen, directive) {
+                    let start = self.text.len();
                     self.copy(module, directive.range.clone());
+                    self.part(PartKind::Directive, Vec::new(), start);
                     self.own("\n");
                 }
             }
@@ -98,10 +125,15 @@ impl Writer<'_> {
             self.own("// constants\n\n");
         }
         for (_, index) in kept {
-            let name = self.names.text(graph, self.reached, Thing::Constant(index));
+            let thing = Thing::Constant(index);
+            let name = self.names.text(graph, self.reached, thing);
             let Some((keyword, rest)) = &self.reached.constants[index as usize] else { continue };
             let line = format!("{keyword} {name}{rest};\n");
+            let kind = if *keyword == "const" { PartKind::Constant } else { PartKind::Override };
+            self.numbers[self.reached.index(thing)] = self.parts.len() as u32;
+            let start = self.text.len();
             self.own(&line);
+            self.part(kind, vec![name.to_owned()], start);
         }
     }
 
@@ -133,20 +165,60 @@ impl Writer<'_> {
         let graph = self.graph;
         let module = &graph.nodes[node as usize].module;
         let item = &module.items[index as usize];
-        let mut at = item.range.start;
+        let own = Thing::Item { node, item: index };
+        let (mut at, start_of_part) = (item.range.start, self.text.len());
+        let (mut uses, mut aliases) = (Vec::new(), Vec::new());
         evaluator.live(node, &item.events, |_, event| match event {
             Event::Cut { start, end } | Event::Node { start, end, .. } => {
                 self.copy(module, at..start);
                 at = at.max(end);
             }
-            Event::Definition { start, end } => self.name(module, Thing::Item { node, item: index }, &mut at, start..end),
+            Event::Definition { start, end } => self.name(module, own, &mut at, start..end),
             Event::Use { reference, start, end, .. } => {
                 if let Meaning::Thing(thing) = self.reached.meaning(graph, node, reference) {
+                    uses.push(self.reached.index(thing) as u32);
+                    let before = self.text.len() + start.saturating_sub(at) as usize;
                     self.name(module, thing, &mut at, start..end);
+                    if self.is_alias(thing) {
+                        let name = self.names.text(graph, self.reached, thing);
+                        let range = before..before + name.len();
+                        aliases.push((range, self.reached.index(thing) as u32));
+                    }
                 }
             }
         });
         self.copy(module, at..item.range.end);
+        self.numbers[self.reached.index(own)] = self.parts.len() as u32;
+        let name = match item.kind {
+            ItemKind::ConstAssert => Vec::new(),
+            _ => vec![self.names.text(graph, self.reached, own).to_owned()],
+        };
+        self.part(part_kind(item.kind), name, start_of_part);
+        if let Some(part) = self.parts.last_mut() {
+            (part.uses, part.aliases) = (uses, aliases);
+        }
+    }
+
+    fn is_alias(&self, thing: Thing) -> bool {
+        matches!(thing, Thing::Item { node, item }
+            if self.graph.nodes[node as usize].module.items[item as usize].kind == ItemKind::Alias)
+    }
+
+    fn part(&mut self, kind: PartKind, names: Vec<String>, start: usize) {
+        let range = start..self.text.len();
+        self.parts.push(Part { kind, names, range, uses: Vec::new(), aliases: Vec::new() });
+    }
+
+    /// The parts, whose uses become numbers of parts now that all are written.
+    fn parts(&mut self) -> Vec<Part> {
+        let mut parts = std::mem::take(&mut self.parts);
+        for part in &mut parts {
+            part.uses.iter_mut().for_each(|thing| *thing = self.numbers[*thing as usize]);
+            part.uses.sort_unstable();
+            part.uses.dedup();
+            part.aliases.iter_mut().for_each(|(_, thing)| *thing = self.numbers[*thing as usize]);
+        }
+        parts
     }
 
     /// A name: part of the text around it, if it is written as it was.
@@ -161,12 +233,28 @@ impl Writer<'_> {
     }
 }
 
+fn part_kind(kind: ItemKind) -> PartKind {
+    match kind {
+        ItemKind::Function => PartKind::Function,
+        ItemKind::Struct => PartKind::Struct,
+        ItemKind::Const => PartKind::Constant,
+        ItemKind::Override => PartKind::Override,
+        ItemKind::Var => PartKind::Variable,
+        ItemKind::Alias => PartKind::Alias,
+        ItemKind::ConstAssert => PartKind::Assertion,
+    }
+}
+
 /// Whether a directive says something no earlier one does.
 fn is_new(seen: &mut Vec<(Name, Vec<Name>)>, directive: &Directive) -> bool {
     let known = match directive.keyword {
-        Name::DIAGNOSTIC => seen.iter().any(|(keyword, names)| *keyword == directive.keyword && *names == directive.names),
+        Name::DIAGNOSTIC => seen
+            .iter()
+            .any(|(keyword, names)| *keyword == directive.keyword && *names == directive.names),
         keyword => {
-            let enabled = |name: &Name| seen.iter().any(|(known, names)| *known == keyword && names.contains(name));
+            let enabled = |name: &Name| {
+                seen.iter().any(|(known, names)| *known == keyword && names.contains(name))
+            };
             directive.names.iter().all(enabled)
         }
     };

@@ -60,14 +60,20 @@ pub fn refuse(module: &Module) -> Result<(), Diagnostic> {
 }
 
 fn refusal(name: &str) -> Diagnostic {
-    Diagnostic::error(codes::DEPENDENT_OVERRIDE, format!("the default of override `{name}` depends on another override"))
-        .note("help: compute it where it is used: `let x = ...;` in a function may use any override")
+    Diagnostic::error(
+        codes::DEPENDENT_OVERRIDE,
+        format!("the default of override `{name}` depends on another override"),
+    )
+    .note("help: compute it where it is used: `let x = ...;` in a function may use any override")
 }
 
 fn dependent(module: &Module) -> impl Iterator<Item = (&str, naga::Span)> {
     let overrides = module.overrides.iter();
-    let computed = overrides.filter(|(_, found)| found.init.is_some_and(|init| literal(module, init).is_none()));
-    computed.map(|(handle, found)| (found.name.as_deref().unwrap_or("without a name"), module.overrides.get_span(handle)))
+    let computed = overrides
+        .filter(|(_, found)| found.init.is_some_and(|init| literal(module, init).is_none()));
+    computed.map(|(handle, found)| {
+        (found.name.as_deref().unwrap_or("without a name"), module.overrides.get_span(handle))
+    })
 }
 
 /// A number, itself or by the name of a constant.
@@ -75,7 +81,9 @@ pub fn literal(module: &Module, expression: Handle<Expression>) -> Option<Litera
     match module.global_expressions[expression] {
         Expression::Literal(literal) => Some(literal),
         // Constants come before those that use them.
-        Expression::Constant(constant) => literal_before(module, module.constants[constant].init, expression),
+        Expression::Constant(constant) => {
+            literal_before(module, module.constants[constant].init, expression)
+        }
         Expression::ZeroValue(ty) => match module.types[ty].inner {
             TypeInner::Scalar(scalar) => Literal::zero(scalar),
             _ => None,
@@ -84,7 +92,11 @@ pub fn literal(module: &Module, expression: Handle<Expression>) -> Option<Litera
     }
 }
 
-fn literal_before(module: &Module, expression: Handle<Expression>, user: Handle<Expression>) -> Option<Literal> {
+fn literal_before(
+    module: &Module,
+    expression: Handle<Expression>,
+    user: Handle<Expression>,
+) -> Option<Literal> {
     if expression < user { literal(module, expression) } else { None }
 }
 
@@ -94,34 +106,53 @@ pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, Stri
     let opens = opens(source.module)?;
     Some(opened(source, &opens).and_then(|(module, info)| {
         let point = module.entry_points.get(source.index).ok_or("the entry point was lost")?;
-        let source = Source { module: &module, info: &info, stage: source.stage, entry: &point.name, index: source.index };
+        let source = Source {
+            module: &module,
+            info: &info,
+            stage: source.stage,
+            entry: &point.name,
+            index: source.index,
+        };
         finish((writer.write)(&source)?, &opens, writer.target)
     }))
 }
 
 fn finish(mut emitted: Emitted, opens: &[Open], target: Target) -> Result<Emitted, String> {
     // A variable that the entry point does not use is not written.
-    let choices =
-        if target == Target::SPIRV { spirv::open(&mut emitted.bytes, opens)? } else { text::open(&mut emitted.bytes, opens, target)? };
+    let choices = if target == Target::SPIRV {
+        spirv::open(&mut emitted.bytes, opens)?
+    } else {
+        text::open(&mut emitted.bytes, opens, target)?
+    };
     emitted.native.choices = choices;
     Ok(emitted)
 }
 
 fn choice(open: &Open, id: bool) -> Choice {
-    Choice { name: open.name.clone(), id: id.then_some(open.id), symbol: (!id).then(|| open.symbol()) }
+    Choice {
+        name: open.name.clone(),
+        id: id.then_some(open.id),
+        symbol: (!id).then(|| open.symbol()),
+    }
 }
 
 fn opens(module: &Module) -> Option<Vec<Open>> {
-    let mut taken: Vec<u32> = module.overrides.iter().filter_map(|(_, found)| found.id).map(u32::from).collect();
+    let mut taken: Vec<u32> =
+        module.overrides.iter().filter_map(|(_, found)| found.id).map(u32::from).collect();
     module.overrides.iter().map(|(_, found)| open(module, found, &mut taken)).collect()
 }
 
 fn open(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open> {
     let name = found.name.clone()?;
-    let TypeInner::Scalar(Scalar { kind, width: 1 | 4 }) = module.types[found.ty].inner else { return None };
+    let TypeInner::Scalar(Scalar { kind, width: 1 | 4 }) = module.types[found.ty].inner else {
+        return None;
+    };
     let (bits, text) = match literal(module, found.init?)? {
         Literal::Bool(value) => (u32::from(value), value.to_string()),
-        Literal::I32(value) => (value.cast_unsigned(), if value == i32::MIN { "(-2147483647 - 1)".to_owned() } else { value.to_string() }),
+        Literal::I32(value) => (
+            value.cast_unsigned(),
+            if value == i32::MIN { "(-2147483647 - 1)".to_owned() } else { value.to_string() },
+        ),
         Literal::U32(value) => (value, format!("{value}u")),
         Literal::F32(value) => (value.to_bits(), format!("{value:?}")),
         _ => return None,
@@ -131,26 +162,41 @@ fn open(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open>
         None => (0..).find(|id| !taken.contains(id))?,
     };
     taken.push(id);
-    Some(Open { variable: format!("lamplight_{}_open", name.trim_matches('_')), name, kind, id, bits, text })
+    Some(Open {
+        variable: format!("lamplight_{}_open", name.trim_matches('_')),
+        name,
+        kind,
+        id,
+        bits,
+        text,
+    })
 }
 
 /// The module with variables for its overrides: through WGSL, where that is a change of one word.
-fn opened(source: &Source<'_>, opens: &[Open]) -> Result<(Module, naga::valid::ModuleInfo), String> {
+fn opened(
+    source: &Source<'_>,
+    opens: &[Open],
+) -> Result<(Module, naga::valid::ModuleInfo), String> {
     let mut named = source.module.clone();
     for ((_, found), open) in named.overrides.iter_mut().zip(opens) {
         found.name = Some(open.variable.clone());
         found.id = None;
     }
-    let text = write_string(&named, source.info, WriterFlags::empty()).map_err(|error| error.to_string())?;
+    let text = write_string(&named, source.info, WriterFlags::empty())
+        .map_err(|error| error.to_string())?;
     let text: Vec<String> = text.lines().map(variable).collect();
-    let mut module = naga::front::wgsl::parse_str(&text.join("\n")).map_err(|error| error.to_string())?;
+    let mut module =
+        naga::front::wgsl::parse_str(&text.join("\n")).map_err(|error| error.to_string())?;
     for (point, original) in module.entry_points.iter_mut().zip(&source.module.entry_points) {
         point.name.clone_from(&original.name);
     }
-    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(&module).map_err(|error| error.to_string())?;
+    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES)
+        .validate(&module)
+        .map_err(|error| error.to_string())?;
     Ok((module, info))
 }
 
 fn variable(line: &str) -> String {
-    line.strip_prefix("override ").map_or_else(|| line.to_owned(), |rest| format!("var<private> {rest}"))
+    line.strip_prefix("override ")
+        .map_or_else(|| line.to_owned(), |rest| format!("var<private> {rest}"))
 }

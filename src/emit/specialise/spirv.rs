@@ -9,8 +9,8 @@ use naga::ScalarKind;
 
 use super::{Open, choice};
 use crate::bundle::Choice;
+use crate::emit::spirv::{self, HEADER_WORDS, instructions};
 
-const HEADER_WORDS: usize = 5;
 const OP_NAME: u32 = 5;
 const OP_TYPE_POINTER: u32 = 32;
 const OP_SPEC_CONSTANT_TRUE: u32 = 48;
@@ -26,7 +26,7 @@ const SPEC_ID: u32 = 1;
 
 /// Opens the module's variables; those it has.
 pub fn open(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> {
-    let words: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
+    let words = spirv::words(bytes);
     let variables = variables(&words, opens)?;
     let mut out = words.get(..HEADER_WORDS).ok_or("the module is too short")?.to_vec();
     let mut pointees = BTreeMap::new();
@@ -34,11 +34,15 @@ pub fn open(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> 
     for instruction in instructions(&words) {
         let operation = instruction[0] & 0xffff;
         if !decorated && OP_TYPES.contains(&operation) {
-            variables.iter().for_each(|(id, open)| out.extend([operator(OP_DECORATE, 4), *id, SPEC_ID, open.id]));
+            variables.iter().for_each(|(id, open)| {
+                out.extend([operator(OP_DECORATE, 4), *id, SPEC_ID, open.id])
+            });
             decorated = true;
         }
         match (operation, instruction) {
-            (OP_TYPE_POINTER, [_, pointer, _, pointee]) => drop(pointees.insert(*pointer, *pointee)),
+            (OP_TYPE_POINTER, [_, pointer, _, pointee]) => {
+                pointees.insert(*pointer, *pointee);
+            }
             (OP_VARIABLE, [_, pointer, id, ..]) if variables.contains_key(id) => {
                 let ty = *pointees.get(pointer).ok_or("a pointer has no type")?;
                 constant(&mut out, ty, *id, variables[id]);
@@ -53,7 +57,8 @@ pub fn open(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> 
         out.extend_from_slice(instruction);
     }
     *bytes = out.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let written = opens.iter().filter(|open| variables.values().any(|found| found.name == open.name));
+    let written =
+        opens.iter().filter(|open| variables.values().any(|found| found.name == open.name));
     Ok(written.map(|open| choice(open, true)).collect())
 }
 
@@ -72,7 +77,11 @@ fn variables<'a>(words: &[u32], opens: &'a [Open]) -> Result<BTreeMap<u32, &'a O
         if let [operation, id, name @ ..] = instruction
             && operation & 0xffff == OP_NAME
         {
-            let name: Vec<u8> = name.iter().flat_map(|word| word.to_le_bytes()).take_while(|byte| *byte != 0).collect();
+            let name: Vec<u8> = name
+                .iter()
+                .flat_map(|word| word.to_le_bytes())
+                .take_while(|byte| *byte != 0)
+                .collect();
             let found = opens.iter().find(|open| open.variable.as_bytes() == name);
             if let Some(open) = found
                 && variables.insert(*id, open).is_some()
@@ -82,17 +91,6 @@ fn variables<'a>(words: &[u32], opens: &'a [Open]) -> Result<BTreeMap<u32, &'a O
         }
     }
     Ok(variables)
-}
-
-/// Every instruction after the header.
-fn instructions(words: &[u32]) -> impl Iterator<Item = &[u32]> {
-    let mut rest = words.get(HEADER_WORDS..).unwrap_or_default();
-    std::iter::from_fn(move || {
-        let length = (*rest.first()? >> 16) as usize;
-        let (instruction, after) = rest.split_at_checked(length.max(1))?;
-        rest = after;
-        Some(instruction)
-    })
 }
 
 fn operator(operation: u32, words: u32) -> u32 {

@@ -4,6 +4,7 @@ use naga::ScalarKind;
 
 use super::{Open, choice};
 use crate::bundle::{Choice, Target};
+use crate::emit::is_header_line;
 
 /// Opens the variables that the text declares.
 pub fn open(bytes: &mut Vec<u8>, opens: &[Open], target: Target) -> Result<Vec<Choice>, String> {
@@ -12,14 +13,23 @@ pub fn open(bytes: &mut Vec<u8>, opens: &[Open], target: Target) -> Result<Vec<C
     let mut choices = Vec::new();
     let mut declared = Vec::new();
     for open in opens {
-        let mut found = lines.iter_mut().filter_map(|line| Some((initialiser(line, &open.variable)?, line)));
+        let mut found =
+            lines.iter_mut().filter_map(|line| Some((initialiser(line, &open.variable)?, line)));
         let Some((start, line)) = found.next() else { continue };
         if found.next().is_some() {
             return Err(format!("`{}` is declared twice", open.variable));
         }
-        let value = if target == Target::MSL { value_name(open) } else { format!("{}({})", name(open.kind), open.symbol()) };
+        let value = if target == Target::MSL {
+            value_name(open)
+        } else {
+            format!("{}({})", name(open.kind), open.symbol())
+        };
         *line = format!("{}= {value};", &line[..start]);
-        declared.extend(if target == Target::MSL { function_constant(open) } else { definition(open) });
+        declared.extend(if target == Target::MSL {
+            function_constant(open)
+        } else {
+            definition(open)
+        });
         choices.push(choice(open, target == Target::MSL));
     }
     if !declared.is_empty() {
@@ -35,30 +45,37 @@ fn initialiser(line: &str, variable: &str) -> Option<usize> {
     let (before, _) = line.split_once('=')?;
     let mut words = before.split_whitespace();
     let last = words.next_back()?;
-    let typed = words.next_back().is_some_and(|word| ["bool", "int", "uint", "float"].contains(&word));
+    let typed =
+        words.next_back().is_some_and(|word| ["bool", "int", "uint", "float"].contains(&word));
     (last == variable && typed && line.ends_with(';')).then_some(before.len())
 }
 
 /// After what must come first: `#version`, extensions and precisions, or Metal's own headers.
 fn first_line(lines: &[String], target: Target) -> usize {
-    let is_first = |line: &String| {
-        let starts = ["#", "//", "precision ", "using "];
-        line.is_empty() || starts.iter().any(|start| line.starts_with(start))
-    };
-    if target == Target::HLSL { 0 } else { lines.iter().take_while(|line| is_first(line)).count() }
+    match target {
+        Target::HLSL => 0,
+        _ => lines.iter().take_while(|line| is_header_line(line)).count(),
+    }
 }
 
 /// The host defines the macro, or the default holds.
 fn definition(open: &Open) -> Vec<String> {
     let symbol = open.symbol();
-    vec![format!("#ifndef {symbol}"), format!("#define {symbol} {}", open.text), "#endif".to_owned()]
+    vec![
+        format!("#ifndef {symbol}"),
+        format!("#define {symbol} {}", open.text),
+        "#endif".to_owned(),
+    ]
 }
 
 fn function_constant(open: &Open) -> Vec<String> {
     let (symbol, ty, value) = (open.symbol(), name(open.kind), value_name(open));
     vec![
         format!("constant {ty} {symbol} [[function_constant({})]];", open.id),
-        format!("constant {ty} {value} = is_function_constant_defined({symbol}) ? {symbol} : {};", open.text),
+        format!(
+            "constant {ty} {value} = is_function_constant_defined({symbol}) ? {symbol} : {};",
+            open.text
+        ),
     ]
 }
 

@@ -5,14 +5,25 @@
 
 use std::collections::BTreeMap;
 
-use naga::back::msl::{BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string};
+use naga::back::msl::{
+    BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string,
+};
 
-use crate::bundle::{Kind, Target};
+use crate::bundle::{BufferSizes, Kind, Target};
 use crate::emit::slots::{Numbering, assign, native};
 use crate::emit::{Emitted, Entry, Source};
 
-pub const TARGET: Entry =
-    Entry { target: Target::MSL, extension: "metal", binary: false, about: "Metal Shading Language 2.0 (macOS 10.13, iOS 11)", write };
+pub const TARGET: Entry = Entry {
+    target: Target::MSL,
+    extension: "metal",
+    binary: false,
+    about: "Metal Shading Language 2.0 (macOS 10.13, iOS 11)",
+    write,
+};
+
+/// Metal cannot tell the length of a buffer: naga asks for it in a buffer of lengths, here the
+/// last of the 31.
+const SIZES_BUFFER: u8 = 30;
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let options = Options {
@@ -22,21 +33,50 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         force_loop_bounding: false,
         ..Options::default()
     };
-    let pipeline = PipelineOptions { entry_point: Some((source.stage, source.entry.to_owned())), ..PipelineOptions::default() };
-    let (text, info) = write_string(source.module, source.info, &options, &pipeline).map_err(|error| error.to_string())?;
-    let name = info.entry_point_names.into_iter().next().ok_or("no entry point was written")?.map_err(|error| error.to_string())?;
-    Ok(Emitted { bytes: text.into_bytes(), native: native(source, &name, Numbering::PerKind) })
+    let pipeline = PipelineOptions {
+        entry_point: Some((source.stage, source.entry.to_owned())),
+        ..PipelineOptions::default()
+    };
+    let (text, info) = write_string(source.module, source.info, &options, &pipeline)
+        .map_err(|error| error.to_string())?;
+    let name = info
+        .entry_point_names
+        .into_iter()
+        .next()
+        .ok_or("no entry point was written")?
+        .map_err(|error| error.to_string())?;
+    let mut native = native(source, &name, Numbering::PerKind);
+    native.buffer_sizes = buffer_sizes(source, &text);
+    Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+/// The argument with sizes of buffers, if naga gave the entry point one. It has a member for each
+/// buffer of the module that needs one, named after the place of its variable in the module.
+fn buffer_sizes(source: &Source<'_>, text: &str) -> Option<BufferSizes> {
+    let argument = format!("[[buffer({SIZES_BUFFER})]]");
+    text.lines().find(|line| line.contains("_mslBufferSizes&") && line.contains(&argument))?;
+    let (_, members) = text.split_once("struct _mslBufferSizes {")?;
+    let (members, _) = members.split_once('}')?;
+    let place = |member: &str| {
+        let number: usize = member.trim().strip_prefix("uint size")?.parse().ok()?;
+        let (_, variable) = source.module.global_variables.iter().nth(number)?;
+        variable.binding.map(|binding| [binding.group, binding.binding])
+    };
+    Some(BufferSizes {
+        index: SIZES_BUFFER.into(),
+        buffers: members.split(';').filter_map(place).collect(),
+    })
 }
 
 fn resources(source: &Source<'_>) -> Result<EntryPointResources, String> {
     let mut resources = EntryPointResources::default();
     for (binding, kind, index) in assign(source, Numbering::PerKind) {
-        let slot = index.and_then(|index| u8::try_from(index).ok()).ok_or("more bindings than Metal has slots")?;
+        let slot = index
+            .and_then(|index| u8::try_from(index).ok())
+            .ok_or("more bindings than Metal has slots")?;
         resources.resources.insert(binding, target(kind, slot));
     }
-    // Metal cannot tell the length of a buffer: naga asks for it in a buffer of lengths, here
-    // the last of the 31.
-    resources.sizes_buffer = Some(30);
+    resources.sizes_buffer = Some(SIZES_BUFFER);
     Ok(resources)
 }
 
@@ -45,7 +85,11 @@ fn target(kind: Kind, slot: u8) -> BindTarget {
         Kind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
         Kind::Storage => BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() },
         Kind::Texture => BindTarget { texture: Some(slot), ..BindTarget::default() },
-        Kind::StorageTexture => BindTarget { texture: Some(slot), mutable: true, ..BindTarget::default() },
-        Kind::Sampler | Kind::ComparisonSampler => BindTarget { sampler: Some(BindSamplerTarget::Resource(slot)), ..BindTarget::default() },
+        Kind::StorageTexture => {
+            BindTarget { texture: Some(slot), mutable: true, ..BindTarget::default() }
+        }
+        Kind::Sampler | Kind::ComparisonSampler => {
+            BindTarget { sampler: Some(BindSamplerTarget::Resource(slot)), ..BindTarget::default() }
+        }
     }
 }

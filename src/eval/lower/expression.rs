@@ -4,21 +4,29 @@ use super::{Body, Loc};
 use crate::eval::code::{Axis, Instruction, Operand, Slot};
 use crate::eval::error::Error;
 use crate::eval::program::Constant;
-use naga::{DerivativeAxis, DerivativeControl, Expression, Handle, Literal, SwizzleComponent, TypeInner};
+use naga::{
+    DerivativeAxis, DerivativeControl, Expression, Handle, Literal, SwizzleComponent, TypeInner,
+};
 
 impl Body<'_, '_> {
     /// Where an expression's value is; those that need no statement are made on first use.
     pub(super) fn loc(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
         match self.locs[handle.index()] {
             Some(loc) => Ok(loc),
-            None if self.expressions[handle].needs_pre_emit() || self.constant => self.evaluate(handle),
-            None => Err(Error::new(crate::diagnostic::codes::EVAL_INTERNAL, "an expression is used before it is evaluated")),
+            None if self.expressions[handle].needs_pre_emit() || self.constant => {
+                self.evaluate(handle)
+            }
+            None => Err(Error::new(
+                crate::diagnostic::codes::EVAL_INTERNAL,
+                "an expression is used before it is evaluated",
+            )),
         }
     }
 
     /// Emits what computes the expression.
     pub(super) fn evaluate(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
-        let loc = self.lowered(handle).map_err(|error| error.or_at(self.expressions.get_span(handle)))?;
+        let loc =
+            self.lowered(handle).map_err(|error| error.or_at(self.expressions.get_span(handle)))?;
         self.locs[handle.index()] = Some(loc);
         Ok(loc)
     }
@@ -26,33 +34,51 @@ impl Body<'_, '_> {
     fn lowered(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
         match self.expressions[handle] {
             Expression::Literal(literal) => self.literal(literal),
-            Expression::Constant(constant) => self.global_value(self.build.module.constants[constant].init),
+            Expression::Constant(constant) => {
+                self.global_value(self.build.module.constants[constant].init)
+            }
             Expression::Override(constant) => match self.build.module.overrides[constant].init {
                 Some(init) => self.global_value(init),
                 None => Err(Error::unsupported("overrides without a value")),
             },
-            Expression::ZeroValue(ty) => Ok(Loc::dense(self.build.layout.size(ty).and_then(|size| self.build.alloc(size))?, true)),
+            Expression::ZeroValue(ty) => Ok(Loc::dense(
+                self.build.layout.size(ty).and_then(|size| self.build.alloc(size))?,
+                true,
+            )),
             Expression::Compose { ref components, .. } => self.compose(handle, components),
             Expression::Splat { value, .. } => self.splat(value),
-            Expression::Swizzle { size, vector, pattern } => self.swizzle(vector, &pattern[..size as usize]),
+            Expression::Swizzle { size, vector, pattern } => {
+                self.swizzle(vector, &pattern[..size as usize])
+            }
             Expression::Access { base, index } => self.access(handle, base, index),
             Expression::AccessIndex { base, index } => self.access_index(base, index),
             Expression::FunctionArgument(index) => self.argument(handle, index),
-            Expression::GlobalVariable(variable) => {
-                self.build.globals.get(variable.index()).cloned().unwrap_or_else(|| Err(Error::unsupported("this variable")))
-            }
+            Expression::GlobalVariable(variable) => self
+                .build
+                .globals
+                .get(variable.index())
+                .cloned()
+                .unwrap_or_else(|| Err(Error::unsupported("this variable"))),
             Expression::LocalVariable(variable) => Ok(Loc::Place(self.locals[variable.index()])),
             Expression::Load { pointer } => self.load(handle, pointer),
             Expression::Unary { op, expr } => self.unary(handle, op, expr),
             Expression::Binary { op, left, right } => self.binary(handle, op, left, right),
-            Expression::Select { condition, accept, reject } => self.select(handle, condition, accept, reject),
+            Expression::Select { condition, accept, reject } => {
+                self.select(handle, condition, accept, reject)
+            }
             Expression::Relational { fun, argument } => self.relational(handle, fun, argument),
-            Expression::Math { fun, arg, arg1, arg2, arg3 } => self.math(handle, fun, arg, [arg1, arg2, arg3]),
+            Expression::Math { fun, arg, arg1, arg2, arg3 } => {
+                self.math(handle, fun, arg, [arg1, arg2, arg3])
+            }
             Expression::As { expr, kind, convert } => self.cast(handle, expr, kind, convert),
-            Expression::Derivative { axis, ctrl, expr } => self.derivative(handle, axis, ctrl, expr),
+            Expression::Derivative { axis, ctrl, expr } => {
+                self.derivative(handle, axis, ctrl, expr)
+            }
             Expression::ArrayLength(pointer) => self.array_length(pointer),
             Expression::CallResult(_) => Err(Error::unsupported("a result without its call")),
-            Expression::ImageSample { .. } | Expression::ImageLoad { .. } | Expression::ImageQuery { .. } => self.image(handle),
+            Expression::ImageSample { .. }
+            | Expression::ImageLoad { .. }
+            | Expression::ImageQuery { .. } => self.image(handle),
             ref other => Err(Error::unsupported(name(other))),
         }
     }
@@ -78,13 +104,24 @@ impl Body<'_, '_> {
 
     fn global_value(&mut self, init: Handle<Expression>) -> Result<Loc, Error> {
         // While the constants themselves are lowered, the table of them is not there yet.
-        let known = if self.build.constants.is_empty() { self.locs.get(init.index()) } else { self.build.constants.get(init.index()) };
+        let known = if self.build.constants.is_empty() {
+            self.locs.get(init.index())
+        } else {
+            self.build.constants.get(init.index())
+        };
         known.copied().flatten().ok_or_else(|| Error::unsupported("this module-scope constant"))
     }
 
-    fn compose(&mut self, handle: Handle<Expression>, components: &[Handle<Expression>]) -> Result<Loc, Error> {
+    fn compose(
+        &mut self,
+        handle: Handle<Expression>,
+        components: &[Handle<Expression>],
+    ) -> Result<Loc, Error> {
         let (first, _) = self.fresh(handle)?;
-        let locs = components.iter().map(|component| self.loc(*component)).collect::<Result<Vec<_>, _>>()?;
+        let locs = components
+            .iter()
+            .map(|component| self.loc(*component))
+            .collect::<Result<Vec<_>, _>>()?;
         let constant = locs.iter().all(|loc| matches!(loc, Loc::Value { constant: true, .. }));
         let before = self.constant;
         self.constant |= constant;
@@ -100,30 +137,52 @@ impl Body<'_, '_> {
 
     fn splat(&mut self, value: Handle<Expression>) -> Result<Loc, Error> {
         match self.loc(value)? {
-            Loc::Value { operand, constant } => Ok(Loc::Value { operand: Operand { stride: 0, ..operand }, constant }),
+            Loc::Value { operand, constant } => {
+                Ok(Loc::Value { operand: Operand { stride: 0, ..operand }, constant })
+            }
             _ => Err(Error::unsupported("a vector of pointers")),
         }
     }
 
-    fn swizzle(&mut self, vector: Handle<Expression>, pattern: &[SwizzleComponent]) -> Result<Loc, Error> {
+    fn swizzle(
+        &mut self,
+        vector: Handle<Expression>,
+        pattern: &[SwizzleComponent],
+    ) -> Result<Loc, Error> {
         let from = self.operand(vector)?;
         let first = pattern.first().map_or(0, |component| *component as u32);
-        let consecutive = pattern.iter().enumerate().all(|(index, component)| *component as u32 == first + index as u32);
+        let consecutive = pattern
+            .iter()
+            .enumerate()
+            .all(|(index, component)| *component as u32 == first + index as u32);
         if from.stride == 0 || consecutive {
             let operand = Operand { slot: from.at(first) as Slot, ..from };
-            return Ok(Loc::Value { operand, constant: matches!(self.loc(vector)?, Loc::Value { constant: true, .. }) });
+            return Ok(Loc::Value {
+                operand,
+                constant: matches!(self.loc(vector)?, Loc::Value { constant: true, .. }),
+            });
         }
         let to = self.build.alloc(pattern.len() as u32)?;
         for (index, component) in pattern.iter().enumerate() {
-            self.emit(Instruction::Copy { to: to + index as u32, from: from.at(*component as u32) as Slot, n: 1 });
+            self.emit(Instruction::Copy {
+                to: to + index as u32,
+                from: from.at(*component as u32) as Slot,
+                n: 1,
+            });
         }
         Ok(Loc::dense(to, false))
     }
 
     fn argument(&mut self, handle: Handle<Expression>, index: u32) -> Result<Loc, Error> {
-        let slot = self.arguments.get(index as usize).copied().ok_or_else(|| Error::unsupported("this argument"))?;
+        let slot = self
+            .arguments
+            .get(index as usize)
+            .copied()
+            .ok_or_else(|| Error::unsupported("this argument"))?;
         match self.inner(handle) {
-            TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } => Ok(Loc::Through { slot, offset: 0 }),
+            TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } => {
+                Ok(Loc::Through { slot, offset: 0 })
+            }
             _ => Ok(Loc::dense(slot, false)),
         }
     }
@@ -158,7 +217,13 @@ impl Body<'_, '_> {
             DerivativeAxis::Y => Axis::Y,
             DerivativeAxis::Width => Axis::Width,
         };
-        self.emit(Instruction::Derivative { axis, coarse: control == DerivativeControl::Coarse, n: n as u8, to, a });
+        self.emit(Instruction::Derivative {
+            axis,
+            coarse: control == DerivativeControl::Coarse,
+            n: n as u8,
+            to,
+            a,
+        });
         Ok(Loc::dense(to, false))
     }
 }

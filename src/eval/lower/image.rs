@@ -10,14 +10,35 @@ impl Body<'_, '_> {
     pub(super) fn image(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let words = self.kind(handle)? != Kind::Float;
-        let mut access =
-            Access { image: 0, coordinate: 0, dimensions: 0, layer: None, ask: Ask::Levels, to, n: n as u8, words, depth: false };
+        let mut access = Access {
+            image: 0,
+            coordinate: 0,
+            dimensions: 0,
+            layer: None,
+            ask: Ask::Levels,
+            to,
+            n: n as u8,
+            words,
+            depth: false,
+        };
         match self.expressions[handle] {
-            Expression::ImageSample { image, sampler, gather, coordinate, array_index, offset, level, depth_ref, clamp_to_edge } => {
+            Expression::ImageSample {
+                image,
+                sampler,
+                gather,
+                coordinate,
+                array_index,
+                offset,
+                level,
+                depth_ref,
+                clamp_to_edge,
+            } => {
                 self.coordinates(&mut access, image, Some(coordinate), array_index)?;
-                let (sampler, offset, reference) = (self.operand(sampler)?.slot, self.maybe(offset)?, self.maybe(depth_ref)?);
+                let (sampler, offset, reference) =
+                    (self.operand(sampler)?.slot, self.maybe(offset)?, self.maybe(depth_ref)?);
                 let (level, gather) = (self.level(level)?, gather.map(|component| component as u8));
-                access.ask = Ask::Sample { sampler, gather, level, offset, reference, clamp_to_edge };
+                access.ask =
+                    Ask::Sample { sampler, gather, level, offset, reference, clamp_to_edge };
             }
             Expression::ImageLoad { image, coordinate, array_index, level, .. } => {
                 self.coordinates(&mut access, image, Some(coordinate), array_index)?;
@@ -42,14 +63,17 @@ impl Body<'_, '_> {
         coordinate: Option<Handle<Expression>>,
         layer: Option<Handle<Expression>>,
     ) -> Result<(), Error> {
-        let TypeInner::Image { class, .. } = *self.inner(image) else { return Err(Error::unsupported("arrays of textures")) };
+        let TypeInner::Image { class, .. } = *self.inner(image) else {
+            return Err(Error::unsupported("arrays of textures"));
+        };
         if matches!(class, ImageClass::Storage { .. } | ImageClass::External) {
             return Err(Error::unsupported("storage and external textures"));
         }
         access.depth = matches!(class, ImageClass::Depth { .. });
         access.image = self.operand(image)?.slot;
         if let Some(coordinate) = coordinate {
-            (access.coordinate, access.dimensions) = (self.dense(coordinate)?, self.slots(coordinate)? as u8);
+            (access.coordinate, access.dimensions) =
+                (self.dense(coordinate)?, self.slots(coordinate)? as u8);
         }
         access.layer = self.maybe(layer)?;
         Ok(())
@@ -64,7 +88,9 @@ impl Body<'_, '_> {
             SampleLevel::Auto => Level::Auto,
             SampleLevel::Zero => Level::Zero,
             // The level of a depth texture is an integer: made a float here.
-            SampleLevel::Exact(level) if self.kind(level)? != Kind::Float => Level::Exact(self.float_of(level)?),
+            SampleLevel::Exact(level) if self.kind(level)? != Kind::Float => {
+                Level::Exact(self.float_of(level)?)
+            }
             SampleLevel::Exact(level) => Level::Exact(self.dense(level)?),
             SampleLevel::Bias(bias) => Level::Bias(self.dense(bias)?),
             SampleLevel::Gradient { x, y } => Level::Gradient(self.dense(x)?, self.dense(y)?),

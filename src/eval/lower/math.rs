@@ -1,7 +1,9 @@
 //! Built-in functions.
 
 use super::{Body, Loc};
-use crate::eval::code::{Binary, Geometry, Instruction, Operand, Packing, Product, Ternary, Unary, Word1, Word2};
+use crate::eval::code::{
+    Binary, Geometry, Instruction, Operand, Packing, Product, Ternary, Unary, Word1, Word2,
+};
 use crate::eval::error::Error;
 use crate::eval::layout::Kind;
 use naga::{Expression, Handle, MathFunction, TypeInner};
@@ -51,7 +53,11 @@ impl Body<'_, '_> {
             Some(OnFloats::Two(op)) => self.float2(handle, op, arg, need(rest[0])?),
             Some(OnFloats::Three(op)) => {
                 let (to, n) = self.fresh(handle)?;
-                let (a, b, c) = (self.spread(arg, n)?, self.spread(need(rest[0])?, n)?, self.spread(need(rest[1])?, n)?);
+                let (a, b, c) = (
+                    self.spread(arg, n)?,
+                    self.spread(need(rest[0])?, n)?,
+                    self.spread(need(rest[1])?, n)?,
+                );
                 self.emit(Instruction::Float3 { op, n: n as u8, to, a, b, c });
                 Ok(Loc::dense(to, false))
             }
@@ -60,7 +66,13 @@ impl Body<'_, '_> {
         }
     }
 
-    fn geometry(&mut self, handle: Handle<Expression>, op: Geometry, arg: Handle<Expression>, rest: [Argument; 3]) -> Result<Loc, Error> {
+    fn geometry(
+        &mut self,
+        handle: Handle<Expression>,
+        op: Geometry,
+        arg: Handle<Expression>,
+        rest: [Argument; 3],
+    ) -> Result<Loc, Error> {
         let n = match *self.inner(arg) {
             TypeInner::Matrix { columns, .. } => columns as u32,
             _ => self.slots(arg)?,
@@ -73,7 +85,12 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    fn outer(&mut self, handle: Handle<Expression>, left: Handle<Expression>, right: Handle<Expression>) -> Result<Loc, Error> {
+    fn outer(
+        &mut self,
+        handle: Handle<Expression>,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let (rows, columns) = (self.slots(left)? as u8, self.slots(right)? as u8);
         let (a, b) = (self.dense(left)?, self.dense(right)?);
         let (to, _) = self.fresh(handle)?;
@@ -81,8 +98,14 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    fn transpose(&mut self, handle: Handle<Expression>, arg: Handle<Expression>) -> Result<Loc, Error> {
-        let TypeInner::Matrix { columns, rows, .. } = *self.inner(arg) else { return self.loc(arg) };
+    fn transpose(
+        &mut self,
+        handle: Handle<Expression>,
+        arg: Handle<Expression>,
+    ) -> Result<Loc, Error> {
+        let TypeInner::Matrix { columns, rows, .. } = *self.inner(arg) else {
+            return self.loc(arg);
+        };
         let from = self.dense(arg)?;
         let (to, _) = self.fresh(handle)?;
         self.emit(Instruction::Transpose { rows: rows as u8, columns: columns as u8, to, from });
@@ -97,16 +120,21 @@ impl Body<'_, '_> {
         arg: Handle<Expression>,
         rest: [Argument; 3],
     ) -> Result<Loc, Error> {
-        let (min, max) = if signed { (Word2::MinS, Word2::MaxS) } else { (Word2::MinU, Word2::MaxU) };
+        let (min, max) =
+            if signed { (Word2::MinS, Word2::MaxS) } else { (Word2::MinU, Word2::MaxU) };
         match fun {
             MathFunction::Abs if !signed => self.loc(arg),
             MathFunction::Min => self.word2(handle, min, arg, need(rest[0])?),
             MathFunction::Max => self.word2(handle, max, arg, need(rest[0])?),
-            MathFunction::Clamp => self.clamp(handle, arg, need(rest[0])?, need(rest[1])?, (min, max)),
+            MathFunction::Clamp => {
+                self.clamp(handle, arg, need(rest[0])?, need(rest[1])?, (min, max))
+            }
             MathFunction::Dot => self.geometry(handle, Geometry::DotWord, arg, rest),
             MathFunction::Dot4I8Packed => self.word2(handle, Word2::DotBytesS, arg, need(rest[0])?),
             MathFunction::Dot4U8Packed => self.word2(handle, Word2::DotBytesU, arg, need(rest[0])?),
-            MathFunction::ExtractBits | MathFunction::InsertBits => self.bits(handle, fun, signed, arg, rest),
+            MathFunction::ExtractBits | MathFunction::InsertBits => {
+                self.bits(handle, fun, signed, arg, rest)
+            }
             _ => match word1(fun, signed) {
                 Some(op) => self.word1(handle, op, arg),
                 None => Err(Error::unsupported(format!("the function `{fun:?}` on integers"))),
@@ -146,7 +174,9 @@ impl Body<'_, '_> {
                 let count = self.operand(count)?.slot;
                 Instruction::InsertBits { n, to, from, new: first, offset: second, count }
             }
-            _ => Instruction::ExtractBits { signed, n, to, from, offset: first.slot, count: second },
+            _ => {
+                Instruction::ExtractBits { signed, n, to, from, offset: first.slot, count: second }
+            }
         };
         self.emit(instruction);
         Ok(Loc::dense(to, false))

@@ -87,7 +87,15 @@ impl<'m> Build<'m> {
             types: module.types.clone(),
         };
         let layout = Layout::new(&module.types);
-        Self { module, layout, program, start: Vec::new(), literals: BTreeMap::new(), globals: Vec::new(), constants: Vec::new() }
+        Self {
+            module,
+            layout,
+            program,
+            start: Vec::new(),
+            literals: BTreeMap::new(),
+            globals: Vec::new(),
+            constants: Vec::new(),
+        }
     }
 
     /// Fresh slots, all zero before anything runs.
@@ -98,7 +106,9 @@ impl<'m> Build<'m> {
                 self.program.slots = end;
                 Ok(first)
             }
-            _ => Err(Error::too_large(format!("the values of the module take more than {MAX_SLOTS} scalars"))),
+            _ => Err(Error::too_large(format!(
+                "the values of the module take more than {MAX_SLOTS} scalars"
+            ))),
         }
     }
 
@@ -125,12 +135,17 @@ impl<'m> Build<'m> {
     /// is not supported is missing, and an error where it is used.
     fn constants(&mut self, info: &'m ModuleInfo) -> Result<(), Error> {
         let expressions = &self.module.global_expressions;
-        let types = expressions.iter().map(|(handle, _)| info[handle].inner_with(&self.module.types)).collect();
+        let types = expressions
+            .iter()
+            .map(|(handle, _)| info[handle].inner_with(&self.module.types))
+            .collect();
         let mut body = Body::new(self, expressions, types);
         body.constant = true;
         for (handle, _) in expressions.iter() {
             match body.evaluate(handle) {
-                Err(error) if error.code == crate::diagnostic::codes::EVAL_TOO_LARGE => return Err(error),
+                Err(error) if error.code == crate::diagnostic::codes::EVAL_TOO_LARGE => {
+                    return Err(error);
+                }
                 _ => {}
             }
         }
@@ -151,10 +166,18 @@ impl<'m> Build<'m> {
         let inner = &self.module.types[variable.ty].inner;
         let (role, loc) = match (variable.space, inner) {
             (AddressSpace::Private, _) => self.private(variable, slots)?,
-            (AddressSpace::Handle, TypeInner::Sampler { .. }) => (Role::Sampler, Loc::dense(self.word(index)?, true)),
+            (AddressSpace::Handle, TypeInner::Sampler { .. }) => {
+                (Role::Sampler, Loc::dense(self.word(index)?, true))
+            }
             (AddressSpace::Handle, _) => (Role::Image, Loc::dense(self.word(index)?, true)),
-            (AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Immediate, _) => self.buffer(inner, slots)?,
-            (space, _) => return Err(Error::unsupported(format!("variables in the address space `{space:?}`"))),
+            (AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Immediate, _) => {
+                self.buffer(inner, slots)?
+            }
+            (space, _) => {
+                return Err(Error::unsupported(format!(
+                    "variables in the address space `{space:?}`"
+                )));
+            }
         };
         let slot = if let Loc::Place(slot) = loc { slot } else { 0 };
         let binding = variable.binding.map(|binding| (binding.group, binding.binding));
@@ -171,18 +194,27 @@ impl<'m> Build<'m> {
         Ok(loc)
     }
 
-    fn private(&mut self, variable: &naga::GlobalVariable, slots: u32) -> Result<(Role, Loc), Error> {
-        let init = match variable.init.map(|init| self.constants.get(init.index()).copied().flatten()) {
-            Some(Some(Loc::Value { operand, .. })) if operand.stride == 1 || slots == 1 => Some(operand.slot),
-            Some(_) => return Err(Error::unsupported("this initial value of a variable")),
-            None => None,
-        };
+    fn private(
+        &mut self,
+        variable: &naga::GlobalVariable,
+        slots: u32,
+    ) -> Result<(Role, Loc), Error> {
+        let init =
+            match variable.init.map(|init| self.constants.get(init.index()).copied().flatten()) {
+                Some(Some(Loc::Value { operand, .. })) if operand.stride == 1 || slots == 1 => {
+                    Some(operand.slot)
+                }
+                Some(_) => return Err(Error::unsupported("this initial value of a variable")),
+                None => None,
+            };
         Ok((Role::Private(init), Loc::Place(self.alloc(slots)?)))
     }
 
     fn buffer(&mut self, inner: &TypeInner, slots: u32) -> Result<(Role, Loc), Error> {
         let last = match *inner {
-            TypeInner::Struct { ref members, .. } => members.last().map_or(inner, |member| &self.module.types[member.ty].inner),
+            TypeInner::Struct { ref members, .. } => {
+                members.last().map_or(inner, |member| &self.module.types[member.ty].inner)
+            }
             _ => inner,
         };
         let TypeInner::Array { base, size: ArraySize::Dynamic, .. } = *last else {
@@ -219,7 +251,11 @@ impl<'m> Build<'m> {
         }
     }
 
-    fn lower_function(&mut self, function: &'m naga::Function, info: &'m FunctionInfo) -> Result<(), Error> {
+    fn lower_function(
+        &mut self,
+        function: &'m naga::Function,
+        info: &'m FunctionInfo,
+    ) -> Result<(), Error> {
         let (mut arguments, mut result) = (Vec::new(), Vec::new());
         if let Some(returned) = &function.result {
             self.layout.kinds(returned.ty, &mut result)?;
@@ -242,13 +278,29 @@ impl<'m> Build<'m> {
             arguments.extend(kinds);
         }
         let result_slot = self.alloc(result.len() as u32)?;
-        parameters.iter_mut().for_each(|parameter| parameter.pointee = parameter.pointee.map(|behind| result_slot + behind));
+        parameters.iter_mut().for_each(|parameter| {
+            parameter.pointee = parameter.pointee.map(|behind| result_slot + behind)
+        });
         let slots = parameters.iter().map(|parameter| parameter.slot).collect();
         let buffers = self.buffers(info);
         let index = self.program.functions.len() - 1;
         let entry = &mut self.program.functions[index];
-        *entry = Function { arguments, result, inputs, outputs, returned, parameters, result_slot, buffers, ..entry.clone() };
-        let types = function.expressions.iter().map(|(handle, _)| info[handle].ty.inner_with(&self.module.types)).collect();
+        *entry = Function {
+            arguments,
+            result,
+            inputs,
+            outputs,
+            returned,
+            parameters,
+            result_slot,
+            buffers,
+            ..entry.clone()
+        };
+        let types = function
+            .expressions
+            .iter()
+            .map(|(handle, _)| info[handle].ty.inner_with(&self.module.types))
+            .collect();
         let mut body = Body::new(self, &function.expressions, types);
         (body.function, body.arguments) = (index as u32, slots);
         body.whole(function)
@@ -256,11 +308,21 @@ impl<'m> Build<'m> {
 
     /// The buffers a function and its callees use, by index.
     fn buffers(&self, info: &FunctionInfo) -> Vec<u32> {
-        let used = self.module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());
-        let bindings: Vec<_> = used.filter_map(|(_, variable)| variable.binding.map(|binding| (binding.group, binding.binding))).collect();
+        let used =
+            self.module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());
+        let bindings: Vec<_> = used
+            .filter_map(|(_, variable)| {
+                variable.binding.map(|binding| (binding.group, binding.binding))
+            })
+            .collect();
         let globals = self.program.globals.iter().enumerate();
-        let wanted = globals.filter(|(_, global)| global.binding.is_some_and(|binding| bindings.contains(&binding)));
-        wanted.filter(|(_, global)| matches!(global.role, Role::Buffer | Role::Runtime { .. })).map(|(index, _)| index as u32).collect()
+        let wanted = globals.filter(|(_, global)| {
+            global.binding.is_some_and(|binding| bindings.contains(&binding))
+        });
+        wanted
+            .filter(|(_, global)| matches!(global.role, Role::Buffer | Role::Runtime { .. }))
+            .map(|(index, _)| index as u32)
+            .collect()
     }
 
     fn finish(mut self) -> Result<Program, Error> {
@@ -288,7 +350,11 @@ impl Loc {
 }
 
 impl<'b, 'm> Body<'b, 'm> {
-    fn new(build: &'b mut Build<'m>, expressions: &'m Arena<Expression>, types: Vec<&'m TypeInner>) -> Self {
+    fn new(
+        build: &'b mut Build<'m>,
+        expressions: &'m Arena<Expression>,
+        types: Vec<&'m TypeInner>,
+    ) -> Self {
         let locs = vec![None; expressions.len()];
         Self {
             build,
@@ -328,7 +394,9 @@ impl<'b, 'm> Body<'b, 'm> {
     /// Kind of the scalars of an expression.
     fn kind(&self, handle: Handle<Expression>) -> Result<Kind, Error> {
         let scalar = self.inner(handle).scalar();
-        scalar.and_then(super::layout::kind).ok_or_else(|| Error::unsupported("an operation on this type"))
+        scalar
+            .and_then(super::layout::kind)
+            .ok_or_else(|| Error::unsupported("an operation on this type"))
     }
 
     /// Slots of one value: components are spread over them, or share one.

@@ -1,20 +1,39 @@
 //! Operators and conversions.
 
 use super::{Body, Loc};
-use crate::eval::code::{Binary, Compare, Convert, Instruction, Operand, Product, Slot, Unary, Word1, Word2};
+use crate::eval::code::{
+    Binary, Compare, Convert, Instruction, Operand, Product, Slot, Unary, Word1, Word2,
+};
 use crate::eval::error::Error;
 use crate::eval::layout::Kind;
-use naga::{BinaryOperator, Expression, Handle, RelationalFunction, ScalarKind, TypeInner, UnaryOperator};
+use naga::{
+    BinaryOperator, Expression, Handle, RelationalFunction, ScalarKind, TypeInner, UnaryOperator,
+};
 
 /// Float, signed and unsigned meaning of an operator; none where it has no such meaning.
 type Meaning = (BinaryOperator, Option<Binary>, Option<Word2>, Option<Word2>);
 
 const MEANINGS: &[Meaning] = &[
     (BinaryOperator::Add, Some(Binary::Add), Some(Word2::Add), Some(Word2::Add)),
-    (BinaryOperator::Subtract, Some(Binary::Subtract), Some(Word2::Subtract), Some(Word2::Subtract)),
-    (BinaryOperator::Multiply, Some(Binary::Multiply), Some(Word2::Multiply), Some(Word2::Multiply)),
+    (
+        BinaryOperator::Subtract,
+        Some(Binary::Subtract),
+        Some(Word2::Subtract),
+        Some(Word2::Subtract),
+    ),
+    (
+        BinaryOperator::Multiply,
+        Some(Binary::Multiply),
+        Some(Word2::Multiply),
+        Some(Word2::Multiply),
+    ),
     (BinaryOperator::Divide, Some(Binary::Divide), Some(Word2::DivideS), Some(Word2::DivideU)),
-    (BinaryOperator::Modulo, Some(Binary::Remainder), Some(Word2::RemainderS), Some(Word2::RemainderU)),
+    (
+        BinaryOperator::Modulo,
+        Some(Binary::Remainder),
+        Some(Word2::RemainderS),
+        Some(Word2::RemainderU),
+    ),
     (BinaryOperator::And, None, Some(Word2::And), Some(Word2::And)),
     (BinaryOperator::LogicalAnd, None, None, Some(Word2::And)),
     (BinaryOperator::InclusiveOr, None, Some(Word2::Or), Some(Word2::Or)),
@@ -31,7 +50,12 @@ const MEANINGS: &[Meaning] = &[
 ];
 
 impl Body<'_, '_> {
-    pub(super) fn unary(&mut self, handle: Handle<Expression>, op: UnaryOperator, expr: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn unary(
+        &mut self,
+        handle: Handle<Expression>,
+        op: UnaryOperator,
+        expr: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let float = self.kind(expr)? == Kind::Float;
         match op {
             UnaryOperator::Negate if float => self.float1(handle, Unary::Negate, expr),
@@ -49,7 +73,8 @@ impl Body<'_, '_> {
         right: Handle<Expression>,
     ) -> Result<Loc, Error> {
         let kind = self.kind(left)?;
-        let product = if op == BinaryOperator::Multiply { self.product(handle, left, right)? } else { None };
+        let product =
+            if op == BinaryOperator::Multiply { self.product(handle, left, right)? } else { None };
         if let Some(loc) = product {
             return Ok(loc);
         }
@@ -60,7 +85,9 @@ impl Body<'_, '_> {
         let swapped = matches!(op, BinaryOperator::Greater | BinaryOperator::GreaterEqual);
         match (kind, meaning) {
             (Kind::Float, Some((_, Some(op), ..))) => self.float2(handle, *op, left, right),
-            (Kind::Sint, Some((_, _, Some(op), _))) => self.ordered(handle, *op, left, right, swapped),
+            (Kind::Sint, Some((_, _, Some(op), _))) => {
+                self.ordered(handle, *op, left, right, swapped)
+            }
             (_, Some((_, _, _, Some(op)))) => self.ordered(handle, *op, left, right, swapped),
             _ => Err(Error::unsupported(format!("the operator `{op:?}` on this type"))),
         }
@@ -74,14 +101,27 @@ impl Body<'_, '_> {
         right: Handle<Expression>,
         swapped: bool,
     ) -> Result<Loc, Error> {
-        if swapped { self.word2(handle, op, right, left) } else { self.word2(handle, op, left, right) }
+        if swapped {
+            self.word2(handle, op, right, left)
+        } else {
+            self.word2(handle, op, left, right)
+        }
     }
 
     /// Products with a matrix that are not by component.
-    fn product(&mut self, handle: Handle<Expression>, left: Handle<Expression>, right: Handle<Expression>) -> Result<Option<Loc>, Error> {
+    fn product(
+        &mut self,
+        handle: Handle<Expression>,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Result<Option<Loc>, Error> {
         let (op, inner, rows, columns) = match (self.inner(left), self.inner(right)) {
-            (TypeInner::Matrix { columns, rows, .. }, TypeInner::Vector { .. }) => (Product::MatrixVector, *columns as u8, *rows as u8, 1),
-            (TypeInner::Vector { .. }, TypeInner::Matrix { columns, rows, .. }) => (Product::VectorMatrix, *rows as u8, 1, *columns as u8),
+            (TypeInner::Matrix { columns, rows, .. }, TypeInner::Vector { .. }) => {
+                (Product::MatrixVector, *columns as u8, *rows as u8, 1)
+            }
+            (TypeInner::Vector { .. }, TypeInner::Matrix { columns, rows, .. }) => {
+                (Product::VectorMatrix, *rows as u8, 1, *columns as u8)
+            }
             (TypeInner::Matrix { columns, rows, .. }, TypeInner::Matrix { columns: right, .. }) => {
                 (Product::MatrixMatrix, *columns as u8, *rows as u8, *right as u8)
             }
@@ -106,7 +146,12 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    pub(super) fn float1(&mut self, handle: Handle<Expression>, op: Unary, a: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn float1(
+        &mut self,
+        handle: Handle<Expression>,
+        op: Unary,
+        a: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let ((to, n), a) = (self.fresh(handle)?, self.operand(a)?);
         self.emit(Instruction::Float1 { op, n: n as u8, to, a });
         Ok(Loc::dense(to, false))
@@ -125,7 +170,12 @@ impl Body<'_, '_> {
         Ok(Loc::dense(to, false))
     }
 
-    pub(super) fn word1(&mut self, handle: Handle<Expression>, op: Word1, a: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn word1(
+        &mut self,
+        handle: Handle<Expression>,
+        op: Word1,
+        a: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let ((to, n), a) = (self.fresh(handle)?, self.operand(a)?);
         self.emit(Instruction::Word1 { op, n: n as u8, to, a });
         Ok(Loc::dense(to, false))
@@ -158,8 +208,14 @@ impl Body<'_, '_> {
             RelationalFunction::IsNan => self.convert(handle, Convert::IsNan, argument),
             RelationalFunction::IsInf => self.convert(handle, Convert::IsInf, argument),
             RelationalFunction::All | RelationalFunction::Any => {
-                let (n, a, (to, _)) = (self.slots(argument)?, self.dense(argument)?, self.fresh(handle)?);
-                self.emit(Instruction::Reduce { all: fun == RelationalFunction::All, n: n as u8, to, a });
+                let (n, a, (to, _)) =
+                    (self.slots(argument)?, self.dense(argument)?, self.fresh(handle)?);
+                self.emit(Instruction::Reduce {
+                    all: fun == RelationalFunction::All,
+                    n: n as u8,
+                    to,
+                    a,
+                });
                 Ok(Loc::dense(to, false))
             }
         }
@@ -178,19 +234,34 @@ impl Body<'_, '_> {
         }
         match (from, kind, convert.is_some()) {
             (Kind::Float, ScalarKind::Float, _) => self.loc(expr),
-            (Kind::Float, ScalarKind::Sint, true) => self.convert(handle, Convert::SFromFloat, expr),
-            (Kind::Float, ScalarKind::Uint, true) => self.convert(handle, Convert::UFromFloat, expr),
-            (Kind::Float, ScalarKind::Bool, _) => self.convert(handle, Convert::BoolFromFloat, expr),
+            (Kind::Float, ScalarKind::Sint, true) => {
+                self.convert(handle, Convert::SFromFloat, expr)
+            }
+            (Kind::Float, ScalarKind::Uint, true) => {
+                self.convert(handle, Convert::UFromFloat, expr)
+            }
+            (Kind::Float, ScalarKind::Bool, _) => {
+                self.convert(handle, Convert::BoolFromFloat, expr)
+            }
             (Kind::Float, _, false) => self.convert(handle, Convert::BitsFromFloat, expr),
-            (Kind::Sint, ScalarKind::Float, true) => self.convert(handle, Convert::FloatFromS, expr),
+            (Kind::Sint, ScalarKind::Float, true) => {
+                self.convert(handle, Convert::FloatFromS, expr)
+            }
             (_, ScalarKind::Float, true) => self.convert(handle, Convert::FloatFromU, expr),
             (_, ScalarKind::Float, false) => self.convert(handle, Convert::FloatFromBits, expr),
-            (Kind::Sint | Kind::Uint, ScalarKind::Bool, _) => self.word1(handle, Word1::Truth, expr),
+            (Kind::Sint | Kind::Uint, ScalarKind::Bool, _) => {
+                self.word1(handle, Word1::Truth, expr)
+            }
             _ => self.loc(expr),
         }
     }
 
-    fn convert(&mut self, handle: Handle<Expression>, op: Convert, expr: Handle<Expression>) -> Result<Loc, Error> {
+    fn convert(
+        &mut self,
+        handle: Handle<Expression>,
+        op: Convert,
+        expr: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let ((to, n), a) = (self.fresh(handle)?, self.operand(expr)?);
         self.emit(Instruction::Convert { op, n: n as u8, to, a });
         Ok(Loc::dense(to, false))

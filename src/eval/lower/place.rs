@@ -7,18 +7,28 @@ use crate::eval::program::Role;
 use naga::{AddressSpace, Expression, Handle, TypeInner};
 
 impl Body<'_, '_> {
-    pub(super) fn access_index(&mut self, base: Handle<Expression>, index: u32) -> Result<Loc, Error> {
+    pub(super) fn access_index(
+        &mut self,
+        base: Handle<Expression>,
+        index: u32,
+    ) -> Result<Loc, Error> {
         let skip = self.build.layout.component(self.pointee(base), index)?;
         Ok(match self.loc(base)? {
-            Loc::Value { operand, constant } => {
-                Loc::Value { operand: Operand { slot: operand.slot + skip * operand.stride, ..operand }, constant }
-            }
+            Loc::Value { operand, constant } => Loc::Value {
+                operand: Operand { slot: operand.slot + skip * operand.stride, ..operand },
+                constant,
+            },
             Loc::Place(slot) => Loc::Place(slot + skip),
             Loc::Through { slot, offset } => Loc::Through { slot, offset: offset + skip },
         })
     }
 
-    pub(super) fn access(&mut self, handle: Handle<Expression>, base: Handle<Expression>, index: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn access(
+        &mut self,
+        handle: Handle<Expression>,
+        base: Handle<Expression>,
+        index: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let (size, count) = self.build.layout.element(self.pointee(base))?;
         let index = self.operand(index)?.slot;
         let loc = self.loc(base)?;
@@ -37,26 +47,42 @@ impl Body<'_, '_> {
         Ok(Loc::Through { slot: to, offset: 0 })
     }
 
-    pub(super) fn load(&mut self, handle: Handle<Expression>, pointer: Handle<Expression>) -> Result<Loc, Error> {
+    pub(super) fn load(
+        &mut self,
+        handle: Handle<Expression>,
+        pointer: Handle<Expression>,
+    ) -> Result<Loc, Error> {
         let n = self.slots(handle)?;
         let loc = self.loc(pointer)?;
         // What no statement can write needs no copy.
-        if let (Loc::Place(slot), Some(AddressSpace::Uniform | AddressSpace::Immediate)) = (loc, self.inner(pointer).pointer_space()) {
+        if let (Loc::Place(slot), Some(AddressSpace::Uniform | AddressSpace::Immediate)) =
+            (loc, self.inner(pointer).pointer_space())
+        {
             return Ok(Loc::dense(slot, false));
         }
         let to = self.build.alloc(n)?;
         match loc {
             Loc::Place(from) => self.emit(Instruction::Copy { to, from, n }),
-            Loc::Through { slot, offset } => self.emit(Instruction::Load { to, pointer: slot, offset, n }),
-            Loc::Value { operand, .. } => self.emit(Instruction::Load { to, pointer: operand.slot, offset: 0, n }),
+            Loc::Through { slot, offset } => {
+                self.emit(Instruction::Load { to, pointer: slot, offset, n })
+            }
+            Loc::Value { operand, .. } => {
+                self.emit(Instruction::Load { to, pointer: operand.slot, offset: 0, n })
+            }
         }
         Ok(Loc::dense(to, false))
     }
 
-    pub(super) fn store(&mut self, pointer: Handle<Expression>, value: Handle<Expression>) -> Result<(), Error> {
+    pub(super) fn store(
+        &mut self,
+        pointer: Handle<Expression>,
+        value: Handle<Expression>,
+    ) -> Result<(), Error> {
         let (operand, n) = (self.operand(value)?, self.slots(value)?);
         match self.loc(pointer)? {
-            Loc::Place(to) if operand.stride == 0 => self.emit(Instruction::Fill { to, from: operand.slot, n }),
+            Loc::Place(to) if operand.stride == 0 => {
+                self.emit(Instruction::Fill { to, from: operand.slot, n })
+            }
             Loc::Place(to) => self.emit(Instruction::Copy { to, from: operand.slot, n }),
             Loc::Through { slot, offset } => {
                 let from = self.dense(value)?;
@@ -86,7 +112,14 @@ impl Body<'_, '_> {
         };
         let name = self.build.module.global_variables[variable].binding;
         let binding = name.map(|binding| (binding.group, binding.binding));
-        match self.build.program.globals.iter().find(|global| global.binding == binding).map(|global| global.role) {
+        match self
+            .build
+            .program
+            .globals
+            .iter()
+            .find(|global| global.binding == binding)
+            .map(|global| global.role)
+        {
             Some(Role::Runtime { count, .. }) => Ok(count),
             _ => Err(Error::unsupported("the length of this array")),
         }

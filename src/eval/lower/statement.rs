@@ -71,7 +71,9 @@ impl Body<'_, '_> {
     }
 
     fn cover(&mut self, span: Span) {
-        if let Some(point) = self.point.and_then(|point| self.build.program.points.get_mut(point as usize)) {
+        if let Some(point) =
+            self.point.and_then(|point| self.build.program.points.get_mut(point as usize))
+        {
             point.span.subsume(span);
         }
     }
@@ -80,18 +82,27 @@ impl Body<'_, '_> {
         match *statement {
             Statement::Emit(ref range) => self.evaluate_all(range.clone()),
             Statement::Block(ref block) => self.block(block, None),
-            Statement::If { condition, ref accept, ref reject } => self.branch(condition, accept, reject),
+            Statement::If { condition, ref accept, ref reject } => {
+                self.branch(condition, accept, reject)
+            }
             Statement::Switch { selector, ref cases } => self.switch(selector, cases),
-            Statement::Loop { ref body, ref continuing, break_if } => self.repeat(body, continuing, break_if),
+            Statement::Loop { ref body, ref continuing, break_if } => {
+                self.repeat(body, continuing, break_if)
+            }
             Statement::Break => self.leave(true),
             Statement::Continue => self.leave(false),
             Statement::Return { value } => self.give_back(value),
             Statement::Kill => self.kill(),
             Statement::Store { pointer, value } => self.store(pointer, value),
-            Statement::Call { function, ref arguments, result } => self.call(function, arguments, result),
+            Statement::Call { function, ref arguments, result } => {
+                self.call(function, arguments, result)
+            }
             ref other => {
                 let text = format!("{other:?}");
-                Err(Error::unsupported(format!("the statement `{}`", text.split([' ', '(', '{']).next().unwrap_or("?"))))
+                Err(Error::unsupported(format!(
+                    "the statement `{}`",
+                    text.split([' ', '(', '{']).next().unwrap_or("?")
+                )))
             }
         }
     }
@@ -106,7 +117,12 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    fn branch(&mut self, condition: Handle<Expression>, accept: &Block, reject: &Block) -> Result<(), Error> {
+    fn branch(
+        &mut self,
+        condition: Handle<Expression>,
+        accept: &Block,
+        reject: &Block,
+    ) -> Result<(), Error> {
         let condition = self.operand(condition)?.slot;
         let skip = self.jump(Instruction::JumpUnless { condition, to: 0 });
         self.block(accept, Some(Branch::Accept))?;
@@ -144,7 +160,12 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    fn repeat(&mut self, body: &Block, continuing: &Block, break_if: Option<Handle<Expression>>) -> Result<(), Error> {
+    fn repeat(
+        &mut self,
+        body: &Block,
+        continuing: &Block,
+        break_if: Option<Handle<Expression>>,
+    ) -> Result<(), Error> {
         let start = self.here() as u32;
         self.breaks.push(Vec::new());
         self.continues.push(Vec::new());
@@ -167,7 +188,8 @@ impl Body<'_, '_> {
     fn leave(&mut self, out: bool) -> Result<(), Error> {
         let jump = self.jump(Instruction::Jump { to: 0 });
         let targets = if out { &mut self.breaks } else { &mut self.continues };
-        let target = targets.last_mut().ok_or_else(|| Error::unsupported("`break` outside of a loop"))?;
+        let target =
+            targets.last_mut().ok_or_else(|| Error::unsupported("`break` outside of a loop"))?;
         target.push(jump);
         Ok(())
     }

@@ -16,42 +16,84 @@ pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: 
             m[to as usize..(to + n) as usize].fill(value);
         }
         Instruction::Zero { to, n } => m[to as usize..(to + n) as usize].fill(N::default()),
-        Instruction::Float1 { op, n, to, a } => each(m, n, to, |m, i| N::unary(op, m[a.at(i)], doubt)),
-        Instruction::Float2 { op, n, to, a, b } => each(m, n, to, |m, i| N::binary(op, m[a.at(i)], m[b.at(i)], doubt)),
-        Instruction::Float3 { op, n, to, a, b, c } => each(m, n, to, |m, i| N::ternary(op, m[a.at(i)], m[b.at(i)], m[c.at(i)], doubt)),
-        Instruction::Compare { op, n, to, a, b } => words(m, n, to, |m, i| u32::from(N::compare(op, m[a.at(i)], m[b.at(i)], doubt))),
+        Instruction::Float1 { op, n, to, a } => {
+            each(m, n, to, |m, i| N::unary(op, m[a.at(i)], doubt))
+        }
+        Instruction::Float2 { op, n, to, a, b } => {
+            each(m, n, to, |m, i| N::binary(op, m[a.at(i)], m[b.at(i)], doubt))
+        }
+        Instruction::Float3 { op, n, to, a, b, c } => {
+            each(m, n, to, |m, i| N::ternary(op, m[a.at(i)], m[b.at(i)], m[c.at(i)], doubt))
+        }
+        Instruction::Compare { op, n, to, a, b } => {
+            words(m, n, to, |m, i| u32::from(N::compare(op, m[a.at(i)], m[b.at(i)], doubt)))
+        }
         Instruction::Word1 { op, n, to, a } => words(m, n, to, |m, i| word1(op, m[a.at(i)].word())),
-        Instruction::Word2 { op, n, to, a, b } => words(m, n, to, |m, i| word2(op, m[a.at(i)].word(), m[b.at(i)].word())),
+        Instruction::Word2 { op, n, to, a, b } => {
+            words(m, n, to, |m, i| word2(op, m[a.at(i)].word(), m[b.at(i)].word()))
+        }
         Instruction::ExtractBits { signed, n, to, from, offset, count } => {
-            words(m, n, to, |m, i| extract_bits(signed, m[from.at(i)].word(), m[offset as usize].word(), m[count as usize].word()));
+            words(m, n, to, |m, i| {
+                extract_bits(
+                    signed,
+                    m[from.at(i)].word(),
+                    m[offset as usize].word(),
+                    m[count as usize].word(),
+                )
+            });
         }
         Instruction::InsertBits { n, to, from, new, offset, count } => {
-            words(m, n, to, |m, i| insert_bits([m[from.at(i)], m[new.at(i)], m[offset as usize], m[count as usize]].map(N::word)));
+            words(m, n, to, |m, i| {
+                insert_bits(
+                    [m[from.at(i)], m[new.at(i)], m[offset as usize], m[count as usize]]
+                        .map(N::word),
+                )
+            });
         }
         Instruction::Convert { op, n, to, a } => convert(m, op, n, to, a, doubt),
         Instruction::Pack { op, to, from } => pack(m, op, to, from, doubt),
         Instruction::Select { n, to, condition, accept, reject } => {
-            each(m, n, to, |m, i| if m[condition.at(i)].word() != 0 { m[accept.at(i)] } else { m[reject.at(i)] });
+            each(m, n, to, |m, i| {
+                if m[condition.at(i)].word() != 0 { m[accept.at(i)] } else { m[reject.at(i)] }
+            });
         }
         Instruction::Reduce { all, n, to, a } => {
-            let set = m[a as usize..a as usize + usize::from(n)].iter().filter(|slot| slot.word() != 0).count();
-            m[to as usize] = N::from_word(u32::from(if all { set == usize::from(n) } else { set > 0 }));
+            let set = m[a as usize..a as usize + usize::from(n)]
+                .iter()
+                .filter(|slot| slot.word() != 0)
+                .count();
+            m[to as usize] =
+                N::from_word(u32::from(if all { set == usize::from(n) } else { set > 0 }));
         }
-        Instruction::Geometry { op, n, to, a, b, c } => geometry(m, op, usize::from(n), [to, a, b, c].map(|slot| slot as usize), doubt),
-        Instruction::Product { op, inner, rows, columns, to, a, b } => product(m, op, [inner, rows, columns], to, a, b),
+        Instruction::Geometry { op, n, to, a, b, c } => {
+            geometry(m, op, usize::from(n), [to, a, b, c].map(|slot| slot as usize), doubt)
+        }
+        Instruction::Product { op, inner, rows, columns, to, a, b } => {
+            product(m, op, [inner, rows, columns], to, a, b)
+        }
         Instruction::Transpose { rows, columns, to, from } => {
             let (rows, columns) = (u32::from(rows), u32::from(columns));
-            (0..rows * columns).for_each(|i| m[(to + i) as usize] = m[(from + i % columns * rows + i / columns) as usize]);
+            (0..rows * columns).for_each(|i| {
+                m[(to + i) as usize] = m[(from + i % columns * rows + i / columns) as usize]
+            });
         }
         Instruction::Index { to, base, index, size, count } => {
             let last = m[count as usize].word().saturating_sub(1);
-            m[to as usize] = N::from_word(m[base as usize].word().wrapping_add(m[index as usize].word().min(last).wrapping_mul(size)));
+            m[to as usize] = N::from_word(
+                m[base as usize]
+                    .word()
+                    .wrapping_add(m[index as usize].word().min(last).wrapping_mul(size)),
+            );
         }
         Instruction::Pick { to, from, index, size, count } => {
             copy(m, to, from + m[index as usize].word().min(count.saturating_sub(1)) * size, size);
         }
-        Instruction::Load { to, pointer, offset, n } => copy(m, to, m[pointer as usize].word().wrapping_add(offset), n),
-        Instruction::Store { pointer, offset, from, n } => copy(m, m[pointer as usize].word().wrapping_add(offset), from, n),
+        Instruction::Load { to, pointer, offset, n } => {
+            copy(m, to, m[pointer as usize].word().wrapping_add(offset), n)
+        }
+        Instruction::Store { pointer, offset, from, n } => {
+            copy(m, m[pointer as usize].word().wrapping_add(offset), from, n)
+        }
         _ => {}
     }
 }
@@ -101,9 +143,22 @@ fn whole<N: Number>(value: f64) -> N {
 }
 
 /// Products of matrices; a column of `b` at a time.
-fn product<N: Number>(m: &mut [N], op: Product, [inner, rows, columns]: [u8; 3], to: u32, a: u32, b: u32) {
-    let (inner, rows, columns, to, a, b) =
-        (usize::from(inner), usize::from(rows), usize::from(columns), to as usize, a as usize, b as usize);
+fn product<N: Number>(
+    m: &mut [N],
+    op: Product,
+    [inner, rows, columns]: [u8; 3],
+    to: u32,
+    a: u32,
+    b: u32,
+) {
+    let (inner, rows, columns, to, a, b) = (
+        usize::from(inner),
+        usize::from(rows),
+        usize::from(columns),
+        to as usize,
+        a as usize,
+        b as usize,
+    );
     // Element k of row r of `a`; the vector on the left of a matrix is its only row.
     let stride = if op == Product::VectorMatrix { 1 } else { rows };
     for column in 0..columns {

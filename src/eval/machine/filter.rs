@@ -58,11 +58,14 @@ pub(super) fn project(shape: Shape, coordinate: [f64; 3], error: [f64; 3], layer
         return Point { shape, at: coordinate, error, layer, face: 0 };
     }
     let size = coordinate.map(f64::abs);
-    let major = if size[2] >= size[0] && size[2] >= size[1] { 2 } else { usize::from(size[1] >= size[0]) };
+    let major =
+        if size[2] >= size[0] && size[2] >= size[1] { 2 } else { usize::from(size[1] >= size[0]) };
     let face = 2 * major + usize::from(coordinate[major] < 0.0);
     let (_, _, s, t) = FACES[face];
     let along = |(axis, sign): Signed| 0.5 * (sign * coordinate[axis] / size[major] + 1.0);
-    let off = |(axis, _): Signed| 0.5 * (error[axis] + size[axis] / size[major] * error[major]) / size[major];
+    let off = |(axis, _): Signed| {
+        0.5 * (error[axis] + size[axis] / size[major] * error[major]) / size[major]
+    };
     Point { shape, at: [along(s), along(t), 0.0], error: [off(s), off(t), 0.0], layer, face }
 }
 
@@ -71,7 +74,9 @@ impl Point {
     pub fn slope(&self, direction: [f64; 3], step: [f64; 3]) -> [f64; 3] {
         let (major, sign, s, t) = FACES[self.face];
         let size = direction[major].abs();
-        let along = |(axis, side): Signed| 0.5 * side * (step[axis] * size - direction[axis] * step[major] * sign) / (size * size);
+        let along = |(axis, side): Signed| {
+            0.5 * side * (step[axis] * size - direction[axis] * step[major] * sign) / (size * size)
+        };
         [along(s), along(t), 0.0]
     }
 }
@@ -105,7 +110,11 @@ pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> 
     let slack = reach.iter().sum::<f64>().min(1.0);
     let spread = spread(footprint, level, reach, doubt);
     std::array::from_fn(|i| {
-        let error = if spread[i] == 0.0 { 0.0 } else { spread[i] * slack + values[i].abs() * f64::from(f32::EPSILON) };
+        let error = if spread[i] == 0.0 {
+            0.0
+        } else {
+            spread[i] * slack + values[i].abs() * f64::from(f32::EPSILON)
+        };
         (values[i], error)
     })
 }
@@ -117,19 +126,30 @@ fn reach<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
 }
 
 /// Largest difference of two texels within reach, for each component.
-fn spread<N: Number>(footprint: &Footprint<N>, level: &Level, reach: [f64; 3], doubt: &mut bool) -> [f64; 4] {
+fn spread<N: Number>(
+    footprint: &Footprint<N>,
+    level: &Level,
+    reach: [f64; 3],
+    doubt: &mut bool,
+) -> [f64; 4] {
     let (size, at) = (size(footprint, level), footprint.point.at);
-    let side = |i: usize, reach: f64| if size[i] == 0.0 { 0 } else { (at[i] * size[i] - 0.5 + reach).floor() as i64 };
+    let side = |i: usize, reach: f64| {
+        if size[i] == 0.0 { 0 } else { (at[i] * size[i] - 0.5 + reach).floor() as i64 }
+    };
     let [first, last]: [[i64; 3]; 2] = [
         std::array::from_fn(|i| side(i, -reach[i].min(WIDEST))),
-        std::array::from_fn(|i| side(i, reach[i].min(WIDEST)).saturating_add(i64::from(size[i] > 0.0))),
+        std::array::from_fn(|i| {
+            side(i, reach[i].min(WIDEST)).saturating_add(i64::from(size[i] > 0.0))
+        }),
     ];
     let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
     for z in first[2]..=last[2] {
         for (y, x) in (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| (y, x))) {
             footprint.taps(level, [x, y, z], 1.0, &mut |tap| {
                 let texel = footprint.compared(tap, doubt).texel;
-                (0..4).for_each(|i| (low[i], high[i]) = (low[i].min(texel[i]), high[i].max(texel[i])));
+                (0..4).for_each(|i| {
+                    (low[i], high[i]) = (low[i].min(texel[i]), high[i].max(texel[i]))
+                });
             });
         }
     }
@@ -137,11 +157,16 @@ fn spread<N: Number>(footprint: &Footprint<N>, level: &Level, reach: [f64; 3], d
 }
 
 /// One component of the four texels around: (0, 1), (1, 1), (1, 0), (0, 0).
-pub(super) fn gathered<N: Number>(footprint: &Footprint<N>, component: usize, doubt: &mut bool) -> [(f64, f64); 4] {
+pub(super) fn gathered<N: Number>(
+    footprint: &Footprint<N>,
+    component: usize,
+    doubt: &mut bool,
+) -> [(f64, f64); 4] {
     let level = &footprint.texture.levels[footprint.level];
     let base = base(footprint, level);
     [[0, 1], [1, 1], [1, 0], [0, 0]].map(|[x, y]| {
-        let texel = footprint.texel(level, [base[0].saturating_add(x), base[1].saturating_add(y), base[2]]);
+        let texel =
+            footprint.texel(level, [base[0].saturating_add(x), base[1].saturating_add(y), base[2]]);
         (footprint.compared(Tap { weight: 1.0, texel }, doubt).texel[component], 0.0)
     })
 }
@@ -156,18 +181,27 @@ fn size<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
 /// The texel down left of the place, as linear filters count.
 fn base<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
     let size = size(footprint, level);
-    std::array::from_fn(|i| if size[i] == 0.0 { 0 } else { (footprint.point.at[i] * size[i] - 0.5).floor() as i64 })
+    std::array::from_fn(|i| {
+        if size[i] == 0.0 { 0 } else { (footprint.point.at[i] * size[i] - 0.5).floor() as i64 }
+    })
 }
 
 fn linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(Tap)) {
     let (size, base) = (size(footprint, level), base(footprint, level));
-    let share: [f64; 3] =
-        std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 });
+    let share: [f64; 3] = std::array::from_fn(|i| {
+        if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 }
+    });
     let corners = (0..8usize).map(|corner| [corner & 1, corner >> 1 & 1, corner >> 2]);
     for corner in corners.filter(|corner| (0..3).all(|i| corner[i] == 0 || size[i] > 0.0)) {
-        let weight: f64 = (0..3).map(|i| if corner[i] == 1 { share[i] } else { 1.0 - share[i] }).product();
+        let weight: f64 =
+            (0..3).map(|i| if corner[i] == 1 { share[i] } else { 1.0 - share[i] }).product();
         if weight != 0.0 {
-            footprint.taps(level, std::array::from_fn(|i| base[i].saturating_add(corner[i] as i64)), weight, add);
+            footprint.taps(
+                level,
+                std::array::from_fn(|i| base[i].saturating_add(corner[i] as i64)),
+                weight,
+                add,
+            );
         }
     }
 }
@@ -178,19 +212,24 @@ fn nearest<N: Number>(footprint: &Footprint<N>, level: &Level) -> ([f64; 4], boo
     let at = |sides: [f64; 3]| {
         let coordinate = |i: usize| {
             let place = point.at[i] * size[i];
-            (place + sides[i] * (point.error[i] * size[i] + place.abs() * f64::from(f32::EPSILON))).floor() as i64
+            (place + sides[i] * (point.error[i] * size[i] + place.abs() * f64::from(f32::EPSILON)))
+                .floor() as i64
         };
         footprint.texel(level, std::array::from_fn(coordinate))
     };
     let texel = at([0.0; 3]);
     let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
-    let is_open = N::BOUNDED && point.error != [0.0; 3] && (0..8).any(|corner| at([corner & 1, corner & 2, corner & 4].map(side)) != texel);
+    let is_open = N::BOUNDED
+        && point.error != [0.0; 3]
+        && (0..8).any(|corner| at([corner & 1, corner & 2, corner & 4].map(side)) != texel);
     (texel, is_open)
 }
 
 impl<N: Number> Footprint<'_, N> {
     fn compared(&self, tap: Tap, doubt: &mut bool) -> Tap {
-        let (Some(reference), Some(compare)) = (self.reference, self.sampler.compare) else { return tap };
+        let (Some(reference), Some(compare)) = (self.reference, self.sampler.compare) else {
+            return tap;
+        };
         let pass = N::compare(compare, reference, N::from_f64(tap.texel[0]), doubt);
         Tap { texel: [f64::from(u8::from(pass)); 4], ..tap }
     }
@@ -214,10 +253,20 @@ impl<N> Footprint<'_, N> {
         let moved: [i64; 3] = std::array::from_fn(|i| at[i].saturating_add(self.shift[i]));
         let place = match self.point.shape {
             Shape::Cube => self.around(level, moved),
-            Shape::D3 => [0, 1, 2].map(|i| wrap(self.sampler.address[i], moved[i], [level.width, level.height, level.layers][i])),
+            Shape::D3 => [0, 1, 2].map(|i| {
+                wrap(
+                    self.sampler.address[i],
+                    moved[i],
+                    [level.width, level.height, level.layers][i],
+                )
+            }),
             _ => {
                 let layer = i64::from(self.point.layer.min(level.layers - 1));
-                [wrap(self.sampler.address[0], moved[0], level.width), wrap(self.sampler.address[1], moved[1], level.height), layer]
+                [
+                    wrap(self.sampler.address[0], moved[0], level.width),
+                    wrap(self.sampler.address[1], moved[1], level.height),
+                    layer,
+                ]
             }
         };
         level.texel(place).unwrap_or_default()

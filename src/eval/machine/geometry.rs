@@ -8,16 +8,36 @@ use super::super::number::Number;
 type Vector<N> = [N; 4];
 
 /// Runs one function on the slots `[to, a, b, c]`.
-pub(super) fn geometry<N: Number>(m: &mut [N], op: Geometry, n: usize, [to, a, b, c]: [usize; 4], doubt: &mut bool) {
+pub(super) fn geometry<N: Number>(
+    m: &mut [N],
+    op: Geometry,
+    n: usize,
+    [to, a, b, c]: [usize; 4],
+    doubt: &mut bool,
+) {
     match op {
         Geometry::Dot => m[to] = N::dot(&m[a..a + n], &m[b..b + n]),
-        Geometry::DotWord => m[to] = N::from_word((0..n).map(|i| m[a + i].word().wrapping_mul(m[b + i].word())).fold(0, u32::wrapping_add)),
+        Geometry::DotWord => {
+            m[to] = N::from_word(
+                (0..n)
+                    .map(|i| m[a + i].word().wrapping_mul(m[b + i].word()))
+                    .fold(0, u32::wrapping_add),
+            )
+        }
         Geometry::Cross => put(m, to, 3, cross(&load(m, a, 3), &load(m, b, 3), doubt)),
-        Geometry::Distance => m[to] = length(&zip(Binary::Subtract, &load(m, a, n), &load(m, b, n), doubt)[..n], doubt),
+        Geometry::Distance => {
+            m[to] =
+                length(&zip(Binary::Subtract, &load(m, a, n), &load(m, b, n), doubt)[..n], doubt)
+        }
         Geometry::Length => m[to] = length(&m[a..a + n], doubt),
         Geometry::Normalize => put(m, to, n, normalize(&load(m, a, n), n, doubt)),
         Geometry::FaceForward => {
-            let front = N::compare(Compare::Less, N::dot(&m[c..c + n], &m[b..b + n]), N::from_f64(0.0), doubt);
+            let front = N::compare(
+                Compare::Less,
+                N::dot(&m[c..c + n], &m[b..b + n]),
+                N::from_f64(0.0),
+                doubt,
+            );
             let e1 = load(m, a, n);
             put(m, to, n, if front { e1 } else { e1.map(|x| N::unary(Unary::Negate, x, doubt)) });
         }
@@ -27,7 +47,8 @@ pub(super) fn geometry<N: Number>(m: &mut [N], op: Geometry, n: usize, [to, a, b
         Geometry::Inverse => inverse(m, n, to, a, doubt),
         Geometry::Modf => (0..n).for_each(|i| {
             let whole = N::unary(Unary::Trunc, m[a + i], doubt);
-            (m[to + i], m[to + n + i]) = (N::binary(Binary::Subtract, m[a + i], whole, doubt), whole);
+            (m[to + i], m[to + n + i]) =
+                (N::binary(Binary::Subtract, m[a + i], whole, doubt), whole);
         }),
         Geometry::Frexp => (0..n).for_each(|i| {
             let (fraction, exponent) = frexp(m[a + i]);
@@ -57,7 +78,10 @@ fn times<N: Number>(vector: &Vector<N>, factor: N, doubt: &mut bool) -> Vector<N
 
 fn cross<N: Number>(a: &Vector<N>, b: &Vector<N>, doubt: &mut bool) -> Vector<N> {
     let mut minor = |i: usize, j: usize| {
-        let (left, right) = (N::binary(Binary::Multiply, a[i], b[j], doubt), N::binary(Binary::Multiply, a[j], b[i], doubt));
+        let (left, right) = (
+            N::binary(Binary::Multiply, a[i], b[j], doubt),
+            N::binary(Binary::Multiply, a[j], b[i], doubt),
+        );
         N::binary(Binary::Subtract, left, right, doubt)
     };
     [minor(1, 2), minor(2, 0), minor(0, 1), N::default()]
@@ -82,7 +106,13 @@ fn reflect<N: Number>(e1: &Vector<N>, e2: &Vector<N>, n: usize, doubt: &mut bool
 }
 
 /// `k = 1 - r^2 (1 - dot(e2, e1)^2)`; 0 if k < 0, else `r e1 - (r dot(e2, e1) + sqrt(k)) e2`.
-fn refract<N: Number>(e1: &Vector<N>, e2: &Vector<N>, ratio: N, n: usize, doubt: &mut bool) -> Vector<N> {
+fn refract<N: Number>(
+    e1: &Vector<N>,
+    e2: &Vector<N>,
+    ratio: N,
+    n: usize,
+    doubt: &mut bool,
+) -> Vector<N> {
     let one = N::from_f64(1.0);
     let cosine = N::dot(&e2[..n], &e1[..n]);
     let mut apply = |op, a, b| N::binary(op, a, b, doubt);
@@ -113,7 +143,8 @@ fn determinant<N: Number>(matrix: &[N], n: usize, doubt: &mut bool) -> N {
         remove(matrix, n, 0, row, &mut minor);
         let part = determinant(&minor[..(n - 1) * (n - 1)], n - 1, doubt);
         let term = N::binary(Binary::Multiply, matrix[row], part, doubt);
-        sum = N::binary(if row % 2 == 0 { Binary::Add } else { Binary::Subtract }, sum, term, doubt);
+        sum =
+            N::binary(if row % 2 == 0 { Binary::Add } else { Binary::Subtract }, sum, term, doubt);
     }
     sum
 }
@@ -134,7 +165,8 @@ fn inverse<N: Number>(m: &mut [N], n: usize, to: usize, from: usize, doubt: &mut
         let mut minor = [N::default(); 9];
         remove(&matrix[..n * n], n, row, column, &mut minor);
         let part = determinant(&minor[..(n - 1) * (n - 1)], n - 1, doubt);
-        let signed = if (column + row) % 2 == 0 { part } else { N::unary(Unary::Negate, part, doubt) };
+        let signed =
+            if (column + row) % 2 == 0 { part } else { N::unary(Unary::Negate, part, doubt) };
         m[to + i] = N::binary(Binary::Divide, signed, whole, doubt);
     }
 }

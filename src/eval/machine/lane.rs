@@ -48,10 +48,16 @@ pub(super) enum Stop {
 }
 
 /// Runs until the function returns or needs its neighbours.
-pub(super) fn run<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) -> Result<Stop, Error> {
+pub(super) fn run<N: Number>(
+    env: Env,
+    lane: &mut Lane<N>,
+    watch: &mut Watch,
+) -> Result<Stop, Error> {
     loop {
         let at = lane.pc;
-        let Some(instruction) = env.program.code.get(at as usize) else { return Err(lost(env.program, at)) };
+        let Some(instruction) = env.program.code.get(at as usize) else {
+            return Err(lost(env.program, at));
+        };
         lane.pc += 1;
         match *instruction {
             Instruction::Jump { to } => lane.pc = to,
@@ -64,7 +70,9 @@ pub(super) fn run<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) ->
                     return Err(endless(env, at));
                 }
             }
-            Instruction::Switch { selector, table } => lane.pc = target(env.program, table, lane.word(selector)),
+            Instruction::Switch { selector, table } => {
+                lane.pc = target(env.program, table, lane.word(selector))
+            }
             Instruction::Call { to } => {
                 lane.calls.push(lane.pc);
                 lane.pc = to;
@@ -78,11 +86,15 @@ pub(super) fn run<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) ->
                 lane.pc = at;
                 return Ok(Stop::Quad);
             }
-            Instruction::Image { access } if env.quad && env.program.images[access as usize].implicit() => {
+            Instruction::Image { access }
+                if env.quad && env.program.images[access as usize].implicit() =>
+            {
                 lane.pc = at;
                 return Ok(Stop::Quad);
             }
-            Instruction::Image { access } => texture::single(env, access, &mut lane.memory, at, watch)?,
+            Instruction::Image { access } => {
+                texture::single(env, access, &mut lane.memory, at, watch)?
+            }
             _ => {
                 let mut doubt = false;
                 compute(instruction, &mut lane.memory, &mut doubt);

@@ -48,7 +48,8 @@ impl<'p, N: Number> Machine<'p, N> {
     /// # Errors
     /// What computing the constants meets.
     pub fn new(program: &'p Program) -> Result<Self, Error> {
-        let mut lane = Lane { memory: vec![N::default(); program.slots as usize], ..Lane::default() };
+        let mut lane =
+            Lane { memory: vec![N::default(); program.slots as usize], ..Lane::default() };
         for &(slot, value) in &program.pool {
             lane.memory[slot as usize] = match value {
                 Constant::Word(word) => N::from_word(word),
@@ -85,16 +86,23 @@ impl<'p, N: Number> Machine<'p, N> {
         self.lane.memory.truncate(self.program.slots as usize);
         for (index, global) in self.program.globals.iter().enumerate() {
             self.bound[index] = false;
-            let Some(bytes) = global.binding.and_then(|binding| resources.buffers.get(&binding)) else { continue };
+            let Some(bytes) = global.binding.and_then(|binding| resources.buffers.get(&binding))
+            else {
+                continue;
+            };
             self.bound[index] = bytes.len() >= global.bytes as usize;
             let mut slots = Vec::new();
-            decode(&self.program.types, global.ty, bytes, &mut |kind, word| slots.push(slot_from_word::<N>(kind, word)));
+            decode(&self.program.types, global.ty, bytes, &mut |kind, word| {
+                slots.push(slot_from_word::<N>(kind, word))
+            });
             match global.role {
                 Role::Buffer => {
                     let first = global.slot as usize;
                     self.lane.memory[first..first + slots.len()].copy_from_slice(&slots);
                 }
-                Role::Runtime { address, count, element } => self.append(slots, global.slots, address, count, element)?,
+                Role::Runtime { address, count, element } => {
+                    self.append(slots, global.slots, address, count, element)?
+                }
                 _ => {}
             }
         }
@@ -118,13 +126,23 @@ impl<'p, N: Number> Machine<'p, N> {
             None => Ok(()),
             Some(index) => {
                 let name = &self.program.globals[*index as usize].name;
-                Err(Error::new(codes::EVAL_UNBOUND, format!("no buffer of its size is given for `{name}`")))
+                Err(Error::new(
+                    codes::EVAL_UNBOUND,
+                    format!("no buffer of its size is given for `{name}`"),
+                ))
             }
         }
     }
 
     /// Places a buffer that ends in a runtime-sized array behind the memory.
-    fn append(&mut self, slots: Vec<N>, least: u32, address: u32, count: u32, element: u32) -> Result<(), Error> {
+    fn append(
+        &mut self,
+        slots: Vec<N>,
+        least: u32,
+        address: u32,
+        count: u32,
+        element: u32,
+    ) -> Result<(), Error> {
         let first = self.lane.memory.len();
         if first + slots.len() > super::layout::MAX_SLOTS as usize {
             return Err(Error::too_large("a buffer is too large for the CPU executor"));
@@ -158,16 +176,33 @@ impl<'p, N: Number> Machine<'p, N> {
     ///
     /// # Errors
     /// Those of [`Self::call`].
-    pub fn call_words(&mut self, id: FunctionId, arguments: &[u32], result: &mut Vec<u32>) -> Result<(), Error> {
+    pub fn call_words(
+        &mut self,
+        id: FunctionId,
+        arguments: &[u32],
+        result: &mut Vec<u32>,
+    ) -> Result<(), Error> {
         let function = callable(self.program, id, arguments.len())?;
         self.words.clear();
-        self.words.extend(function.arguments.iter().zip(arguments).map(|(kind, word)| slot_from_word::<N>(*kind, *word)));
+        self.words.extend(
+            function
+                .arguments
+                .iter()
+                .zip(arguments)
+                .map(|(kind, word)| slot_from_word::<N>(*kind, *word)),
+        );
         self.check_buffers(function)?;
         begin(self.program, &mut self.lane);
         place(&mut self.lane, function, &self.words);
         self.run(function.entry)?;
         result.clear();
-        result.extend(function.result.iter().zip(outcome(&self.lane, function)).map(|(kind, slot)| word_from_slot(*kind, *slot)));
+        result.extend(
+            function
+                .result
+                .iter()
+                .zip(outcome(&self.lane, function))
+                .map(|(kind, slot)| word_from_slot(*kind, *slot)),
+        );
         Ok(())
     }
 
@@ -175,7 +210,12 @@ impl<'p, N: Number> Machine<'p, N> {
     fn run(&mut self, entry: u32) -> Result<(), Error> {
         (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
         self.lane.calls.clear();
-        let env = lane::Env { program: self.program, resources: &self.resources, loop_limit: self.loop_limit, quad: false };
+        let env = lane::Env {
+            program: self.program,
+            resources: &self.resources,
+            loop_limit: self.loop_limit,
+            quad: false,
+        };
         match lane::run(env, &mut self.lane, &mut self.watch)? {
             Stop::Done => Ok(()),
             Stop::Quad => Err(needs_quad(self.program, self.lane.pc)),
@@ -215,13 +255,18 @@ impl<'p, N: Number> Machine<'p, N> {
 }
 
 fn callable(program: &Program, id: FunctionId, given: usize) -> Result<&Function, Error> {
-    let function = program.signature(id).ok_or_else(|| Error::new(codes::EVAL_ARGUMENTS, "no such function in this program"))?;
+    let function = program
+        .signature(id)
+        .ok_or_else(|| Error::new(codes::EVAL_ARGUMENTS, "no such function in this program"))?;
     if let Some(error) = &function.error {
         return Err(error.clone());
     }
     let (name, wanted) = (&function.name, function.arguments.len());
     if given != wanted {
-        return Err(Error::new(codes::EVAL_ARGUMENTS, format!("`{name}` takes {wanted} scalars and was given {given}")));
+        return Err(Error::new(
+            codes::EVAL_ARGUMENTS,
+            format!("`{name}` takes {wanted} scalars and was given {given}"),
+        ));
     }
     Ok(function)
 }
@@ -231,7 +276,9 @@ fn begin<N: Number>(program: &Program, lane: &mut Lane<N>) {
     for global in &program.globals {
         let (to, n) = (global.slot as usize, global.slots as usize);
         match global.role {
-            Role::Private(Some(from)) => lane.memory.copy_within(from as usize..from as usize + n, to),
+            Role::Private(Some(from)) => {
+                lane.memory.copy_within(from as usize..from as usize + n, to)
+            }
             Role::Private(None) => lane.memory[to..to + n].fill(N::default()),
             _ => {}
         }

@@ -8,27 +8,53 @@ pub(super) fn pack<N: Number>(m: &mut [N], op: Packing, to: u32, from: u32, doub
     let (to, from) = (to as usize, from as usize);
     let word = m[from].word();
     match op {
-        Packing::Pack4Snorm8 => m[to] = joined(8, (0..4).map(|i| norm(m[from + i], -1.0, 127.0, doubt))),
-        Packing::Pack4Unorm8 => m[to] = joined(8, (0..4).map(|i| norm(m[from + i], 0.0, 255.0, doubt))),
-        Packing::Pack2Snorm16 => m[to] = joined(16, (0..2).map(|i| norm(m[from + i], -1.0, 32767.0, doubt))),
-        Packing::Pack2Unorm16 => m[to] = joined(16, (0..2).map(|i| norm(m[from + i], 0.0, 65535.0, doubt))),
-        Packing::Pack2Half => m[to] = joined(16, (0..2).map(|i| u32::from(half_from(m[from + i].value())))),
+        Packing::Pack4Snorm8 => {
+            m[to] = joined(8, (0..4).map(|i| norm(m[from + i], -1.0, 127.0, doubt)))
+        }
+        Packing::Pack4Unorm8 => {
+            m[to] = joined(8, (0..4).map(|i| norm(m[from + i], 0.0, 255.0, doubt)))
+        }
+        Packing::Pack2Snorm16 => {
+            m[to] = joined(16, (0..2).map(|i| norm(m[from + i], -1.0, 32767.0, doubt)))
+        }
+        Packing::Pack2Unorm16 => {
+            m[to] = joined(16, (0..2).map(|i| norm(m[from + i], 0.0, 65535.0, doubt)))
+        }
+        Packing::Pack2Half => {
+            m[to] = joined(16, (0..2).map(|i| u32::from(half_from(m[from + i].value()))))
+        }
         Packing::Pack4 => m[to] = joined(8, (0..4).map(|i| m[from + i].word())),
-        Packing::PackClampS => m[to] = joined(8, (0..4).map(|i| (m[from + i].word() as i32).clamp(-128, 127) as u32)),
+        Packing::PackClampS => {
+            m[to] = joined(8, (0..4).map(|i| (m[from + i].word() as i32).clamp(-128, 127) as u32))
+        }
         Packing::PackClampU => m[to] = joined(8, (0..4).map(|i| m[from + i].word().min(255))),
         Packing::Unpack4Snorm8 => (0..4).for_each(|i| m[to + i] = ratio(signed(word, 8, i), 127.0)),
-        Packing::Unpack4Unorm8 => (0..4).for_each(|i| m[to + i] = ratio(f64::from(part(word, 8, i)), 255.0)),
-        Packing::Unpack2Snorm16 => (0..2).for_each(|i| m[to + i] = ratio(signed(word, 16, i), 32767.0)),
-        Packing::Unpack2Unorm16 => (0..2).for_each(|i| m[to + i] = ratio(f64::from(part(word, 16, i)), 65535.0)),
-        Packing::Unpack2Half => (0..2).for_each(|i| m[to + i] = N::from_f64(half_to(part(word, 16, i) as u16))),
-        Packing::Unpack4S => (0..4).for_each(|i| m[to + i] = N::from_word(signed(word, 8, i) as i32 as u32)),
+        Packing::Unpack4Unorm8 => {
+            (0..4).for_each(|i| m[to + i] = ratio(f64::from(part(word, 8, i)), 255.0))
+        }
+        Packing::Unpack2Snorm16 => {
+            (0..2).for_each(|i| m[to + i] = ratio(signed(word, 16, i), 32767.0))
+        }
+        Packing::Unpack2Unorm16 => {
+            (0..2).for_each(|i| m[to + i] = ratio(f64::from(part(word, 16, i)), 65535.0))
+        }
+        Packing::Unpack2Half => {
+            (0..2).for_each(|i| m[to + i] = N::from_f64(half_to(part(word, 16, i) as u16)))
+        }
+        Packing::Unpack4S => {
+            (0..4).for_each(|i| m[to + i] = N::from_word(signed(word, 8, i) as i32 as u32))
+        }
         Packing::Unpack4U => (0..4).for_each(|i| m[to + i] = N::from_word(part(word, 8, i))),
     }
 }
 
 fn joined<N: Number>(width: u32, parts: impl Iterator<Item = u32>) -> N {
     let mask = (1 << width) - 1;
-    N::from_word(parts.enumerate().fold(0, |word, (index, part)| word | (part & mask) << (width * index as u32)))
+    N::from_word(
+        parts
+            .enumerate()
+            .fold(0, |word, (index, part)| word | (part & mask) << (width * index as u32)),
+    )
 }
 
 fn part(word: u32, width: u32, index: usize) -> u32 {
@@ -45,7 +71,11 @@ fn norm<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
     // The product and the sum round, unless both are f32 as they are.
     let exact = |value: f64| f64::from(value as f32) == value;
     let product = scale * clamped;
-    let rounding = if exact(product) && exact(product + 0.5) { 0.0 } else { (product.abs() + 0.5) * f64::from(f32::EPSILON) };
+    let rounding = if exact(product) && exact(product + 0.5) {
+        0.0
+    } else {
+        (product.abs() + 0.5) * f64::from(f32::EPSILON)
+    };
     let moved = N::with_error(0.5 + product, scale * x.error() + rounding);
     let clamped = if clamped.is_nan() { N::default() } else { moved };
     N::unary(Unary::Floor, clamped, doubt).value() as i32 as u32
@@ -54,5 +84,8 @@ fn norm<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
 /// A normalised part, within 3 ULP.
 fn ratio<N: Number>(value: f64, scale: f64) -> N {
     let exact = (value / scale).max(-1.0);
-    N::with_error(exact, if exact.fract() == 0.0 { 0.0 } else { 3.0 * exact.abs() * f64::from(f32::EPSILON) })
+    N::with_error(
+        exact,
+        if exact.fract() == 0.0 { 0.0 } else { 3.0 * exact.abs() * f64::from(f32::EPSILON) },
+    )
 }

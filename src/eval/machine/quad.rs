@@ -33,7 +33,9 @@ impl<N: Number> Machine<'_, N> {
         let outcomes = self.together(&mut lanes);
         self.killed = [0, 1, 2, 3].map(|index| lanes.get(index).is_some_and(|lane| lane.killed));
         let results = std::array::from_fn(|index| {
-            entry.zip(lanes.get(index)).map_or(Vec::new(), |(function, lane)| outcome(lane, function).to_vec())
+            entry
+                .zip(lanes.get(index))
+                .map_or(Vec::new(), |(function, lane)| outcome(lane, function).to_vec())
         });
         self.quad = lanes;
         outcomes.map(|()| results)
@@ -45,7 +47,12 @@ impl<N: Number> Machine<'_, N> {
     }
 
     fn together(&mut self, lanes: &mut [Lane<N>]) -> Result<(), Error> {
-        let env = Env { program: self.program, resources: &self.resources, loop_limit: self.loop_limit, quad: true };
+        let env = Env {
+            program: self.program,
+            resources: &self.resources,
+            loop_limit: self.loop_limit,
+            quad: true,
+        };
         let mut running = [true; 4];
         loop {
             let mut waiting = Vec::new();
@@ -56,8 +63,15 @@ impl<N: Number> Machine<'_, N> {
                 }
             }
             // Those furthest behind go first: the others may wait where they arrive.
-            let Some(&first) = waiting.iter().min_by(|a, b| position(&lanes[**a]).cmp(position(&lanes[**b]))) else { return Ok(()) };
-            let group: Vec<usize> = waiting.into_iter().filter(|index| position(&lanes[*index]).eq(position(&lanes[first]))).collect();
+            let Some(&first) =
+                waiting.iter().min_by(|a, b| position(&lanes[**a]).cmp(position(&lanes[**b])))
+            else {
+                return Ok(());
+            };
+            let group: Vec<usize> = waiting
+                .into_iter()
+                .filter(|index| position(&lanes[*index]).eq(position(&lanes[first])))
+                .collect();
             let at = lanes[first].pc;
             if group.len() < 4 {
                 self.watch.note(Kind::DivergentDerivative, at);
@@ -68,7 +82,9 @@ impl<N: Number> Machine<'_, N> {
                         derivative(lanes, &group, axis, coarse, (to + i) as usize, a.at(i));
                     }
                 }
-                Instruction::Image { access } => texture::quad(env, access, lanes, &group, &mut self.watch)?,
+                Instruction::Image { access } => {
+                    texture::quad(env, access, lanes, &group, &mut self.watch)?
+                }
                 _ => {}
             }
             group.iter().for_each(|index| lanes[*index].pc += 1);
@@ -90,8 +106,16 @@ pub(super) fn pair(lane: usize, axis: Axis, coarse: bool) -> (usize, usize) {
     }
 }
 
-fn derivative<N: Number>(lanes: &mut [Lane<N>], group: &[usize], axis: Axis, coarse: bool, to: usize, from: usize) {
-    let values: [Option<N>; 4] = std::array::from_fn(|index| group.contains(&index).then(|| lanes[index].memory[from]));
+fn derivative<N: Number>(
+    lanes: &mut [Lane<N>],
+    group: &[usize],
+    axis: Axis,
+    coarse: bool,
+    to: usize,
+    from: usize,
+) {
+    let values: [Option<N>; 4] =
+        std::array::from_fn(|index| group.contains(&index).then(|| lanes[index].memory[from]));
     let mut doubt = false;
     for &index in group {
         let mut along = |axis| {
@@ -103,7 +127,8 @@ fn derivative<N: Number>(lanes: &mut [Lane<N>], group: &[usize], axis: Axis, coa
         };
         let result = match axis {
             Axis::Width => {
-                let [x, y] = [along(Axis::X), along(Axis::Y)].map(|slope| N::unary(Unary::Abs, slope, &mut false));
+                let [x, y] = [along(Axis::X), along(Axis::Y)]
+                    .map(|slope| N::unary(Unary::Abs, slope, &mut false));
                 N::binary(Binary::Add, x, y, &mut false)
             }
             axis => along(axis),

@@ -20,30 +20,56 @@ type Gradient = [[f64; 3]; 2];
 type Notes<'w> = (u32, &'w mut Watch);
 
 /// Runs an access whose level follows from the neighbours, for those lanes that reached it.
-pub(super) fn quad<N: Number>(env: Env, index: u32, lanes: &mut [Lane<N>], group: &[usize], watch: &mut Watch) -> Result<(), Error> {
+pub(super) fn quad<N: Number>(
+    env: Env,
+    index: u32,
+    lanes: &mut [Lane<N>],
+    group: &[usize],
+    watch: &mut Watch,
+) -> Result<(), Error> {
     let access = &env.program.images[index as usize];
-    let coordinates: [Option<[f64; 3]>; 4] =
-        std::array::from_fn(|lane| group.contains(&lane).then(|| values(&lanes[lane].memory, access.coordinate, access.dimensions)));
+    let coordinates: [Option<[f64; 3]>; 4] = std::array::from_fn(|lane| {
+        group
+            .contains(&lane)
+            .then(|| values(&lanes[lane].memory, access.coordinate, access.dimensions))
+    });
     for &lane in group {
         let gradient = [Axis::X, Axis::Y].map(|axis| {
             let (low, high) = pair(lane, axis, false);
-            coordinates[low].zip(coordinates[high]).map_or([0.0; 3], |(low, high)| std::array::from_fn(|i| high[i] - low[i]))
+            coordinates[low]
+                .zip(coordinates[high])
+                .map_or([0.0; 3], |(low, high)| std::array::from_fn(|i| high[i] - low[i]))
         });
         let pc = lanes[lane].pc;
-        apply(env, access, &mut lanes[lane].memory, Some(gradient), (pc, watch)).map_err(|error| error.or_at(env.span(pc)))?;
+        apply(env, access, &mut lanes[lane].memory, Some(gradient), (pc, watch))
+            .map_err(|error| error.or_at(env.span(pc)))?;
     }
     Ok(())
 }
 
 /// Runs an access of one lane.
-pub(super) fn single<N: Number>(env: Env, index: u32, memory: &mut [N], pc: u32, watch: &mut Watch) -> Result<(), Error> {
-    apply(env, &env.program.images[index as usize], memory, None, (pc, watch)).map_err(|error| error.or_at(env.span(pc)))
+pub(super) fn single<N: Number>(
+    env: Env,
+    index: u32,
+    memory: &mut [N],
+    pc: u32,
+    watch: &mut Watch,
+) -> Result<(), Error> {
+    apply(env, &env.program.images[index as usize], memory, None, (pc, watch))
+        .map_err(|error| error.or_at(env.span(pc)))
 }
 
-fn apply<N: Number>(env: Env, access: &Access, m: &mut [N], gradient: Option<Gradient>, notes: Notes) -> Result<(), Error> {
+fn apply<N: Number>(
+    env: Env,
+    access: &Access,
+    m: &mut [N],
+    gradient: Option<Gradient>,
+    notes: Notes,
+) -> Result<(), Error> {
     let texture = texture(env, m[access.image as usize].word())?;
     let size = |level: Option<u32>| {
-        let level = level.map_or(0, |slot| m[slot as usize].word() as usize).min(texture.levels.len() - 1);
+        let level =
+            level.map_or(0, |slot| m[slot as usize].word() as usize).min(texture.levels.len() - 1);
         let level = &texture.levels[level];
         [level.width, level.height, level.layers, 0]
     };
@@ -55,7 +81,11 @@ fn apply<N: Number>(env: Env, access: &Access, m: &mut [N], gradient: Option<Gra
             put(m, access, size.map(|size| (f64::from(size), 0.0)));
         }
         Ask::Levels => put(m, access, [(texture.levels.len() as f64, 0.0); 4]),
-        Ask::Layers => put(m, access, [(f64::from(size(None)[2] / if texture.shape == Shape::Cube { 6 } else { 1 }), 0.0); 4]),
+        Ask::Layers => put(
+            m,
+            access,
+            [(f64::from(size(None)[2] / if texture.shape == Shape::Cube { 6 } else { 1 }), 0.0); 4],
+        ),
         Ask::Samples => put(m, access, [(1.0, 0.0); 4]),
     }
     Ok(())
@@ -64,7 +94,9 @@ fn apply<N: Number>(env: Env, access: &Access, m: &mut [N], gradient: Option<Gra
 fn texture<'e>(env: Env<'e>, global: u32) -> Result<&'e Texture, Error> {
     let variable = env.program.globals.get(global as usize);
     let bound = variable.and_then(|variable| env.resources.textures.get(&variable.binding?));
-    bound.filter(|texture| texture.is_complete()).ok_or_else(|| unbound(variable.map(|variable| &*variable.name)))
+    bound
+        .filter(|texture| texture.is_complete())
+        .ok_or_else(|| unbound(variable.map(|variable| &*variable.name)))
 }
 
 fn sampler<'e>(env: Env<'e>, global: u32) -> Result<&'e Sampler, Error> {
@@ -74,18 +106,28 @@ fn sampler<'e>(env: Env<'e>, global: u32) -> Result<&'e Sampler, Error> {
 }
 
 fn unbound(name: Option<&str>) -> Error {
-    Error::new(codes::EVAL_UNBOUND, format!("no complete texture or sampler is given for `{}`", name.unwrap_or("?")))
+    Error::new(
+        codes::EVAL_UNBOUND,
+        format!("no complete texture or sampler is given for `{}`", name.unwrap_or("?")),
+    )
 }
 
 /// One texel; outside of the texture it is zero, and a finding.
-fn load<N: Number>(access: &Access, texture: &Texture, m: &mut [N], level: Option<u32>, (pc, watch): Notes) {
+fn load<N: Number>(
+    access: &Access,
+    texture: &Texture,
+    m: &mut [N],
+    level: Option<u32>,
+    (pc, watch): Notes,
+) {
     let word = |slot: u32| i64::from(m[slot as usize].word() as i32);
     let mut at = [0i64; 3];
     (0..usize::from(access.dimensions)).for_each(|i| at[i] = word(access.coordinate + i as u32));
     if let Some(layer) = access.layer {
         at[2] = word(layer);
     }
-    let level = usize::try_from(level.map_or(0, word)).ok().and_then(|level| texture.levels.get(level));
+    let level =
+        usize::try_from(level.map_or(0, word)).ok().and_then(|level| texture.levels.get(level));
     let texel = level.and_then(|level| level.texel(at));
     if texel.is_none() {
         watch.note(Kind::OutOfBounds, pc);
@@ -101,22 +143,41 @@ fn sample<N: Number>(
     gradient: Option<Gradient>,
     notes: Notes,
 ) -> Result<(), Error> {
-    let Ask::Sample { sampler: slot, gather, level, offset, reference, clamp_to_edge } = access.ask else { return Ok(()) };
+    let Ask::Sample { sampler: slot, gather, level, offset, reference, clamp_to_edge } = access.ask
+    else {
+        return Ok(());
+    };
     let sampler = sampler(env, m[slot as usize].word())?;
-    let sampler = if clamp_to_edge { Sampler { address: Default::default(), ..*sampler } } else { *sampler };
+    let sampler =
+        if clamp_to_edge { Sampler { address: Default::default(), ..*sampler } } else { *sampler };
     let coordinate = values(m, access.coordinate, access.dimensions);
-    let errors: [f64; 3] =
-        std::array::from_fn(|i| if i < usize::from(access.dimensions) { m[access.coordinate as usize + i].error() } else { 0.0 });
+    let errors: [f64; 3] = std::array::from_fn(|i| {
+        if i < usize::from(access.dimensions) {
+            m[access.coordinate as usize + i].error()
+        } else {
+            0.0
+        }
+    });
     let layer = access.layer.map_or(0, |slot| (m[slot as usize].word() as i32).max(0) as u32);
     let point = project(texture.shape, coordinate, errors, layer);
     let shift: [i64; 3] = std::array::from_fn(|i| match offset {
-        Some(slot) if i < usize::from(access.dimensions) => i64::from(m[slot as usize + i].word() as i32),
+        Some(slot) if i < usize::from(access.dimensions) => {
+            i64::from(m[slot as usize + i].word() as i32)
+        }
         _ => 0,
     });
     let mut doubt = false;
     let reference = reference.map(|slot| m[slot as usize]);
     let result = if let Some(component) = gather {
-        let footprint = Footprint { texture, sampler: &sampler, level: 0, filter: Filter::Linear, point, shift, reference };
+        let footprint = Footprint {
+            texture,
+            sampler: &sampler,
+            level: 0,
+            filter: Filter::Linear,
+            point,
+            shift,
+            reference,
+        };
         gathered(&footprint, usize::from(component), &mut doubt)
     } else {
         let slopes = match level {
@@ -166,32 +227,54 @@ fn between_levels<N: Number>(
     doubt: &mut bool,
 ) -> [(f64, f64); 4] {
     let last = (texture.levels.len() - 1) as f64;
-    let level = if level.is_nan() { 0.0 } else { level.clamp(sampler.levels.0, sampler.levels.1.max(sampler.levels.0)) };
+    let level = if level.is_nan() {
+        0.0
+    } else {
+        level.clamp(sampler.levels.0, sampler.levels.1.max(sampler.levels.0))
+    };
     let filter = if level <= 0.0 { sampler.mag } else { sampler.min };
     let level = level.clamp(0.0, last);
-    let mut at = |level: f64| combine(&Footprint { texture, sampler, level: level as usize, filter, point, shift, reference }, doubt);
+    let mut at = |level: f64| {
+        combine(
+            &Footprint { texture, sampler, level: level as usize, filter, point, shift, reference },
+            doubt,
+        )
+    };
     if sampler.mipmap == Filter::Nearest || level.fract() == 0.0 {
         let chosen = (level + 0.5).floor().min(last);
         let found = at(chosen);
         // Where the level is as near to another, a device may take either.
-        let others = [level - LEVEL_STEP, level + LEVEL_STEP].map(|level| (level + 0.5).floor().clamp(0.0, last));
-        if N::BOUNDED && sampler.mipmap == Filter::Nearest && others.iter().any(|other| *other != chosen && at(*other) != found) {
+        let others = [level - LEVEL_STEP, level + LEVEL_STEP]
+            .map(|level| (level + 0.5).floor().clamp(0.0, last));
+        if N::BOUNDED
+            && sampler.mipmap == Filter::Nearest
+            && others.iter().any(|other| *other != chosen && at(*other) != found)
+        {
             *doubt = true;
         }
         return found;
     }
     let (fine, coarse, share) = (at(level.floor()), at(level.floor() + 1.0), level.fract());
     std::array::from_fn(|i| {
-        (fine[i].0 * (1.0 - share) + coarse[i].0 * share, fine[i].1.max(coarse[i].1) + (fine[i].0 - coarse[i].0).abs() * LEVEL_STEP)
+        (
+            fine[i].0 * (1.0 - share) + coarse[i].0 * share,
+            fine[i].1.max(coarse[i].1) + (fine[i].0 - coarse[i].0).abs() * LEVEL_STEP,
+        )
     })
 }
 
 fn values<N: Number>(m: &[N], slot: u32, dimensions: u8) -> [f64; 3] {
-    std::array::from_fn(|i| if i < usize::from(dimensions) { m[slot as usize + i].value() } else { 0.0 })
+    std::array::from_fn(|i| {
+        if i < usize::from(dimensions) { m[slot as usize + i].value() } else { 0.0 }
+    })
 }
 
 fn put<N: Number>(m: &mut [N], access: &Access, result: [(f64, f64); 4]) {
     for (i, (value, error)) in result.into_iter().take(usize::from(access.n)).enumerate() {
-        m[access.to as usize + i] = if access.words { N::from_word(value as i64 as u32) } else { N::with_error(value, error) };
+        m[access.to as usize + i] = if access.words {
+            N::from_word(value as i64 as u32)
+        } else {
+            N::with_error(value, error)
+        };
     }
 }

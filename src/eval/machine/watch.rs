@@ -58,15 +58,23 @@ impl Watch {
                 self.judge(outside.then_some(Kind::Domain), memory, &[(a, n)], (to, n), pc);
             }
             Instruction::Float2 { op, n, to, a, b } => {
-                let trouble = (0..u32::from(n)).find_map(|i| outside2(op, memory[a.at(i)].value(), memory[b.at(i)].value()));
+                let trouble = (0..u32::from(n))
+                    .find_map(|i| outside2(op, memory[a.at(i)].value(), memory[b.at(i)].value()));
                 self.judge(trouble, memory, &[(a, n), (b, n)], (to, n), pc);
             }
-            Instruction::Float3 { n, to, a, b, c, .. } => self.judge(None, memory, &[(a, n), (b, n), (c, n)], (to, n), pc),
+            Instruction::Float3 { n, to, a, b, c, .. } => {
+                self.judge(None, memory, &[(a, n), (b, n), (c, n)], (to, n), pc)
+            }
             Instruction::Convert { op, n, a, .. } => {
                 let wild = (0..u32::from(n)).any(|i| unfit(op, memory[a.at(i)].value()));
                 self.note_if(wild, Kind::Conversion, pc);
             }
-            Instruction::Word2 { op: Word2::DivideS | Word2::DivideU | Word2::RemainderS | Word2::RemainderU, n, b, .. } => {
+            Instruction::Word2 {
+                op: Word2::DivideS | Word2::DivideU | Word2::RemainderS | Word2::RemainderU,
+                n,
+                b,
+                ..
+            } => {
                 let zero = (0..u32::from(n)).any(|i| memory[b.at(i)].word() == 0);
                 self.note_if(zero, Kind::DivisionByZero, pc);
             }
@@ -81,7 +89,9 @@ impl Watch {
                 let outside = memory[index as usize].word() >= memory[count as usize].word();
                 self.note_if(outside, Kind::OutOfBounds, pc);
             }
-            Instruction::Pick { index, count, .. } => self.note_if(memory[index as usize].word() >= count, Kind::OutOfBounds, pc),
+            Instruction::Pick { index, count, .. } => {
+                self.note_if(memory[index as usize].word() >= count, Kind::OutOfBounds, pc)
+            }
             _ => {}
         }
     }
@@ -93,8 +103,17 @@ impl Watch {
     }
 
     /// Notes trouble with the operands, else a result that is not finite though they are.
-    fn judge<N: Number>(&mut self, trouble: Option<Kind>, memory: &[N], operands: &[(Operand, u8)], to: (u32, u8), pc: u32) {
-        let finite = |(operand, n): &(Operand, u8)| (0..u32::from(*n)).all(|i| memory[operand.at(i)].value().is_finite());
+    fn judge<N: Number>(
+        &mut self,
+        trouble: Option<Kind>,
+        memory: &[N],
+        operands: &[(Operand, u8)],
+        to: (u32, u8),
+        pc: u32,
+    ) {
+        let finite = |(operand, n): &(Operand, u8)| {
+            (0..u32::from(*n)).all(|i| memory[operand.at(i)].value().is_finite())
+        };
         let results = &memory[to.0 as usize..(to.0 + u32::from(to.1)) as usize];
         let nan = results.iter().any(|result| result.value().is_nan());
         let infinite = results.iter().any(|result| result.value().is_infinite());

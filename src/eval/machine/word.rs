@@ -23,7 +23,9 @@ pub(super) fn word1(op: Word1, x: u32) -> u32 {
         }
         Word1::FirstLeading => 31u32.wrapping_sub(x.leading_zeros()),
         // The highest bit that differs from the sign.
-        Word1::FirstLeadingSigned => 31u32.wrapping_sub((x ^ ((x as i32) >> 31) as u32).leading_zeros()),
+        Word1::FirstLeadingSigned => {
+            31u32.wrapping_sub((x ^ ((x as i32) >> 31) as u32).leading_zeros())
+        }
         Word1::Truth => u32::from(x != 0),
     }
 }
@@ -56,7 +58,9 @@ pub(super) fn word2(op: Word2, a: u32, b: u32) -> u32 {
         Word2::MinU => a.min(b),
         Word2::MaxS => signed_a.max(signed_b) as u32,
         Word2::MaxU => a.max(b),
-        Word2::DotBytesS => bytes(a, b).map(|(a, b)| i32::from(a as i8) * i32::from(b as i8)).sum::<i32>() as u32,
+        Word2::DotBytesS => {
+            bytes(a, b).map(|(a, b)| i32::from(a as i8) * i32::from(b as i8)).sum::<i32>() as u32
+        }
         Word2::DotBytesU => bytes(a, b).map(|(a, b)| u32::from(a) * u32::from(b)).sum(),
     }
 }

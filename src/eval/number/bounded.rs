@@ -64,37 +64,66 @@ impl Bounded {
     /// A step function: constant where the argument's error does not reach a jump.
     fn stepped(op: Unary, x: Self, doubt: &mut bool) -> Self {
         let mut unused = false;
-        let [low, value, high] = [x.value - x.error, x.value, x.value + x.error].map(|x| f64::unary(op, x, &mut unused));
+        let [low, value, high] =
+            [x.value - x.error, x.value, x.value + x.error].map(|x| f64::unary(op, x, &mut unused));
         *doubt |= low != high;
-        Self::new(value, if low == high { 0.0 } else { (high - value).abs().max((value - low).abs()) })
+        Self::new(
+            value,
+            if low == high { 0.0 } else { (high - value).abs().max((value - low).abs()) },
+        )
     }
 
     /// The error of a smooth function: the slope's share and the operation's own.
     fn smooth(op: Unary, x: Self, value: f64) -> f64 {
         let v = x.value;
-        let log_own = |value: f64| if (0.5..=2.0).contains(&v) { (-21f64).exp2() } else { 3.0 * ulp(value) };
+        let log_own =
+            |value: f64| if (0.5..=2.0).contains(&v) { (-21f64).exp2() } else { 3.0 * ulp(value) };
         // No bound is given outside of [-pi, pi].
-        let turn = if v.abs() <= std::f64::consts::PI * (1.0 + 1e-6) { (-11f64).exp2() } else { f64::INFINITY };
+        let turn = if v.abs() <= std::f64::consts::PI * (1.0 + 1e-6) {
+            (-11f64).exp2()
+        } else {
+            f64::INFINITY
+        };
         let exp_relative = (4.0 + 2.0 * v.abs()) * f64::from(f32::EPSILON);
         let root = || (1.0 - v * v).max(0.0).sqrt();
         match op {
             Unary::Cos => times(v.sin(), x.error) + turn,
             Unary::Sin => times(v.cos(), x.error) + turn,
-            Unary::Tan => times(1.0 + value * value, x.error) + turn * (1.0 + value.abs()) / v.cos().abs() + 2.5 * ulp(value),
+            Unary::Tan => {
+                times(1.0 + value * value, x.error)
+                    + turn * (1.0 + value.abs()) / v.cos().abs()
+                    + 2.5 * ulp(value)
+            }
             Unary::Cosh => times(v.sinh(), x.error) + exp_relative * v.cosh() + 2.0 * ulp(value),
             Unary::Sinh => times(v.cosh(), x.error) + exp_relative * v.cosh() + 2.0 * ulp(value),
-            Unary::Tanh => times(1.0 - value * value, x.error) + 2.0 * exp_relative + 4.0 * ulp(value),
-            Unary::Acos | Unary::Asin => times(1.0 / root(), x.error).min(2.0 * x.error.sqrt()) + 6.81e-5 + 4096.0 * ulp(value),
+            Unary::Tanh => {
+                times(1.0 - value * value, x.error) + 2.0 * exp_relative + 4.0 * ulp(value)
+            }
+            Unary::Acos | Unary::Asin => {
+                times(1.0 / root(), x.error).min(2.0 * x.error.sqrt())
+                    + 6.81e-5
+                    + 4096.0 * ulp(value)
+            }
             Unary::Atan => times(1.0 / (1.0 + v * v), x.error) + 4096.0 * ulp(value),
             Unary::Asinh => times(1.0 / (v * v + 1.0).sqrt(), x.error) + log_of_sum(v, 1.0, value),
-            Unary::Acosh => times(1.0 / (v * v - 1.0).max(0.0).sqrt(), x.error).min(2.0 * x.error.sqrt()) + log_of_sum(v, -1.0, value),
-            Unary::Atanh => times(1.0 / (1.0 - v * v).max(0.0), x.error) + (-20f64).exp2() + 4.0 * ulp(value),
+            Unary::Acosh => {
+                times(1.0 / (v * v - 1.0).max(0.0).sqrt(), x.error).min(2.0 * x.error.sqrt())
+                    + log_of_sum(v, -1.0, value)
+            }
+            Unary::Atanh => {
+                times(1.0 / (1.0 - v * v).max(0.0), x.error) + (-20f64).exp2() + 4.0 * ulp(value)
+            }
             Unary::Exp => times(value, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
-            Unary::Exp2 => times(value * std::f64::consts::LN_2, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
+            Unary::Exp2 => {
+                times(value * std::f64::consts::LN_2, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value)
+            }
             Unary::Log => times(1.0 / v, x.error) + log_own(value),
             Unary::Log2 => times(std::f64::consts::LOG2_E / v, x.error) + log_own(value),
             // As 1 / inverseSqrt(x); at 0 the slope is infinite and the root of the error bounds it.
-            Unary::Sqrt => times(0.5 / value, x.error).min(x.error.sqrt()) + if v == 0.0 { 0.0 } else { 4.5 * ulp(value) },
+            Unary::Sqrt => {
+                times(0.5 / value, x.error).min(x.error.sqrt())
+                    + if v == 0.0 { 0.0 } else { 4.5 * ulp(value) }
+            }
             Unary::InverseSqrt => times(0.5 * value / v, x.error) + 2.0 * ulp(value),
             Unary::Quantize => x.error + value.abs().max(6.2e-5) * (-11f64).exp2(),
             Unary::Radians => times(std::f64::consts::PI / 180.0, x.error) + 2.0 * ulp(value),
@@ -112,30 +141,48 @@ impl Bounded {
     fn divided(a: Self, b: Self) -> Self {
         let value = a.value / b.value;
         let room = b.value.abs() - b.error;
-        let inherited = if room > 0.0 { (a.error + times(value, b.error)) / room } else { f64::INFINITY };
-        Self::new(value, inherited + if a.value == 0.0 && a.error == 0.0 { 0.0 } else { 2.5 * ulp(value) })
+        let inherited =
+            if room > 0.0 { (a.error + times(value, b.error)) / room } else { f64::INFINITY };
+        Self::new(
+            value,
+            inherited + if a.value == 0.0 && a.error == 0.0 { 0.0 } else { 2.5 * ulp(value) },
+        )
     }
 
     /// As `exp2(y * log2(x))`: relative `ln2 (2^-21 |y| + ...) + (3 + 2|t|) u`, `t = y log2 x`.
     fn raised(x: Self, y: Self, doubt: &mut bool) -> Self {
         let value = f64::binary(Binary::Pow, x.value, y.value, doubt);
         if x.value <= 0.0 {
-            return Self::new(value, if y.value > 0.0 { x.error.powf(y.value) } else { f64::INFINITY });
+            return Self::new(
+                value,
+                if y.value > 0.0 { x.error.powf(y.value) } else { f64::INFINITY },
+            );
         }
         let unit = f64::from(f32::EPSILON);
         let log = x.value.log2();
         let log_own = if (0.5..=2.0).contains(&x.value) { (-21f64).exp2() } else { 3.0 * ulp(log) };
         let log_error = log_own + times(std::f64::consts::LOG2_E / x.value, x.error);
         let exponent = y.value * log;
-        let exponent_error = times(y.value, log_error) + times(log, y.error) + exponent.abs() * unit;
-        let relative = (exponent_error * std::f64::consts::LN_2).exp_m1() + (3.0 + 2.0 * exponent.abs()) * unit;
-        Self::new(value, times(value, relative) + if value < f64::from(f32::MIN_POSITIVE) { value } else { 0.0 })
+        let exponent_error =
+            times(y.value, log_error) + times(log, y.error) + exponent.abs() * unit;
+        let relative = (exponent_error * std::f64::consts::LN_2).exp_m1()
+            + (3.0 + 2.0 * exponent.abs()) * unit;
+        Self::new(
+            value,
+            times(value, relative) + if value < f64::from(f32::MIN_POSITIVE) { value } else { 0.0 },
+        )
     }
 
     fn remainder(a: Self, b: Self, doubt: &mut bool) -> Self {
         let quotient = Self::stepped(Unary::Trunc, Self::divided(a, b), doubt);
         let value = a.value % b.value;
-        Self::rounded(value, a.error + times(quotient.value, b.error) + times(b.value, quotient.error) + ulp(a.value))
+        Self::rounded(
+            value,
+            a.error
+                + times(quotient.value, b.error)
+                + times(b.value, quotient.error)
+                + ulp(a.value),
+        )
     }
 }
 
@@ -169,9 +216,15 @@ impl Number for Bounded {
     fn unary(op: Unary, x: Self, doubt: &mut bool) -> Self {
         match op {
             Unary::Negate => Self::new(-x.value, x.error),
-            Unary::Saturate => Self::ternary(Ternary::Clamp, x, Self::exact(0.0), Self::exact(1.0), doubt),
-            Unary::Ceil | Unary::Floor | Unary::Round | Unary::Trunc | Unary::Sign => Self::stepped(op, x, doubt),
-            Unary::Fract => Self::binary(Binary::Subtract, x, Self::stepped(Unary::Floor, x, doubt), doubt),
+            Unary::Saturate => {
+                Self::ternary(Ternary::Clamp, x, Self::exact(0.0), Self::exact(1.0), doubt)
+            }
+            Unary::Ceil | Unary::Floor | Unary::Round | Unary::Trunc | Unary::Sign => {
+                Self::stepped(op, x, doubt)
+            }
+            Unary::Fract => {
+                Self::binary(Binary::Subtract, x, Self::stepped(Unary::Floor, x, doubt), doubt)
+            }
             _ => {
                 let value = f64::unary(op, x.value, doubt);
                 Self::new(value, Self::smooth(op, x, value))
@@ -183,18 +236,26 @@ impl Number for Bounded {
         let value = f64::binary(op, a.value, b.value, doubt);
         match op {
             Binary::Add | Binary::Subtract => Self::rounded(value, a.error + b.error),
-            Binary::Multiply => Self::rounded(value, times(a.value, b.error) + times(b.value, a.error) + times(a.error, b.error)),
+            Binary::Multiply => Self::rounded(
+                value,
+                times(a.value, b.error) + times(b.value, a.error) + times(a.error, b.error),
+            ),
             Binary::Divide => Self::divided(a, b),
             Binary::Remainder => Self::remainder(a, b, doubt),
             Binary::Min => Self::extreme(a, b, value == a.value),
             Binary::Max => Self::extreme(a, b, value == a.value),
             Binary::Atan2 => {
                 let square = a.value * a.value + b.value * b.value;
-                Self::new(value, (times(b.value, a.error) + times(a.value, b.error)) / square + 4096.0 * ulp(value))
+                Self::new(
+                    value,
+                    (times(b.value, a.error) + times(a.value, b.error)) / square
+                        + 4096.0 * ulp(value),
+                )
             }
             Binary::Pow => Self::raised(a, b, doubt),
             Binary::Step => {
-                let near = (a.value - b.value).abs() <= a.error + b.error && a.error + b.error > 0.0;
+                let near =
+                    (a.value - b.value).abs() <= a.error + b.error && a.error + b.error > 0.0;
                 *doubt |= near;
                 Self::new(value, f64::from(u8::from(near)))
             }
@@ -204,9 +265,13 @@ impl Number for Bounded {
     fn ternary(op: Ternary, a: Self, b: Self, c: Self, doubt: &mut bool) -> Self {
         let one = Self::exact(1.0);
         match op {
-            Ternary::Clamp => Self::binary(Binary::Min, Self::binary(Binary::Max, a, b, doubt), c, doubt),
+            Ternary::Clamp => {
+                Self::binary(Binary::Min, Self::binary(Binary::Max, a, b, doubt), c, doubt)
+            }
             // Fused or not: the rounding of the product may be there.
-            Ternary::Fma => Self::binary(Binary::Add, Self::binary(Binary::Multiply, a, b, doubt), c, doubt),
+            Ternary::Fma => {
+                Self::binary(Binary::Add, Self::binary(Binary::Multiply, a, b, doubt), c, doubt)
+            }
             Ternary::Mix => {
                 let rest = Self::binary(Binary::Subtract, one, c, doubt);
                 let first = Self::binary(Binary::Multiply, a, rest, doubt);
@@ -232,11 +297,18 @@ impl Number for Bounded {
         let mut sum = (0.0, 0.0, 0.0);
         for (a, b) in a.iter().zip(b) {
             let product = a.value * b.value;
-            let inherited = times(a.value, b.error) + times(b.value, a.error) + times(a.error, b.error);
+            let inherited =
+                times(a.value, b.error) + times(b.value, a.error) + times(a.error, b.error);
             sum = (sum.0 + product, sum.1 + product.abs(), sum.2 + inherited);
         }
-        let exact = sum.2 == 0.0 && sum.0.abs() == sum.1 && f64::from(sum.0 as f32) == sum.0 && a.len() == 1;
-        Self::new(sum.0, sum.2 + if exact || sum.1 == 0.0 { 0.0 } else { a.len() as f64 * ulp(sum.1) })
+        let exact = sum.2 == 0.0
+            && sum.0.abs() == sum.1
+            && f64::from(sum.0 as f32) == sum.0
+            && a.len() == 1;
+        Self::new(
+            sum.0,
+            sum.2 + if exact || sum.1 == 0.0 { 0.0 } else { a.len() as f64 * ulp(sum.1) },
+        )
     }
 }
 
@@ -244,5 +316,9 @@ impl Number for Bounded {
 fn smooth_cubic(t: Bounded) -> Bounded {
     let slope = (6.0 * t.value * (1.0 - t.value)).abs() + 3.0 * t.error;
     let value = t.value * t.value * (3.0 - 2.0 * t.value);
-    Bounded::new(value, times(slope, t.error) + if t.error == 0.0 && value.fract() == 0.0 { 0.0 } else { 4.0 * ulp(value) })
+    Bounded::new(
+        value,
+        times(slope, t.error)
+            + if t.error == 0.0 && value.fract() == 0.0 { 0.0 } else { 4.0 * ulp(value) },
+    )
 }

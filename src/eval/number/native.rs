@@ -68,7 +68,9 @@ macro_rules! native {
                     Unary::Exp2 => f64::from(x).exp2() as $float,
                     Unary::Log => f64::from(x).ln() as $float,
                     Unary::Log2 => f64::from(x).log2() as $float,
-                    Unary::Sign => [0.0, 1.0, -1.0][usize::from(x > 0.0) + 2 * usize::from(x < 0.0)],
+                    Unary::Sign => {
+                        [0.0, 1.0, -1.0][usize::from(x > 0.0) + 2 * usize::from(x < 0.0)]
+                    }
                     Unary::Sqrt => x.sqrt(),
                     Unary::InverseSqrt => (1.0 / f64::from(x).sqrt()) as $float,
                     Unary::Quantize => half_to(half_from(f64::from(x))) as $float,

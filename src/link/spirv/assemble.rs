@@ -71,7 +71,8 @@ impl<'n, 'a: 'n> Linker<'n, 'a> {
             Some(&node) => return Ok(node),
             None => {}
         }
-        let piece = (self.function)(name).ok_or_else(|| format!("the function {name} is missing"))?;
+        let piece =
+            (self.function)(name).ok_or_else(|| format!("the function {name} is missing"))?;
         self.users.insert(name, OPEN);
         let node = self.visit(piece, Shelf::Function, depth)?;
         self.users.insert(name, node);
@@ -111,7 +112,10 @@ impl<'n, 'a: 'n> Linker<'n, 'a> {
 
     /// How many words the texts of all nodes have.
     fn len(&self) -> usize {
-        let texts = self.nodes.iter().flat_map(|node| [&node.piece.names, &node.piece.notes, &node.piece.body]);
+        let texts = self
+            .nodes
+            .iter()
+            .flat_map(|node| [&node.piece.names, &node.piece.notes, &node.piece.body]);
         texts.map(|text| text.words.len()).sum()
     }
 }
@@ -127,16 +131,28 @@ fn write_extension(name: &str, out: &mut Vec<u32>) {
 }
 
 /// Puts an entry point and the functions that it reaches together.
-pub fn assemble<'a>(pool: &Pool, entry: &'a Piece, function: &dyn Fn(&str) -> Option<&'a Piece>) -> Result<Vec<u32>, String> {
+pub fn assemble<'a>(
+    pool: &Pool,
+    entry: &'a Piece,
+    function: &dyn Fn(&str) -> Option<&'a Piece>,
+) -> Result<Vec<u32>, String> {
     if entry.entry.words.is_empty() {
         return Err("the piece is not an entry point".into());
     }
     let declarations = vec![0; pool.declarations.len()];
-    let mut linker = Linker { pool, function, nodes: vec![], links: vec![], declarations, users: HashMap::new() };
+    let mut linker = Linker {
+        pool,
+        function,
+        nodes: vec![],
+        links: vec![],
+        declarations,
+        users: HashMap::new(),
+    };
     linker.visit(entry, Shelf::Function, 0)?;
     let bound = linker.number();
     let needs = linker.needs();
-    let mut out = Vec::with_capacity(linker.len() + entry.entry.words.len() + entry.modes.words.len() + 64);
+    let mut out =
+        Vec::with_capacity(linker.len() + entry.entry.words.len() + entry.modes.words.len() + 64);
     out.extend(HEADER);
     out.extend([bound, 0]);
     out.extend(needs.iter().flat_map(|&need| [2 << 16 | u32::from(op::CAPABILITY), need]));

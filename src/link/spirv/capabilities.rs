@@ -33,14 +33,14 @@ pub fn require(inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
         op::TYPE_IMAGE => require_image(inst, needs)?,
         op::DECORATE => require_decoration(inst, 2, needs)?,
         op::MEMBER_DECORATE => require_decoration(inst, 3, needs)?,
-        103..=107 => needs.extend([50]),           // image queries: ImageQuery
-        210..=215 => needs.extend([51]),           // fine and coarse derivatives: DerivativeControl
-        334 | 335 => needs.extend([62]),           // GroupNonUniformVote
-        338 | 339 => needs.extend([64]),           // GroupNonUniformBallot
-        345 | 346 => needs.extend([65]),           // GroupNonUniformShuffle
-        347 | 348 => needs.extend([66]),           // GroupNonUniformShuffleRelative
-        349..=364 => needs.extend([63]),           // GroupNonUniformArithmetic
-        365 | 366 => needs.extend([68]),           // GroupNonUniformQuad
+        103..=107 => needs.extend([50]), // image queries: ImageQuery
+        210..=215 => needs.extend([51]), // fine and coarse derivatives: DerivativeControl
+        334 | 335 => needs.extend([62]), // GroupNonUniformVote
+        338 | 339 => needs.extend([64]), // GroupNonUniformBallot
+        345 | 346 => needs.extend([65]), // GroupNonUniformShuffle
+        347 | 348 => needs.extend([66]), // GroupNonUniformShuffleRelative
+        349..=364 => needs.extend([63]), // GroupNonUniformArithmetic
+        365 | 366 => needs.extend([68]), // GroupNonUniformQuad
         4450 | 4451 => needs.extend([6018, 6019]), // SDot, UDot: DotProductInput4x8BitPacked, DotProduct
         5380 => needs.extend([5379]),              // DemoteToHelperInvocation
         6035 => needs.extend([6033]),              // AtomicFloat32AddEXT
@@ -50,7 +50,8 @@ pub fn require(inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
 }
 
 fn require_image(inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
-    let (dimension, arrayed, sampled, format) = (inst.word(3)?, inst.word(5)?, inst.word(7)?, inst.word(8)?);
+    let (dimension, arrayed, sampled, format) =
+        (inst.word(3)?, inst.word(5)?, inst.word(7)?, inst.word(8)?);
     needs.extend(match (dimension, arrayed, sampled) {
         (0, _, 1) => Some(43), // Sampled1D
         (0, _, 2) => Some(44), // Image1D

@@ -35,11 +35,15 @@ impl<'a> Module<'a> {
             return Err("the header is not of a known kind".into());
         }
         // Bad content must not make the lists large.
-        let bound = header.get(3).map(|&bound| bound as usize).filter(|&bound| bound <= words.len() * 4 + 1024);
+        let bound = header
+            .get(3)
+            .map(|&bound| bound as usize)
+            .filter(|&bound| bound <= words.len() * 4 + 1024);
         let ids = vec![Id::default(); bound.ok_or("the bound is too high")?];
         let mut module = Self { insts: Vec::with_capacity(words.len() / 3), ids, about: vec![] };
         while let Some(&first) = rest.first() {
-            let (words, tail) = rest.split_at_checked((first >> 16) as usize).ok_or("an instruction is cut off")?;
+            let (words, tail) =
+                rest.split_at_checked((first >> 16) as usize).ok_or("an instruction is cut off")?;
             module.push(Inst::new(words)?)?;
             rest = tail;
         }
@@ -92,8 +96,10 @@ impl<'a> Module<'a> {
     /// the module has that value, so it would tell the module that the piece came from.
     pub fn description(&self, id: u32) -> Vec<&Inst<'a>> {
         let defined = self.defined(id).and_then(|at| self.insts.get(at));
-        let nameless = defined.is_some_and(|inst| inst.place == Global && inst.op != op::TYPE_STRUCT);
-        let is_told = |inst: &&Inst| !nameless || matches!(inst.op, op::DECORATE | op::MEMBER_DECORATE);
+        let nameless =
+            defined.is_some_and(|inst| inst.place == Global && inst.op != op::TYPE_STRUCT);
+        let is_told =
+            |inst: &&Inst| !nameless || matches!(inst.op, op::DECORATE | op::MEMBER_DECORATE);
         let mut about: Vec<&Inst> = self.about(id).filter(is_told).collect();
         about.sort_by_key(|inst| (inst.words.get(1..), inst.op));
         about.dedup_by_key(|inst| inst.words);
@@ -102,7 +108,11 @@ impl<'a> Module<'a> {
 
     /// The name of an id, if it has one.
     pub fn name(&self, id: u32) -> Result<Option<String>, String> {
-        self.about(id).filter(|inst| inst.op == op::NAME).last().map(|inst| inst.string(2)).transpose()
+        self.about(id)
+            .filter(|inst| inst.op == op::NAME)
+            .last()
+            .map(|inst| inst.string(2))
+            .transpose()
     }
 
     /// All instructions of an opcode.
@@ -165,11 +175,15 @@ impl<'a> Module<'a> {
     pub fn check(&self) -> Result<(), String> {
         let mut needs = BTreeSet::from([SHADER]);
         self.insts.iter().try_for_each(|inst| self.require(inst, &mut needs))?;
-        let declared: BTreeSet<u32> = self.of(op::CAPABILITY).filter_map(|inst| inst.word(1).ok()).collect();
+        let declared: BTreeSet<u32> =
+            self.of(op::CAPABILITY).filter_map(|inst| inst.word(1).ok()).collect();
         if declared != needs {
             return Err(format!("the capabilities are {declared:?}, not {needs:?}"));
         }
-        let declared = self.of(op::EXTENSION).map(|inst| inst.string(1)).collect::<Result<BTreeSet<_>, _>>()?;
+        let declared = self
+            .of(op::EXTENSION)
+            .map(|inst| inst.string(1))
+            .collect::<Result<BTreeSet<_>, _>>()?;
         if !declared.iter().map(String::as_str).eq(extensions(&needs)) {
             return Err(format!("the extensions {declared:?} are not those of {needs:?}"));
         }
@@ -194,7 +208,8 @@ pub fn functions(module: &Module, is_user: &dyn Fn(&str) -> bool) -> Result<Vec<
     let entry = module.entry_point()?.word(2)?;
     let (mut functions, mut entries, mut taken) = (vec![], 0, HashSet::new());
     for span in module.spans()? {
-        let id = module.insts.get(span.start).and_then(Inst::result).ok_or("a function has no id")?;
+        let id =
+            module.insts.get(span.start).and_then(Inst::result).ok_or("a function has no id")?;
         let role = if id == entry {
             entries += 1;
             Role::Entry

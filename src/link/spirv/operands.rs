@@ -77,7 +77,7 @@ fn layout(op: u16) -> Option<(Place, &'static str)> {
         79 | 82 => (Body, "iriiL"),            // VectorShuffle, CompositeInsert
         80 | 245 => (Body, "irI"),             // CompositeConstruct, Phi
         81 => (Body, "iriL"),                  // CompositeExtract
-        87 | 88 | 95 | 98 => (Body, "iriim"),  // ImageSample{Implicit,Explicit}Lod, ImageFetch, ImageRead
+        87 | 88 | 95 | 98 => (Body, "iriim"), // ImageSample{Implicit,Explicit}Lod, ImageFetch, ImageRead
         89 | 90 | 96 | 97 => (Body, "iriiim"), // ImageSampleDref{Implicit,Explicit}Lod, ImageGather, ImageDrefGather
         99 => (Body, "iiim"),                  // ImageWrite
         201 => (Body, "iriiii"),               // BitFieldInsert
@@ -94,7 +94,9 @@ fn layout(op: u16) -> Option<(Place, &'static str)> {
         83 | 84 | 100 | 104 | 106 | 107 => (Body, "iri"),
         // conversions (ConvertFToU to QuantizeToF16), Bitcast, SNegate, FNegate, Any, All, IsNan, IsInf,
         // LogicalNot, Not, BitReverse, BitCount, derivatives (DPdx to FwidthCoarse)
-        109..=116 | 124 | 126 | 127 | 154..=157 | 168 | 200 | 204 | 205 | 207..=215 => (Body, "iri"),
+        109..=116 | 124 | 126 | 127 | 154..=157 | 168 | 200 | 204 | 205 | 207..=215 => {
+            (Body, "iri")
+        }
         // VectorExtractDynamic, SampledImage, ImageQuerySizeLod, ImageQueryLod
         77 | 86 | 103 | 105 => (Body, "irii"),
         // arithmetic (IAdd to SMulExtended), LogicalEqual to LogicalAnd, comparisons (IEqual to
@@ -149,7 +151,10 @@ impl<'a> Inst<'a> {
     }
 
     /// Shows each id with its place, the defined one too. The words must fit the layout.
-    pub fn ids(&self, mut show: impl FnMut(usize, u32) -> Result<(), String>) -> Result<(), String> {
+    pub fn ids(
+        &self,
+        mut show: impl FnMut(usize, u32) -> Result<(), String>,
+    ) -> Result<(), String> {
         let mut at = 1;
         for kind in self.layout.bytes() {
             let rest = self.words.get(at..).unwrap_or_default();
@@ -157,10 +162,16 @@ impl<'a> Inst<'a> {
                 b'I' => (1, 0, rest.len()),
                 b'l' => (1, 1, 0),
                 b'L' => (1, rest.len(), 0),
-                b's' => (1, 1 + rest.iter().take_while(|word| !word.to_le_bytes().contains(&0)).count(), 0),
+                b's' => (
+                    1,
+                    1 + rest.iter().take_while(|word| !word.to_le_bytes().contains(&0)).count(),
+                    0,
+                ),
                 b'm' => (1, rest.len().min(1), rest.len().saturating_sub(1)),
                 // Volatile, aligned and nontemporal: the other bits bring scope ids.
-                b'a' if rest.first().is_some_and(|mask| mask & !7 != 0) => return Err("a memory access is not known".into()),
+                b'a' if rest.first().is_some_and(|mask| mask & !7 != 0) => {
+                    return Err("a memory access is not known".into());
+                }
                 b'a' => (1, rest.len(), 0),
                 b'P' => (rest.len() / 2, 1, 1),
                 _ => (1, 0, 1),
@@ -173,12 +184,17 @@ impl<'a> Inst<'a> {
                 }
             }
         }
-        if at == self.words.len() { Ok(()) } else { Err(format!("opcode {} has wrong operands", self.op)) }
+        if at == self.words.len() {
+            Ok(())
+        } else {
+            Err(format!("opcode {} has wrong operands", self.op))
+        }
     }
 
     /// The string that starts at a word.
     pub fn string(&self, at: usize) -> Result<String, String> {
         let bytes = self.words.iter().skip(at).flat_map(|word| word.to_le_bytes());
-        String::from_utf8(bytes.take_while(|&byte| byte != 0).collect()).map_err(|_| "a string is not UTF-8".into())
+        String::from_utf8(bytes.take_while(|&byte| byte != 0).collect())
+            .map_err(|_| "a string is not UTF-8".into())
     }
 }

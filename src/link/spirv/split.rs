@@ -9,7 +9,12 @@ use std::ops::Range;
 /// Takes a module apart. `is_user` says which named functions are the author's: calls to those stay symbolic
 /// by name. Only those of them that `is_wanted` names become pieces, and so does the entry point by its own
 /// name, which a function may have too: the rest of the module is looked at no further than these need.
-pub fn split(words: &[u32], pool: &mut Pool, is_user: &dyn Fn(&str) -> bool, is_wanted: &dyn Fn(&str) -> bool) -> Result<Parts, String> {
+pub fn split(
+    words: &[u32],
+    pool: &mut Pool,
+    is_user: &dyn Fn(&str) -> bool,
+    is_wanted: &dyn Fn(&str) -> bool,
+) -> Result<Parts, String> {
     let module = Module::read(words)?;
     let point = module.entry_point()?;
     let functions = functions(&module, is_user)?;
@@ -80,7 +85,13 @@ struct Splitter<'m, 'a> {
 
 impl<'m, 'a> Splitter<'m, 'a> {
     fn new(module: &'m Module<'a>, pool: &'m mut Pool, functions: &'m [Function]) -> Self {
-        Self { module, pool, functions, ids: vec![Id::default(); module.bound()], variables: HashSet::new() }
+        Self {
+            module,
+            pool,
+            functions,
+            ids: vec![Id::default(); module.bound()],
+            variables: HashSet::new(),
+        }
     }
 
     fn id(&mut self, id: u32) -> Result<&mut Id, String> {
@@ -95,7 +106,8 @@ impl<'m, 'a> Splitter<'m, 'a> {
         let module = self.module;
         let insts = module.insts.get(span.clone()).unwrap_or_default();
         self.count(insts)?;
-        let mut draft = Draft { span, depth, own: vec![], needs: BTreeSet::new(), piece: Piece::default() };
+        let mut draft =
+            Draft { span, depth, own: vec![], needs: BTreeSet::new(), piece: Piece::default() };
         for inst in insts {
             if !self.is_idle(inst)? {
                 self.add(&mut draft, |piece| &mut piece.body, inst)?;
@@ -117,7 +129,8 @@ impl<'m, 'a> Splitter<'m, 'a> {
             inst.ids(|_, id| self.id(id).map(|id| id.uses += 1))?;
         }
         // An access chain may be there for an idle load only, so the last come first.
-        for inst in insts.iter().rev().filter(|inst| matches!(inst.op, op::LOAD | op::ACCESS_CHAIN)) {
+        for inst in insts.iter().rev().filter(|inst| matches!(inst.op, op::LOAD | op::ACCESS_CHAIN))
+        {
             if inst.result().is_some_and(|id| self.id(id).is_ok_and(|id| id.uses == 1)) {
                 inst.ids(|_, id| self.id(id).map(|id| id.uses = id.uses.saturating_sub(1)))?;
             }
@@ -131,7 +144,12 @@ impl<'m, 'a> Splitter<'m, 'a> {
     }
 
     /// Appends an instruction to one of the texts.
-    fn add(&mut self, draft: &mut Draft, text: fn(&mut Piece) -> &mut Text, inst: &Inst) -> Result<(), String> {
+    fn add(
+        &mut self,
+        draft: &mut Draft,
+        text: fn(&mut Piece) -> &mut Text,
+        inst: &Inst,
+    ) -> Result<(), String> {
         self.module.require(inst, &mut draft.needs)?;
         let start = text(&mut draft.piece).words.len();
         text(&mut draft.piece).words.extend_from_slice(inst.words);
@@ -145,7 +163,9 @@ impl<'m, 'a> Splitter<'m, 'a> {
                     text.links.push((place, link));
                     0
                 }
-                Target::Local(_) if inst.op == op::FUNCTION_CALL && at == 3 => return Err("a function calls itself".into()),
+                Target::Local(_) if inst.op == op::FUNCTION_CALL && at == 3 => {
+                    return Err("a function calls itself".into());
+                }
                 Target::Local(number) => {
                     text.locals.push(place);
                     number
@@ -184,7 +204,11 @@ impl<'m, 'a> Splitter<'m, 'a> {
 
     /// What an id stands for outside its module. The instruction `user` refers to it and must come later.
     fn outside(&mut self, id: u32, user: usize, depth: u32) -> Result<Ref, String> {
-        let defined = self.module.defined(id).filter(|&at| at < user).ok_or_else(|| format!("id {id} is not known"))?;
+        let defined = self
+            .module
+            .defined(id)
+            .filter(|&at| at < user)
+            .ok_or_else(|| format!("id {id} is not known"))?;
         if let Some(number) = self.id(id)?.pool {
             return Ok(Ref::Pool(number));
         }
@@ -195,7 +219,9 @@ impl<'m, 'a> Splitter<'m, 'a> {
                 Role::User(name) => return Ok(Ref::User(name.clone())),
                 Role::Helper => self.helper(function.span.clone(), depth)?,
             },
-            Some(function) if at == 0 && defined < function.span.start => self.declaration(defined, depth)?,
+            Some(function) if at == 0 && defined < function.span.start => {
+                self.declaration(defined, depth)?
+            }
             _ => return Err(format!("id {id} is not known here")),
         };
         self.id(id)?.pool = Some(number);
@@ -268,7 +294,9 @@ impl<'m, 'a> Splitter<'m, 'a> {
     /// depend on what is wanted.
     fn declare_twins(&mut self, at: usize, depth: u32) -> Result<(), String> {
         let module = self.module;
-        let Some((variable, before)) = module.insts.get(..=at).and_then(<[_]>::split_last) else { return Ok(()) };
+        let Some((variable, before)) = module.insts.get(..=at).and_then(<[_]>::split_last) else {
+            return Ok(());
+        };
         for inst in before.iter().filter(|inst| inst.op == op::VARIABLE) {
             if let Some(id) = inst.result().filter(|_| are_alike(module, inst, variable)) {
                 self.outside(id, at, depth + 1)?;
@@ -283,7 +311,9 @@ impl<'m, 'a> Splitter<'m, 'a> {
         for id in draft.own.clone() {
             for inst in module.description(id) {
                 match inst.op {
-                    op::DECORATE | op::MEMBER_DECORATE => self.add(draft, |piece| &mut piece.notes, inst)?,
+                    op::DECORATE | op::MEMBER_DECORATE => {
+                        self.add(draft, |piece| &mut piece.notes, inst)?
+                    }
                     _ => self.add(draft, |piece| &mut piece.names, inst)?,
                 }
             }
@@ -328,6 +358,8 @@ fn key_of_helper(piece: &Piece) -> Option<Vec<u32>> {
 /// among the other's.
 fn are_alike(module: &Module, one: &Inst, other: &Inst) -> bool {
     let (Ok(id), Ok(twin)) = (one.word(2), other.word(2)) else { return false };
-    let same = |one: &Inst, other: &Inst| one.op == other.op && one.words.get(2..) == other.words.get(2..);
-    one.word(3) == other.word(3) && module.about(id).all(|inst| module.about(twin).any(|twin| same(inst, twin)))
+    let same =
+        |one: &Inst, other: &Inst| one.op == other.op && one.words.get(2..) == other.words.get(2..);
+    one.word(3) == other.word(3)
+        && module.about(id).all(|inst| module.about(twin).any(|twin| same(inst, twin)))
 }

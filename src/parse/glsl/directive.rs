@@ -1,13 +1,19 @@
 //! One directive a line.
 
-use super::{BodyToken, Directive, Include, Kind, Macro, Module, Part, Symbol, Symbols, Token, known};
+use super::{
+    BodyToken, Directive, Include, Kind, Macro, Module, Part, Symbol, Symbols, Token, known,
+};
 use crate::diagnostic::{Code, Diagnostic, codes};
 use crate::source::{LIMITS, Span};
 
 /// Reads the directive whose `#` is token `hash` and whose line ends before token `end`.
 pub fn push(module: &mut Module, hash: usize, end: usize, symbols: &Symbols) {
-    let span = Span::new(module.source, module.tokens[hash].start as usize..module.tokens[end - 1].end as usize);
-    let directive = read(module, hash + 1, end, symbols).unwrap_or_else(|error| Directive::Invalid(Box::new(error)));
+    let span = Span::new(
+        module.source,
+        module.tokens[hash].start as usize..module.tokens[end - 1].end as usize,
+    );
+    let directive = read(module, hash + 1, end, symbols)
+        .unwrap_or_else(|error| Directive::Invalid(Box::new(error)));
     module.parts.push(Part::Directive(directive, span));
 }
 
@@ -25,7 +31,9 @@ pub fn link(module: &mut Module) {
         let Part::Directive(directive, span) = &module.parts[index] else { continue };
         let span = *span;
         match directive {
-            Directive::If { .. } | Directive::Ifdef { .. } => open.push(Open { branches: vec![index], otherwise: None }),
+            Directive::If { .. } | Directive::Ifdef { .. } => {
+                open.push(Open { branches: vec![index], otherwise: None })
+            }
             Directive::Elif { .. } | Directive::Else { .. } => {
                 let otherwise = matches!(directive, Directive::Else { .. }).then_some(span);
                 let error = branch(open.last_mut(), index, span, otherwise).err();
@@ -42,18 +50,29 @@ pub fn link(module: &mut Module) {
         }
         if open.len() > LIMITS.nesting {
             let message = format!("conditionals nest deeper than {}", LIMITS.nesting);
-            module.errors.push(Diagnostic::error(codes::NESTING_TOO_DEEP, message).at(span, "one too many"));
+            module
+                .errors
+                .push(Diagnostic::error(codes::NESTING_TOO_DEEP, message).at(span, "one too many"));
             return;
         }
     }
     for open in open {
         if let Part::Directive(_, span) = &module.parts[open.branches[0]] {
-            module.errors.push(unbalanced("a conditional is never closed", *span, "without an `#endif`"));
+            module.errors.push(unbalanced(
+                "a conditional is never closed",
+                *span,
+                "without an `#endif`",
+            ));
         }
     }
 }
 
-fn branch(open: Option<&mut Open>, index: usize, span: Span, otherwise: Option<Span>) -> Result<(), Diagnostic> {
+fn branch(
+    open: Option<&mut Open>,
+    index: usize,
+    span: Span,
+    otherwise: Option<Span>,
+) -> Result<(), Diagnostic> {
     let open = open.ok_or_else(|| nothing_open(span))?;
     if let Some(earlier) = open.otherwise {
         let message = "a branch follows the `#else` of its conditional";
@@ -85,11 +104,30 @@ fn connect(parts: &mut [Part], branches: &[usize]) {
     }
 }
 
-const NAMES: &[&str] =
-    &["define", "elif", "else", "endif", "error", "extension", "if", "ifdef", "ifndef", "include", "line", "pragma", "undef", "version"];
+const NAMES: &[&str] = &[
+    "define",
+    "elif",
+    "else",
+    "endif",
+    "error",
+    "extension",
+    "if",
+    "ifdef",
+    "ifndef",
+    "include",
+    "line",
+    "pragma",
+    "undef",
+    "version",
+];
 
 /// Reads the tokens `start..end` after the `#`.
-fn read(module: &mut Module, start: usize, end: usize, symbols: &Symbols) -> Result<Directive, Diagnostic> {
+fn read(
+    module: &mut Module,
+    start: usize,
+    end: usize,
+    symbols: &Symbols,
+) -> Result<Directive, Diagnostic> {
     if start == end {
         return Ok(Directive::Empty);
     }
@@ -113,11 +151,16 @@ fn read(module: &mut Module, start: usize, end: usize, symbols: &Symbols) -> Res
         known::LINE => Ok(Directive::Line(condition)),
         known::VERSION => line.version(),
         known::EXTENSION => line.extension(),
-        known::PRAGMA if line.token(0).is_some_and(|token| token.symbol == known::ONCE) => Ok(Directive::PragmaOnce),
+        known::PRAGMA if line.token(0).is_some_and(|token| token.symbol == known::ONCE) => {
+            Ok(Directive::PragmaOnce)
+        }
         known::PRAGMA => Ok(Directive::Pragma(line.whole())),
-        wrong => Err(Diagnostic::error(codes::MALFORMED_DIRECTIVE, format!("unknown directive `#{}`", symbols.text(wrong)))
-            .at(line.span_of(&line.module.tokens[start]), "not a directive of GLSL")
-            .suggest(symbols.text(wrong), NAMES.iter().copied())),
+        wrong => Err(Diagnostic::error(
+            codes::MALFORMED_DIRECTIVE,
+            format!("unknown directive `#{}`", symbols.text(wrong)),
+        )
+        .at(line.span_of(&line.module.tokens[start]), "not a directive of GLSL")
+        .suggest(symbols.text(wrong), NAMES.iter().copied())),
     }
 }
 
@@ -141,14 +184,20 @@ impl Line<'_> {
     /// From the `#` to the last token.
     fn whole(&self) -> Span {
         let tokens = &self.module.tokens;
-        Span::new(self.module.source, tokens[self.start - 2].start as usize..tokens[self.end - 1].end as usize)
+        Span::new(
+            self.module.source,
+            tokens[self.start - 2].start as usize..tokens[self.end - 1].end as usize,
+        )
     }
 
     /// What follows the directive's name; the name itself where nothing does.
     fn rest(&self) -> Span {
         let tokens = &self.module.tokens;
         let first = self.start.min(self.end - 1);
-        Span::new(self.module.source, tokens[first].start as usize..tokens[self.end - 1].end as usize)
+        Span::new(
+            self.module.source,
+            tokens[first].start as usize..tokens[self.end - 1].end as usize,
+        )
     }
 
     fn malformed(&self, message: String, label: &str) -> Diagnostic {
@@ -157,16 +206,23 @@ impl Line<'_> {
 
     fn name(&self, directive: &str) -> Result<(Symbol, Span), Diagnostic> {
         match self.token(0) {
-            Some(token) if token.kind == Kind::Identifier => Ok((token.symbol, self.span_of(token))),
-            _ => Err(self.malformed(format!("`#{directive}` needs the name of a macro"), "no name here")),
+            Some(token) if token.kind == Kind::Identifier => {
+                Ok((token.symbol, self.span_of(token)))
+            }
+            _ => {
+                Err(self
+                    .malformed(format!("`#{directive}` needs the name of a macro"), "no name here"))
+            }
         }
     }
 
     fn only_name(&self, directive: &str) -> Result<Symbol, Diagnostic> {
         let (symbol, span) = self.name(directive)?;
         if let Some(extra) = self.token(1) {
-            let message = format!("unexpected text after `#{directive} {}`", self.symbols.text(symbol));
-            return Err(Diagnostic::error(codes::MALFORMED_DIRECTIVE, message).at(self.span_of(extra), "not part of the directive"));
+            let message =
+                format!("unexpected text after `#{directive} {}`", self.symbols.text(symbol));
+            return Err(Diagnostic::error(codes::MALFORMED_DIRECTIVE, message)
+                .at(self.span_of(extra), "not part of the directive"));
         }
         if directive == "undef" && is_reserved(self.symbols.text(symbol)) {
             return Err(self.reserved(symbol, span));
@@ -193,17 +249,29 @@ impl Line<'_> {
         let close = match text.as_bytes().first() {
             Some(b'"') => '"',
             Some(b'<') => '>',
-            _ => return Err(self.malformed("`#include` needs a path".into(), "expected `\"path\"` or `<path>`")),
+            _ => {
+                return Err(self.malformed(
+                    "`#include` needs a path".into(),
+                    "expected `\"path\"` or `<path>`",
+                ));
+            }
         };
         let Some(length) = text[1..].find(close).filter(|length| *length > 0) else {
-            return Err(self.malformed("the path of an `#include` is empty or not closed".into(), "expected `\"path\"` or `<path>`"));
+            return Err(self.malformed(
+                "the path of an `#include` is empty or not closed".into(),
+                "expected `\"path\"` or `<path>`",
+            ));
         };
         let start = rest.start as usize;
         let span = Span::new(self.module.source, start..start + length + 2);
-        let extra = self.module.tokens[self.start..self.end].iter().find(|token| token.start >= span.end);
+        let extra =
+            self.module.tokens[self.start..self.end].iter().find(|token| token.start >= span.end);
         match extra {
-            Some(extra) => Err(Diagnostic::error(codes::MALFORMED_DIRECTIVE, "unexpected text after the path of an `#include`")
-                .at(self.span_of(extra), "not part of the directive")),
+            Some(extra) => Err(Diagnostic::error(
+                codes::MALFORMED_DIRECTIVE,
+                "unexpected text after the path of an `#include`",
+            )
+            .at(self.span_of(extra), "not part of the directive")),
             None => Ok(Include { path: text[1..=length].to_owned(), angled: close == '>', span }),
         }
     }
@@ -232,11 +300,15 @@ impl Line<'_> {
         }
         loop {
             match self.token(index) {
-                Some(token) if token.kind == Kind::Identifier && !names.contains(&token.symbol) => names.push(token.symbol),
+                Some(token) if token.kind == Kind::Identifier && !names.contains(&token.symbol) => {
+                    names.push(token.symbol)
+                }
                 found => return Err(self.parameter_error(found)),
             }
             match self.token(index + 1) {
-                Some(token) if token.symbol == known::CLOSE && names.len() <= LIMITS.nesting => return Ok((names, index + 1)),
+                Some(token) if token.symbol == known::CLOSE && names.len() <= LIMITS.nesting => {
+                    return Ok((names, index + 1));
+                }
                 Some(token) if token.symbol == known::COMMA => index += 2,
                 found => return Err(self.parameter_error(found)),
             }
@@ -244,7 +316,8 @@ impl Line<'_> {
     }
 
     fn parameter_error(&self, found: Option<&Token>) -> Diagnostic {
-        let message = "the parameters of a macro are different names, separated by commas, at most 256";
+        let message =
+            "the parameters of a macro are different names, separated by commas, at most 256";
         let span = found.map_or(self.rest(), |token| self.span_of(token));
         Diagnostic::error(codes::MALFORMED_DIRECTIVE, message).at(span, "not so here")
     }
@@ -255,11 +328,13 @@ impl Line<'_> {
             let paste = token.symbol == known::PASTE;
             if token.symbol == known::HASH {
                 let message = "GLSL has no operator `#` that makes a string";
-                return Err(Diagnostic::error(codes::MALFORMED_DIRECTIVE, message).at(self.span_of(token), "in the body of a macro"));
+                return Err(Diagnostic::error(codes::MALFORMED_DIRECTIVE, message)
+                    .at(self.span_of(token), "in the body of a macro"));
             }
             if paste && (offset == 0 || start + offset + 1 == self.end) {
                 let message = "`##` needs a token on both sides";
-                return Err(Diagnostic::error(codes::BAD_PASTE, message).at(self.span_of(token), "at the edge of the macro's body"));
+                return Err(Diagnostic::error(codes::BAD_PASTE, message)
+                    .at(self.span_of(token), "at the edge of the macro's body"));
             }
             match body.last_mut() {
                 Some(last) if paste => last.pasted = true,
@@ -267,7 +342,10 @@ impl Line<'_> {
                     symbol: token.symbol,
                     kind: token.kind,
                     spaced: token.spaced && offset > 0,
-                    parameter: parameters.iter().position(|name| *name == token.symbol).map(|index| index as u16),
+                    parameter: parameters
+                        .iter()
+                        .position(|name| *name == token.symbol)
+                        .map(|index| index as u16),
                     pasted: false,
                 }),
             }
@@ -280,20 +358,34 @@ impl Line<'_> {
         let profile = self.token(1).map(|token| self.symbols.text(token.symbol));
         match (number, profile, self.token(2)) {
             (Some(number), None | Some("core" | "compatibility" | "es"), None) => {
-                Ok(Directive::Version { number, es: profile == Some("es") || number == 100, line: self.whole() })
+                Ok(Directive::Version {
+                    number,
+                    es: profile == Some("es") || number == 100,
+                    line: self.whole(),
+                })
             }
-            _ => Err(self.malformed("`#version` needs a number and at most a profile".into(), "expected for example `450` or `300 es`")),
+            _ => Err(self.malformed(
+                "`#version` needs a number and at most a profile".into(),
+                "expected for example `450` or `300 es`",
+            )),
         }
     }
 
     fn extension(&self) -> Result<Directive, Diagnostic> {
-        let words: Vec<&str> = (0..4).filter_map(|index| self.token(index)).map(|token| self.symbols.text(token.symbol)).collect();
+        let words: Vec<&str> = (0..4)
+            .filter_map(|index| self.token(index))
+            .map(|token| self.symbols.text(token.symbol))
+            .collect();
         match (self.token(0), words.as_slice()) {
-            (Some(name), [_, ":", "require" | "enable" | "warn" | "disable"]) if name.kind == Kind::Identifier => {
+            (Some(name), [_, ":", "require" | "enable" | "warn" | "disable"])
+                if name.kind == Kind::Identifier =>
+            {
                 Ok(Directive::Extension { name: name.symbol, line: self.whole() })
             }
-            _ => Err(self
-                .malformed("`#extension` needs a name and a behaviour".into(), "expected `NAME : require`, `enable`, `warn` or `disable`")),
+            _ => Err(self.malformed(
+                "`#extension` needs a name and a behaviour".into(),
+                "expected `NAME : require`, `enable`, `warn` or `disable`",
+            )),
         }
     }
 }

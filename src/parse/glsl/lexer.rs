@@ -66,7 +66,11 @@ pub fn tokenize(text: &str, symbols: &mut Symbols, limit: usize) -> Result<Vec<T
         let (kind, end) = scan(text, start);
         let spelling = &text[start..end];
         let spliced = spelling.contains('\\') && spelling.len() > 1;
-        let symbol = if spliced { symbols.intern(&without_splices(spelling)) } else { symbols.intern(spelling) };
+        let symbol = if spliced {
+            symbols.intern(&without_splices(spelling))
+        } else {
+            symbols.intern(spelling)
+        };
         tokens.push(Token {
             symbol,
             start: start as u32,
@@ -89,7 +93,9 @@ pub fn line_end(text: &str, mut at: usize) -> usize {
             b'\n' => return at + 1,
             b'\\' => at + splice(bytes, at).max(1),
             b'/' if bytes.get(at + 1) == Some(&b'/') => line_comment_end(bytes, at),
-            b'/' if bytes.get(at + 1) == Some(&b'*') => block_comment_end(bytes, at).unwrap_or(bytes.len()),
+            b'/' if bytes.get(at + 1) == Some(&b'*') => {
+                block_comment_end(bytes, at).unwrap_or(bytes.len())
+            }
             _ => at + 1,
         };
     }
@@ -111,7 +117,9 @@ fn skip_gap(bytes: &[u8], mut at: usize) -> Result<Gap, LexError> {
             }
             Some(b' ' | b'\t' | b'\r' | 0x0b | 0x0c) => at + 1,
             Some(b'/') if bytes.get(at + 1) == Some(&b'/') => line_comment_end(bytes, at),
-            Some(b'/') if bytes.get(at + 1) == Some(&b'*') => block_comment_end(bytes, at).ok_or(LexError::OpenComment(at))?,
+            Some(b'/') if bytes.get(at + 1) == Some(&b'*') => {
+                block_comment_end(bytes, at).ok_or(LexError::OpenComment(at))?
+            }
             Some(b'\\') if splice(bytes, at) > 0 => at + splice(bytes, at),
             _ => return Ok(Gap { end: at, newline }),
         };
@@ -151,7 +159,9 @@ fn scan(text: &str, start: usize) -> (Kind, usize) {
     match bytes[start] {
         b'a'..=b'z' | b'A'..=b'Z' | b'_' => (Kind::Identifier, word_end(bytes, start)),
         b'0'..=b'9' => (Kind::Number, number_end(bytes, start)),
-        b'.' if bytes.get(start + 1).is_some_and(u8::is_ascii_digit) => (Kind::Number, number_end(bytes, start)),
+        b'.' if bytes.get(start + 1).is_some_and(u8::is_ascii_digit) => {
+            (Kind::Number, number_end(bytes, start))
+        }
         _ => match punctuation(&bytes[start..]) {
             0 => (Kind::Other, start + text[start..].chars().next().map_or(1, char::len_utf8)),
             length => (Kind::Punctuation, start + length),
@@ -183,8 +193,10 @@ fn number_end(bytes: &[u8], start: usize) -> usize {
     }
 }
 
-const PUNCTUATION: &[&str] =
-    &["<<=", ">>=", "##", "<=", ">=", "==", "!=", "&&", "||", "^^", "++", "--", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<", ">>"];
+const PUNCTUATION: &[&str] = &[
+    "<<=", ">>=", "##", "<=", ">=", "==", "!=", "&&", "||", "^^", "++", "--", "+=", "-=", "*=",
+    "/=", "%=", "&=", "|=", "^=", "<<", ">>",
+];
 
 fn punctuation(rest: &[u8]) -> usize {
     if let Some(long) = PUNCTUATION.iter().find(|text| rest.starts_with(text.as_bytes())) {

@@ -156,8 +156,17 @@ pub fn parse(sources: &SourceSet, source: SourceId, symbols: &mut Symbols) -> Mo
         errors.push(lex_error(source, &text, error));
         Vec::new()
     });
-    let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at as u32 + 1)).collect();
-    let mut module = Module { source, text, tokens, parts: Vec::new(), includes: Vec::new(), errors, line_starts };
+    let line_starts =
+        std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at as u32 + 1)).collect();
+    let mut module = Module {
+        source,
+        text,
+        tokens,
+        parts: Vec::new(),
+        includes: Vec::new(),
+        errors,
+        line_starts,
+    };
     split(&mut module, symbols);
     directive::link(&mut module);
     module
@@ -165,12 +174,17 @@ pub fn parse(sources: &SourceSet, source: SourceId, symbols: &mut Symbols) -> Mo
 
 fn lex_error(source: SourceId, text: &str, error: lexer::LexError) -> Diagnostic {
     match error {
-        lexer::LexError::OpenComment(at) => Diagnostic::error(codes::UNTERMINATED_COMMENT, "a comment is never closed")
-            .at(Span::new(source, at..at + 2), "opened here, without a `*/` after it"),
+        lexer::LexError::OpenComment(at) => {
+            Diagnostic::error(codes::UNTERMINATED_COMMENT, "a comment is never closed")
+                .at(Span::new(source, at..at + 2), "opened here, without a `*/` after it")
+        }
         lexer::LexError::TooMany(at) => {
             let end = at + text[at..].chars().next().map_or(0, char::len_utf8);
-            Diagnostic::error(codes::TOO_MANY_TOKENS, format!("a file has more than {} tokens", LIMITS.tokens))
-                .at(Span::new(source, at..end), "the first one too many")
+            Diagnostic::error(
+                codes::TOO_MANY_TOKENS,
+                format!("a file has more than {} tokens", LIMITS.tokens),
+            )
+            .at(Span::new(source, at..end), "the first one too many")
         }
     }
 }
@@ -179,7 +193,9 @@ fn lex_error(source: SourceId, text: &str, error: lexer::LexError) -> Diagnostic
 fn split(module: &mut Module, symbols: &Symbols) {
     let (mut token, mut byte) = (0, 0);
     while token < module.tokens.len() {
-        let hash = find_from(&module.tokens, token, |token| token.first_of_line && token.symbol == known::HASH);
+        let hash = find_from(&module.tokens, token, |token| {
+            token.first_of_line && token.symbol == known::HASH
+        });
         let start = module.tokens.get(hash).map_or(module.text.len(), |token| token.start as usize);
         push_text(module, token..hash, byte..start);
         if hash == module.tokens.len() {

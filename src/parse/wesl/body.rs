@@ -15,7 +15,8 @@ use super::trivia;
 use crate::diagnostic::Diagnostic;
 
 /// Attributes whose arguments are expressions. The words in any other's mean nothing elsewhere.
-const EXPRESSION_ATTRIBUTES: &[&str] = &["align", "binding", "blend_src", "group", "id", "location", "size", "workgroup_size"];
+const EXPRESSION_ATTRIBUTES: &[&str] =
+    &["align", "binding", "blend_src", "group", "id", "location", "size", "workgroup_size"];
 
 /// Fills the events, locals and free names of the items at `places`.
 pub fn scan(module: &mut Module, tokens: &[Token], names: &Names, places: Vec<Place>) {
@@ -116,7 +117,11 @@ impl Scanner<'_, '_> {
     }
 
     /// Parameters or struct members: `attributes name : type ,`.
-    fn fields(&mut self, open: usize, close: usize) -> Result<Vec<(Name, Option<ConditionId>)>, Diagnostic> {
+    fn fields(
+        &mut self,
+        open: usize,
+        close: usize,
+    ) -> Result<Vec<(Name, Option<ConditionId>)>, Diagnostic> {
         let mut fields = Vec::new();
         let mut chain = Chain::default();
         let mut at = open + 1;
@@ -172,7 +177,12 @@ impl Scanner<'_, '_> {
     pub(super) fn close_node(&mut self, node: Option<usize>, start: usize, end: usize) {
         let Some(index) = node else { return };
         let before = self.tokens.tokens[..start].last().map_or(0, |token| token.end);
-        let range = trivia::lines(self.tokens.text, before, self.tokens.range(start, end), self.tokens.start(end));
+        let range = trivia::lines(
+            self.tokens.text,
+            before,
+            self.tokens.range(start, end),
+            self.tokens.start(end),
+        );
         let following = self.events.len() as u32;
         if let Event::Node { start, end, next, .. } = &mut self.events[index] {
             (*start, *end, *next) = (range.start, range.end, following);
@@ -186,8 +196,13 @@ impl Scanner<'_, '_> {
             let after = arguments.map_or(at + 2, |open| self.tokens.partner(open) + 1);
             if condition::is_conditional(self.tokens, at) {
                 let bytes = self.tokens.range(at, after);
-                self.events.push(Event::Cut { start: bytes.start, end: trivia::skip_blank(self.tokens.text, bytes.end) });
-            } else if let Some(open) = arguments.filter(|_| EXPRESSION_ATTRIBUTES.contains(&self.tokens.text(at + 1))) {
+                self.events.push(Event::Cut {
+                    start: bytes.start,
+                    end: trivia::skip_blank(self.tokens.text, bytes.end),
+                });
+            } else if let Some(open) =
+                arguments.filter(|_| EXPRESSION_ATTRIBUTES.contains(&self.tokens.text(at + 1)))
+            {
                 self.uses(open + 1, after - 1)?;
             }
             at = after;
@@ -211,7 +226,12 @@ impl Scanner<'_, '_> {
     fn stray_attribute(&mut self, at: usize) -> Result<usize, Diagnostic> {
         if condition::is_conditional(self.tokens, at) {
             let message = format!("`@{}` may not stand here", self.tokens.text(at + 1));
-            return Err(condition::illegal(self.tokens, at + 1, &message, "what follows cannot be removed on its own"));
+            return Err(condition::illegal(
+                self.tokens,
+                at + 1,
+                &message,
+                "what follows cannot be removed on its own",
+            ));
         }
         let arguments = self.tokens.is(at + 2, b'(').then_some(at + 2);
         let after = arguments.map_or(at + 2, |open| self.tokens.partner(open) + 1);
@@ -264,7 +284,11 @@ impl Scanner<'_, '_> {
         let next = self.module.references.len() as u32;
         let reference = *self.paths.entry((origin, segments.clone())).or_insert(next);
         if reference == next {
-            self.module.references.push(Reference::Path(Path { origin, segments, range: range.clone() }));
+            self.module.references.push(Reference::Path(Path {
+                origin,
+                segments,
+                range: range.clone(),
+            }));
         }
         self.events.push(Event::Use { reference, guard: None, start: range.start, end: range.end });
         Ok(end)

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use super::cursor::Tokens;
-use super::module::{Comparison, Condition, ConditionId, Expression, ExpressionId, Module, Operand};
+use super::module::{
+    Comparison, Condition, ConditionId, Expression, ExpressionId, Module, Operand,
+};
 use super::name::Name;
 use super::token::Kind;
 use crate::diagnostic::{Diagnostic, codes};
@@ -27,7 +29,12 @@ pub struct Attributes {
 
 /// Reads the attributes that start at `at`, making a condition of the translate-time one.
 ///
-pub fn attributes(module: &mut Module, tokens: Tokens<'_>, at: usize, chain: &mut Chain) -> Attributes {
+pub fn attributes(
+    module: &mut Module,
+    tokens: Tokens<'_>,
+    at: usize,
+    chain: &mut Chain,
+) -> Attributes {
     let mut found = Attributes { end: at, condition: None, entry: false };
     let mut first: Option<usize> = None;
     while tokens.is(found.end, b'@') {
@@ -35,7 +42,12 @@ pub fn attributes(module: &mut Module, tokens: Tokens<'_>, at: usize, chain: &mu
         let arguments = tokens.is(name_at + 1, b'(').then_some(name_at + 1);
         match tokens.word(name_at) {
             Some(Name::IF | Name::ELIF | Name::ELSE) if first.is_some() => {
-                let error = illegal(tokens, name_at, "a node has two translate-time attributes", "the second one");
+                let error = illegal(
+                    tokens,
+                    name_at,
+                    "a node has two translate-time attributes",
+                    "the second one",
+                );
                 module.errors.push(error.note("help: join the conditions with `&&`"));
             }
             Some(word @ (Name::IF | Name::ELIF | Name::ELSE)) => {
@@ -48,7 +60,9 @@ pub fn attributes(module: &mut Module, tokens: Tokens<'_>, at: usize, chain: &mu
                     }
                 }
             }
-            Some(name) => found.entry |= matches!(tokens.names.text(name), "vertex" | "fragment" | "compute"),
+            Some(name) => {
+                found.entry |= matches!(tokens.names.text(name), "vertex" | "fragment" | "compute")
+            }
             None => {
                 module.errors.push(tokens.expected(name_at, "the name of an attribute"));
                 found.end = name_at;
@@ -91,22 +105,38 @@ fn condition(
     let text = tokens.names.text(word);
     let expression = match arguments {
         Some(open) if word == Name::ELSE => {
-            return Err(illegal(tokens, open, "`@else` takes no condition", "not allowed").note("help: use `@elif(...)`"));
+            return Err(illegal(tokens, open, "`@else` takes no condition", "not allowed")
+                .note("help: use `@elif(...)`"));
         }
-        None if word != Name::ELSE => return Err(tokens.expected(name_at + 1, &format!("`(` and the condition of `@{text}`"))),
+        None if word != Name::ELSE => {
+            return Err(
+                tokens.expected(name_at + 1, &format!("`(` and the condition of `@{text}`"))
+            );
+        }
         Some(open) => Some(parenthesised(module, tokens, open)?),
         None => None,
     };
     if word != Name::IF && chain.last.is_none() {
         let message = format!("`@{text}` without an `@if` before it");
-        return Err(illegal(tokens, name_at, &message, "the sibling before has no `@if` or `@elif`"));
+        return Err(illegal(
+            tokens,
+            name_at,
+            &message,
+            "the sibling before has no `@if` or `@elif`",
+        ));
     }
-    module.conditions.push(Condition { expression, after: chain.last.filter(|_| word != Name::IF) });
+    module
+        .conditions
+        .push(Condition { expression, after: chain.last.filter(|_| word != Name::IF) });
     Ok(module.conditions.len() as u32 - 1)
 }
 
 /// `( expression ,? )`.
-fn parenthesised(module: &mut Module, tokens: Tokens<'_>, open: usize) -> Result<ExpressionId, Diagnostic> {
+fn parenthesised(
+    module: &mut Module,
+    tokens: Tokens<'_>,
+    open: usize,
+) -> Result<ExpressionId, Diagnostic> {
     let close = tokens.partner(open);
     let mut reader = Reader { module, tokens, at: open + 1 };
     let expression = reader.expression()?;
@@ -152,7 +182,8 @@ impl Reader<'_, '_> {
         }
         if self.pair(b'&', b'&') || self.pair(b'|', b'|') {
             let message = "`&&` and `||` in one condition need parentheses";
-            return Err(Diagnostic::error(codes::CONDITION_SYNTAX, message).at(self.tokens.span(self.at), "mixed here"));
+            return Err(Diagnostic::error(codes::CONDITION_SYNTAX, message)
+                .at(self.tokens.span(self.at), "mixed here"));
         }
         Ok(match operands.len() {
             1 => first,
@@ -168,7 +199,8 @@ impl Reader<'_, '_> {
         }
         let negations = self.at - start;
         if negations > LIMITS.nesting {
-            return Err(Diagnostic::error(codes::TOO_DEEPLY_NESTED, "too many `!` in a row").at(self.tokens.span(start), "here"));
+            return Err(Diagnostic::error(codes::NESTING_TOO_DEEP, "too many `!` in a row")
+                .at(self.tokens.span(start), "here"));
         }
         let operand = self.primary()?;
         Ok(if negations % 2 == 1 { self.add(Expression::Not(operand)) } else { operand })
@@ -230,7 +262,9 @@ impl Reader<'_, '_> {
         match kind {
             Some(Kind::Number) => match integer(self.tokens.text(self.at - 1), negative) {
                 Some(value) => Ok(Operand::Integer(value, range)),
-                None => Err(unexpected(self.tokens, self.at - 1).note("only integers may be compared")),
+                None => {
+                    Err(unexpected(self.tokens, self.at - 1).note("only integers may be compared"))
+                }
             },
             Some(Kind::Word(name)) if !name.is_keyword() => Ok(Operand::Name(name, range)),
             _ => Err(unexpected(self.tokens, start)),

@@ -89,8 +89,13 @@ impl<'a> Tokens<'a> {
 
     /// A syntax error at a token.
     pub fn expected(self, at: usize, what: &str) -> Diagnostic {
-        let found = if at < self.len() { format!("`{}`", self.text(at)) } else { "the end of the file".to_owned() };
-        Diagnostic::error(codes::SYNTAX_ERROR, format!("expected {what}, found {found}")).at(self.span(at), format!("expected {what}"))
+        let found = if at < self.len() {
+            format!("`{}`", self.text(at))
+        } else {
+            "the end of the file".to_owned()
+        };
+        Diagnostic::error(codes::SYNTAX_ERROR, format!("expected {what}, found {found}"))
+            .at(self.span(at), format!("expected {what}"))
     }
 
     /// Past the token if it is `mark`, else an error.

@@ -7,7 +7,12 @@ use super::token::Kind;
 use crate::diagnostic::Diagnostic;
 
 /// Reads the statement whose `import` is at `at`; returns the index past its semicolon.
-pub fn import(module: &mut Module, tokens: Tokens<'_>, at: usize, condition: Option<ConditionId>) -> Result<usize, Diagnostic> {
+pub fn import(
+    module: &mut Module,
+    tokens: Tokens<'_>,
+    at: usize,
+    condition: Option<ConditionId>,
+) -> Result<usize, Diagnostic> {
     let first = at + 1;
     let (origin, after) = origin(tokens, first)?;
     let path = Path { origin, segments: Vec::new(), range: tokens.range(first, first) };
@@ -25,7 +30,9 @@ pub fn origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnost
     let word = tokens.word(at);
     let mut end = at;
     let mut ups = 0;
-    while (word == Some(Name::PACKAGE) && end == at) || (word == Some(Name::SUPER) && tokens.is_word(end, Name::SUPER)) {
+    while (word == Some(Name::PACKAGE) && end == at)
+        || (word == Some(Name::SUPER) && tokens.is_word(end, Name::SUPER))
+    {
         if tokens.kind(end + 1) != Some(Kind::Path) {
             return Err(tokens.expected(end + 1, "`::`"));
         }

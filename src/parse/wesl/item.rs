@@ -33,7 +33,8 @@ const KINDS: &[(Name, ItemKind)] = &[
 pub fn split(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place> {
     let text = std::sync::Arc::clone(&module.text);
     let tokens = Tokens { tokens, text: &text, names, source: module.source };
-    let mut splitter = Splitter { module, tokens, chain: Chain::default(), places: Vec::new(), behind: 0 };
+    let mut splitter =
+        Splitter { module, tokens, chain: Chain::default(), places: Vec::new(), behind: 0 };
     let mut at = 0;
     while at < tokens.len() {
         let end = match splitter.node(at) {
@@ -83,7 +84,9 @@ impl Splitter<'_, '_> {
         let keyword = attributes.end;
         match self.tokens.word(keyword) {
             Some(Name::IMPORT) => self.import(keyword, attributes),
-            Some(word @ (Name::ENABLE | Name::REQUIRES | Name::DIAGNOSTIC)) => self.directive(keyword, word, attributes),
+            Some(word @ (Name::ENABLE | Name::REQUIRES | Name::DIAGNOSTIC)) => {
+                self.directive(keyword, word, attributes)
+            }
             word => match KINDS.iter().find(|(name, _)| Some(*name) == word) {
                 Some((_, kind)) => self.item(at, attributes, *kind),
                 None => Err(self.tokens.expected(keyword, "a declaration")),
@@ -94,22 +97,42 @@ impl Splitter<'_, '_> {
     fn import(&mut self, keyword: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
         if !self.places.is_empty() {
             let error = Diagnostic::error(codes::SYNTAX_ERROR, "an `import` after a declaration");
-            self.module.errors.push(error.at(self.tokens.span(keyword), "imports come first in a file"));
+            self.module
+                .errors
+                .push(error.at(self.tokens.span(keyword), "imports come first in a file"));
         }
         import::import(self.module, self.tokens, keyword, attributes.condition)
     }
 
-    fn directive(&mut self, keyword: usize, word: Name, attributes: Attributes) -> Result<usize, Diagnostic> {
-        let end = self.tokens.find(keyword, self.tokens.len(), b';').ok_or_else(|| self.unended(keyword, "the directive"))?;
+    fn directive(
+        &mut self,
+        keyword: usize,
+        word: Name,
+        attributes: Attributes,
+    ) -> Result<usize, Diagnostic> {
+        let end = self
+            .tokens
+            .find(keyword, self.tokens.len(), b';')
+            .ok_or_else(|| self.unended(keyword, "the directive"))?;
         let range = self.tokens.range(keyword, end + 1);
         let names = (keyword + 1..end).filter(|at| !self.tokens.is(*at, b'(')).collect::<Vec<_>>();
         // The words of `diagnostic(...)` are inside the parentheses that `find` jumped over.
         let names = names.into_iter().filter_map(|at| self.tokens.word(at)).collect();
-        self.module.directives.push(Directive { keyword: word, condition: attributes.condition, range, names });
+        self.module.directives.push(Directive {
+            keyword: word,
+            condition: attributes.condition,
+            range,
+            names,
+        });
         Ok(end + 1)
     }
 
-    fn item(&mut self, start: usize, attributes: Attributes, kind: ItemKind) -> Result<usize, Diagnostic> {
+    fn item(
+        &mut self,
+        start: usize,
+        attributes: Attributes,
+        kind: ItemKind,
+    ) -> Result<usize, Diagnostic> {
         let keyword = attributes.end;
         let name_at = self.name_at(keyword, kind);
         let name = match kind {
@@ -164,13 +187,18 @@ impl Splitter<'_, '_> {
         let mark = if what == "the body" { "{" } else { ";" };
         let stop = (keyword + 1..limit).find(|at| self.starts_node(*at)).unwrap_or(limit);
         let label = if stop > keyword + 1 { stop - 1 } else { keyword };
-        Diagnostic::error(codes::SYNTAX_ERROR, format!("{what} of `{}` lacks its `{mark}`", self.tokens.text(keyword)))
-            .at(self.tokens.span(label), format!("expected `{mark}` after this"))
+        Diagnostic::error(
+            codes::SYNTAX_ERROR,
+            format!("{what} of `{}` lacks its `{mark}`", self.tokens.text(keyword)),
+        )
+        .at(self.tokens.span(label), format!("expected `{mark}` after this"))
     }
 
     fn starts_node(&self, at: usize) -> bool {
         let word = self.tokens.word(at);
-        self.tokens.is(at, b'@') || self.tokens.is(at, b'{') || KINDS.iter().any(|(name, _)| Some(*name) == word)
+        self.tokens.is(at, b'@')
+            || self.tokens.is(at, b'{')
+            || KINDS.iter().any(|(name, _)| Some(*name) == word)
     }
 }
 

@@ -16,8 +16,8 @@ mod token;
 mod trivia;
 
 pub use module::{
-    Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import, Item, ItemKind, Module, Operand, Origin,
-    Path, Reference,
+    Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import,
+    Item, ItemKind, Module, Operand, Origin, Path, Reference,
 };
 pub use name::{Name, Names, is_keyword};
 

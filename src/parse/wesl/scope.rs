@@ -55,7 +55,10 @@ impl Scopes {
                 Meaning::Global(Some(module.guards.len() as u32 - 1))
             }
         };
-        let outer = std::mem::replace(&mut self.innermost[name.0 as usize], self.declarations.len() as u32 + 1);
+        let outer = std::mem::replace(
+            &mut self.innermost[name.0 as usize],
+            self.declarations.len() as u32 + 1,
+        );
         self.declarations.push(Declaration { name, meaning, outer });
     }
 

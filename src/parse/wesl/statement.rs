@@ -30,7 +30,12 @@ impl Scanner<'_, '_> {
         Ok(end)
     }
 
-    fn statement(&mut self, at: usize, limit: usize, condition: Option<ConditionId>) -> Result<usize, Diagnostic> {
+    fn statement(
+        &mut self,
+        at: usize,
+        limit: usize,
+        condition: Option<ConditionId>,
+    ) -> Result<usize, Diagnostic> {
         if at >= limit {
             return Err(self.tokens.expected(at, "a statement"));
         }
@@ -53,8 +58,13 @@ impl Scanner<'_, '_> {
     fn misplaced_else(&self, at: usize) -> Diagnostic {
         let conditional = at > 0 && !self.tokens.is(at - 1, b'}');
         match conditional {
-            true => condition::illegal(self.tokens, at, "an `else` clause cannot be conditional", "belongs to the `if` before it")
-                .note("help: make the whole `if` statement conditional"),
+            true => condition::illegal(
+                self.tokens,
+                at,
+                "an `else` clause cannot be conditional",
+                "belongs to the `if` before it",
+            )
+            .note("help: make the whole `if` statement conditional"),
             false => self.tokens.expected(at, "a statement"),
         }
     }
@@ -113,7 +123,12 @@ impl Scanner<'_, '_> {
     }
 
     /// `let`, `const` or `var`: in scope after its semicolon.
-    fn local(&mut self, at: usize, limit: usize, condition: Option<ConditionId>) -> Result<usize, Diagnostic> {
+    fn local(
+        &mut self,
+        at: usize,
+        limit: usize,
+        condition: Option<ConditionId>,
+    ) -> Result<usize, Diagnostic> {
         let name_at = self.var_template(at + 1);
         let name = self.tokens.identifier(name_at, "a name")?;
         let end = self.semicolon(name_at, limit)?;

@@ -42,12 +42,17 @@ pub fn tokenise(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<T
         let index = tokens.len() as u32;
         tokens.push(Token { kind, start: start as u32, end: scanner.at as u32, partner: index });
         if tokens.len() > LIMITS.tokens {
-            return Err(Diagnostic::error(codes::TOO_MANY_TOKENS, format!("more than {} tokens in one file", LIMITS.tokens))
-                .at(scanner.span(start), "the first one too many"));
+            return Err(Diagnostic::error(
+                codes::TOO_MANY_TOKENS,
+                format!("more than {} tokens in one file", LIMITS.tokens),
+            )
+            .at(scanner.span(start), "the first one too many"));
         }
         match kind {
             Kind::Mark(b'(' | b'[' | b'{') => push(&mut open, index, scanner.span(start))?,
-            Kind::Mark(mark @ (b')' | b']' | b'}')) => close(&mut tokens, &mut open, mark, &scanner, start)?,
+            Kind::Mark(mark @ (b')' | b']' | b'}')) => {
+                close(&mut tokens, &mut open, mark, &scanner, start)?
+            }
             _ => {}
         }
     }
@@ -62,14 +67,27 @@ fn push(open: &mut Vec<u32>, index: u32, span: Span) -> Result<(), Diagnostic> {
     if open.len() <= LIMITS.nesting {
         return Ok(());
     }
-    Err(Diagnostic::error(codes::TOO_DEEPLY_NESTED, format!("brackets nest more than {} deep", LIMITS.nesting)).at(span, "here"))
+    Err(Diagnostic::error(
+        codes::NESTING_TOO_DEEP,
+        format!("brackets nest more than {} deep", LIMITS.nesting),
+    )
+    .at(span, "here"))
 }
 
-fn close(tokens: &mut [Token], open: &mut Vec<u32>, mark: u8, scanner: &Scanner<'_>, start: usize) -> Result<(), Diagnostic> {
+fn close(
+    tokens: &mut [Token],
+    open: &mut Vec<u32>,
+    mark: u8,
+    scanner: &Scanner<'_>,
+    start: usize,
+) -> Result<(), Diagnostic> {
     let index = tokens.len() - 1;
     let Some(opener) = open.pop() else {
-        return Err(Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{}` closes nothing", mark as char))
-            .at(scanner.span(start), "no open bracket before this"));
+        return Err(Diagnostic::error(
+            codes::UNBALANCED_BRACKET,
+            format!("`{}` closes nothing", mark as char),
+        )
+        .at(scanner.span(start), "no open bracket before this"));
     };
     let expected = match tokens[opener as usize].kind {
         Kind::Mark(b'(') => b')',
@@ -77,9 +95,12 @@ fn close(tokens: &mut [Token], open: &mut Vec<u32>, mark: u8, scanner: &Scanner<
         _ => b'}',
     };
     if mark != expected {
-        return Err(Diagnostic::error(codes::UNBALANCED_BRACKET, format!("expected `{}`, found `{}`", expected as char, mark as char))
-            .at(scanner.span(start), format!("`{}` was expected here", expected as char))
-            .at(span_of(&tokens[opener as usize], scanner.source), "to close this"));
+        return Err(Diagnostic::error(
+            codes::UNBALANCED_BRACKET,
+            format!("expected `{}`, found `{}`", expected as char, mark as char),
+        )
+        .at(scanner.span(start), format!("`{}` was expected here", expected as char))
+        .at(span_of(&tokens[opener as usize], scanner.source), "to close this"));
     }
     tokens[index].partner = opener;
     tokens[opener as usize].partner = index as u32;
@@ -88,7 +109,8 @@ fn close(tokens: &mut [Token], open: &mut Vec<u32>, mark: u8, scanner: &Scanner<
 
 fn unclosed(token: &Token, source: SourceId) -> Diagnostic {
     let mark = if let Kind::Mark(mark) = token.kind { mark as char } else { '{' };
-    Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{mark}` is never closed")).at(span_of(token, source), "opened here")
+    Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{mark}` is never closed"))
+        .at(span_of(token, source), "opened here")
 }
 
 fn span_of(token: &Token, source: SourceId) -> Span {
@@ -163,7 +185,16 @@ impl Scanner<'_> {
             b'.' if self.peek(1).is_ascii_digit() => Ok(self.number()),
             b':' if self.peek(1) == b':' => Ok(self.two(Kind::Path)),
             b'-' if self.peek(1) == b'>' => Ok(self.two(Kind::Arrow)),
-            mark @ (b'!' | b'%' | b'&' | b'('..=b'/' | b':'..=b'>' | b'@' | b'[' | b']' | b'^' | b'{'..=b'~') => {
+            mark @ (b'!'
+            | b'%'
+            | b'&'
+            | b'('..=b'/'
+            | b':'..=b'>'
+            | b'@'
+            | b'['
+            | b']'
+            | b'^'
+            | b'{'..=b'~') => {
                 self.at += 1;
                 Ok(Kind::Mark(mark))
             }
@@ -180,10 +211,18 @@ impl Scanner<'_> {
     }
 
     fn stray(&self, letter: char) -> Diagnostic {
-        let span = Span::new(self.source, self.at..self.at + letter.len_utf8().min(self.bytes.len() - self.at));
-        let found = Diagnostic::error(codes::SYNTAX_ERROR, format!("unexpected character `{}`", letter.escape_debug()));
+        let span = Span::new(
+            self.source,
+            self.at..self.at + letter.len_utf8().min(self.bytes.len() - self.at),
+        );
+        let found = Diagnostic::error(
+            codes::SYNTAX_ERROR,
+            format!("unexpected character `{}`", letter.escape_debug()),
+        );
         match letter {
-            '#' => found.at(span, "WGSL has no preprocessor").note("help: use `import` and `@if(...)`"),
+            '#' => {
+                found.at(span, "WGSL has no preprocessor").note("help: use `import` and `@if(...)`")
+            }
             _ => found.at(span, "not a character of WGSL"),
         }
     }
@@ -194,7 +233,9 @@ impl Scanner<'_> {
             match self.bytes[self.at] {
                 b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'0'..=b'9' => self.at += 1,
                 0x80.. => match self.character() {
-                    Some(letter) if unicode_ident::is_xid_continue(letter) => self.at += letter.len_utf8(),
+                    Some(letter) if unicode_ident::is_xid_continue(letter) => {
+                        self.at += letter.len_utf8()
+                    }
                     _ => break,
                 },
                 _ => break,
@@ -207,7 +248,11 @@ impl Scanner<'_> {
     fn number(&mut self) -> Kind {
         let hexadecimal = self.bytes[self.at] == b'0' && matches!(self.peek(1), b'x' | b'X');
         loop {
-            let exponent = if hexadecimal { matches!(self.peek(0), b'p' | b'P') } else { matches!(self.peek(0), b'e' | b'E') };
+            let exponent = if hexadecimal {
+                matches!(self.peek(0), b'p' | b'P')
+            } else {
+                matches!(self.peek(0), b'e' | b'E')
+            };
             match self.peek(0) {
                 _ if exponent && matches!(self.peek(1), b'+' | b'-') => self.at += 2,
                 b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' | b'.' => self.at += 1,

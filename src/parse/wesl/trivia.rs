@@ -51,7 +51,9 @@ pub fn lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32
         }
         // At the end of a line the blanks before go too, elsewhere those behind: `f(@if(a) x, y)`.
         (false, true) => node.start - indent as u32..end,
-        (_, false) => node.start..end + (tail.len() - tail.trim_start_matches([' ', '\t']).len()) as u32,
+        (_, false) => {
+            node.start..end + (tail.len() - tail.trim_start_matches([' ', '\t']).len()) as u32
+        }
     }
 }
 

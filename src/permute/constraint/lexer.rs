@@ -24,7 +24,8 @@ pub struct Token<'a> {
 }
 
 /// Longer ones first.
-const SIGNS: &[&str] = &["=>", "==", "!=", "<=", ">=", "&&", "||", "!", "(", ")", "[", "]", ",", "<", ">"];
+const SIGNS: &[&str] =
+    &["=>", "==", "!=", "<=", ">=", "&&", "||", "!", "(", ")", "[", "]", ",", "<", ">"];
 
 /// The tokens of the text, closed by one of kind [`Kind::End`].
 pub fn tokens(text: &str) -> Vec<Token<'_>> {
@@ -44,7 +45,11 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
 }
 
 fn next(rest: &str, first: char) -> (Kind, usize) {
-    let run = |from: usize| from + rest[from..].find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len() - from);
+    let run = |from: usize| {
+        from + rest[from..]
+            .find(|c: char| !c.is_alphanumeric() && c != '_')
+            .unwrap_or(rest.len() - from)
+    };
     if let Some(sign) = SIGNS.iter().find(|sign| rest.starts_with(**sign)) {
         return (Kind::Sign, sign.len());
     }

@@ -34,15 +34,19 @@ struct Parser<'a> {
 type Order = fn(&i64, &i64) -> bool;
 
 /// The orders by sign.
-const ORDERS: &[(&str, Order)] = &[("<", i64::lt), ("<=", i64::le), (">", i64::gt), (">=", i64::ge)];
+const ORDERS: &[(&str, Order)] =
+    &[("<", i64::lt), ("<=", i64::le), (">", i64::gt), (">=", i64::ge)];
 
 /// What other languages write, and what it is here.
-const HINTS: &[(&str, &str)] = &[("=", "=="), ("&", "&&"), ("|", "||"), ("and", "&&"), ("or", "||"), ("not", "!")];
+const HINTS: &[(&str, &str)] =
+    &[("=", "=="), ("&", "&&"), ("|", "||"), ("and", "&&"), ("or", "||"), ("not", "!")];
 
 impl<'a> Parser<'a> {
     fn condition(&mut self) -> Result<Formula, Diagnostic> {
         self.deeper(|parser| {
-            let premise = parser.series("||", Formula::Any, |parser| parser.series("&&", Formula::All, Self::unary))?;
+            let premise = parser.series("||", Formula::Any, |parser| {
+                parser.series("&&", Formula::All, Self::unary)
+            })?;
             if !parser.take("=>") {
                 return Ok(premise);
             }
@@ -104,7 +108,9 @@ impl<'a> Parser<'a> {
         }
         match ORDERS.iter().find(|(sign, _)| self.tokens[self.at].text == *sign) {
             Some((_, holds)) => self.order(found, *holds),
-            None if found.kind == Kind::Bool => Ok(found.ordinal(&Setting::Bool(true)).into_iter().collect()),
+            None if found.kind == Kind::Bool => {
+                Ok(found.ordinal(&Setting::Bool(true)).into_iter().collect())
+            }
             None if self.kind() == Token::Stray => Err(self.unexpected("a comparison")),
             None => Err(self.bare(found, span)),
         }
@@ -114,10 +120,18 @@ impl<'a> Parser<'a> {
         let sign = self.span();
         self.at += 1;
         if axis.kind != Kind::Int {
-            let message = format!("axis `{}` is {}, and only integer axes are ordered", axis.name, with_article(axis.kind));
-            return Err(Diagnostic::error(codes::CONSTRAINT_TYPE, message).at(sign, "compares integers").at(axis.span, "declared here"));
+            let message = format!(
+                "axis `{}` is {}, and only integer axes are ordered",
+                axis.name,
+                with_article(axis.kind)
+            );
+            return Err(Diagnostic::error(codes::CONSTRAINT_TYPE, message)
+                .at(sign, "compares integers")
+                .at(axis.span, "declared here"));
         }
-        let Some(bound) = self.tokens[self.at].text.parse().ok().filter(|_| self.kind() == Token::Number) else {
+        let Some(bound) =
+            self.tokens[self.at].text.parse().ok().filter(|_| self.kind() == Token::Number)
+        else {
             return Err(self.unexpected("an integer of 64 bits"));
         };
         self.at += 1;
@@ -144,15 +158,26 @@ impl<'a> Parser<'a> {
     }
 
     fn bare(&self, axis: &Axis, span: Span) -> Diagnostic {
-        let message = format!("axis `{}` is {}, so it is not a condition by itself", axis.name, with_article(axis.kind));
+        let message = format!(
+            "axis `{}` is {}, so it is not a condition by itself",
+            axis.name,
+            with_article(axis.kind)
+        );
         let note = format!("compare it, as in `{} == {}`", axis.name, axis.values[axis.default]);
-        Diagnostic::error(codes::CONSTRAINT_TYPE, message).at(span, "not a boolean").at(axis.span, "declared here").note(note)
+        Diagnostic::error(codes::CONSTRAINT_TYPE, message)
+            .at(span, "not a boolean")
+            .at(axis.span, "declared here")
+            .note(note)
     }
 
-    fn deeper<T>(&mut self, inner: impl FnOnce(&mut Self) -> Result<T, Diagnostic>) -> Result<T, Diagnostic> {
+    fn deeper<T>(
+        &mut self,
+        inner: impl FnOnce(&mut Self) -> Result<T, Diagnostic>,
+    ) -> Result<T, Diagnostic> {
         if self.depth == NESTING {
             let message = format!("a constraint may nest {NESTING} levels deep");
-            return Err(Diagnostic::error(codes::CONSTRAINT_NESTING, message).at(self.span(), "one level too many"));
+            return Err(Diagnostic::error(codes::NESTING_TOO_DEEP, message)
+                .at(self.span(), "one level too many"));
         }
         self.depth += 1;
         let found = inner(self);
@@ -194,8 +219,14 @@ impl<'a> Parser<'a> {
             Token::End => "the end".to_owned(),
             _ => format!("`{}`", self.tokens[self.at].text),
         };
-        let diagnostic = Diagnostic::error(codes::CONSTRAINT_SYNTAX, format!("expected {expected}, found {found}"));
-        hinted(diagnostic.at(self.span(), format!("expected {expected}")), self.tokens[self.at].text)
+        let diagnostic = Diagnostic::error(
+            codes::CONSTRAINT_SYNTAX,
+            format!("expected {expected}, found {found}"),
+        );
+        hinted(
+            diagnostic.at(self.span(), format!("expected {expected}")),
+            self.tokens[self.at].text,
+        )
     }
 }
 

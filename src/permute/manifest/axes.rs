@@ -18,10 +18,14 @@ pub fn axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
     let table = reader.table(value, "`axis`")?;
     if table.len() > MAX {
         let message = format!("a program may have {MAX} axes, and this one has {}", table.len());
-        reader.problems.push(Diagnostic::error(codes::AXIS_LIMIT, message).at(reader.span(value.span()), "too many axes"));
+        reader.problems.push(
+            Diagnostic::error(codes::AXIS_LIMIT, message)
+                .at(reader.span(value.span()), "too many axes"),
+        );
         return None;
     }
-    let axes: Vec<Axis> = table.iter().filter_map(|(name, value)| axis(reader, name, value)).collect();
+    let axes: Vec<Axis> =
+        table.iter().filter_map(|(name, value)| axis(reader, name, value)).collect();
     reader.problems.extend(names::collisions(&axes));
     (axes.len() == table.len()).then_some(axes)
 }
@@ -61,7 +65,9 @@ fn mode(reader: &mut Reader, value: &Value) -> Option<Mode> {
     let text = reader.string(value, "`mode`")?;
     let found = Mode::ALL.iter().find(|(name, _)| *name == text.text).map(|(_, mode)| *mode);
     if found.is_none() {
-        let unknown = Diagnostic::error(codes::UNKNOWN_VALUE, format!("there is no mode `{}`", text.text)).at(text.span, "not a mode");
+        let unknown =
+            Diagnostic::error(codes::UNKNOWN_VALUE, format!("there is no mode `{}`", text.text))
+                .at(text.span, "not a mode");
         let names = || Mode::ALL.iter().map(|(name, _)| *name);
         let listed = format!("modes: {}", names().collect::<Vec<_>>().join(", "));
         reader.problems.push(unknown.suggest(&text.text, names()).note(listed));
@@ -75,12 +81,17 @@ fn values(reader: &mut Reader, what: &str, list: &Value) -> Option<Vec<Setting>>
     let span = reader.span(list.span());
     if array.is_empty() || array.len() > MAX {
         let message = format!("{what} has {} values, and an axis has from 1 to {MAX}", array.len());
-        reader.problems.push(Diagnostic::error(codes::AXIS_LIMIT, message).at(span, "no axis without a choice"));
+        reader.problems.push(
+            Diagnostic::error(codes::AXIS_LIMIT, message).at(span, "no axis without a choice"),
+        );
         return None;
     }
-    let read: Vec<(Setting, Span)> =
-        array.iter().filter_map(|value| Some((reader.setting(value, "a value")?, reader.span(value.span())))).collect();
-    let problems: Vec<Diagnostic> = (0..read.len()).filter_map(|index| value_problem(what, &read, index)).collect();
+    let read: Vec<(Setting, Span)> = array
+        .iter()
+        .filter_map(|value| Some((reader.setting(value, "a value")?, reader.span(value.span()))))
+        .collect();
+    let problems: Vec<Diagnostic> =
+        (0..read.len()).filter_map(|index| value_problem(what, &read, index)).collect();
     let sound = problems.is_empty() && read.len() == array.len();
     reader.problems.extend(problems);
     sound.then(|| read.into_iter().map(|(value, _)| value).collect())
@@ -91,11 +102,19 @@ fn value_problem(what: &str, values: &[(Setting, Span)], index: usize) -> Option
     let (kind, expected) = (Kind::of(value), Kind::of(first));
     if kind != expected {
         let message = format!("{what} mixes {} and {} values", expected.name(), kind.name());
-        return Some(Diagnostic::error(codes::MIXED_VALUES, message).at(*span, kind.name()).at(*first_span, expected.name()));
+        return Some(
+            Diagnostic::error(codes::MIXED_VALUES, message)
+                .at(*span, kind.name())
+                .at(*first_span, expected.name()),
+        );
     }
     if let Some((_, earlier)) = values[..index].iter().find(|(earlier, _)| earlier == value) {
         let message = format!("{what} has the value `{value}` twice");
-        return Some(Diagnostic::error(codes::DUPLICATE_VALUE, message).at(*span, "again here").at(*earlier, "first here"));
+        return Some(
+            Diagnostic::error(codes::DUPLICATE_VALUE, message)
+                .at(*span, "again here")
+                .at(*earlier, "first here"),
+        );
     }
     match value {
         Setting::Name(name) => names::check(name, "a value", *span),

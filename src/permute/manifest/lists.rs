@@ -18,7 +18,8 @@ pub fn only(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Slice> {
 
 /// Slices in which an axis that is not named is anything.
 pub fn exclude(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Slice> {
-    let unnamed: Vec<ValueSet> = axes.iter().map(|axis| ValueSet::full(axis.values.len())).collect();
+    let unnamed: Vec<ValueSet> =
+        axes.iter().map(|axis| ValueSet::full(axis.values.len())).collect();
     slices(reader, axes, value, "exclude", &unnamed)
 }
 
@@ -31,23 +32,41 @@ pub fn include(reader: &mut Reader, space: &Space, value: &Value) -> Vec<Assignm
 fn included(reader: &mut Reader, space: &Space, value: &Value) -> Option<Assignment> {
     let key = reader.string(value, "an entry of `include`")?;
     let point = parse(space, &key).map_err(|problems| reader.problems.extend(problems)).ok()?;
-    let broken: Vec<Diagnostic> = space.broken(&point).map(|constraint| invalid(&key, &constraint.text, constraint.span)).collect();
+    let broken: Vec<Diagnostic> = space
+        .broken(&point)
+        .map(|constraint| invalid(&key, &constraint.text, constraint.span))
+        .collect();
     reader.problems.extend(broken);
     Some(point)
 }
 
 fn invalid(key: &Quoted, constraint: &str, span: crate::source::Span) -> Diagnostic {
-    Diagnostic::error(codes::INVALID_PERMUTATION, format!("permutation `{}` breaks the constraint `{constraint}`", key.text))
-        .at(key.span, "included here")
-        .at(span, "breaks this constraint")
+    Diagnostic::error(
+        codes::INVALID_PERMUTATION,
+        format!("permutation `{}` breaks the constraint `{constraint}`", key.text),
+    )
+    .at(key.span, "included here")
+    .at(span, "breaks this constraint")
 }
 
-fn slices(reader: &mut Reader, axes: &[Axis], value: &Value, list: &str, unnamed: &[ValueSet]) -> Vec<Slice> {
+fn slices(
+    reader: &mut Reader,
+    axes: &[Axis],
+    value: &Value,
+    list: &str,
+    unnamed: &[ValueSet],
+) -> Vec<Slice> {
     let Some(array) = reader.array(value, &format!("`{list}`")) else { return Vec::new() };
     array.iter().filter_map(|value| slice(reader, axes, value, list, unnamed)).collect()
 }
 
-fn slice(reader: &mut Reader, axes: &[Axis], value: &Value, list: &str, unnamed: &[ValueSet]) -> Option<Slice> {
+fn slice(
+    reader: &mut Reader,
+    axes: &[Axis],
+    value: &Value,
+    list: &str,
+    unnamed: &[ValueSet],
+) -> Option<Slice> {
     let table = reader.table(value, &format!("an entry of `{list}`"))?;
     let mut values = unnamed.to_vec();
     for (name, value) in table.iter() {
@@ -59,9 +78,16 @@ fn slice(reader: &mut Reader, axes: &[Axis], value: &Value, list: &str, unnamed:
 }
 
 /// An axis of a slice and the values that it may have.
-fn named(reader: &mut Reader, axes: &[Axis], name: &Name, value: &Value) -> Option<(usize, ValueSet)> {
+fn named(
+    reader: &mut Reader,
+    axes: &[Axis],
+    name: &Name,
+    value: &Value,
+) -> Option<(usize, ValueSet)> {
     let span = reader.span(name.span());
-    let axis = find_axis(axes, name.get_ref(), span).map_err(|problem| reader.problems.push(problem)).ok()?;
+    let axis = find_axis(axes, name.get_ref(), span)
+        .map_err(|problem| reader.problems.push(problem))
+        .ok()?;
     let found = &axes[axis];
     let set = match value.get_ref().as_array() {
         _ if value.get_ref().as_str() == Some(ANY) => ValueSet::full(found.values.len()),

@@ -80,7 +80,9 @@ fn programs(reader: &mut Reader, document: &DeTable) -> Vec<Program> {
     let Some(found) = document.get("program") else {
         let message = "the manifest declares no program";
         let start = Span::new(reader.id, 0..0);
-        reader.problems.push(Diagnostic::error(codes::MISSING_KEY, message).at(start, "expected `[program.NAME]`"));
+        reader.problems.push(
+            Diagnostic::error(codes::MISSING_KEY, message).at(start, "expected `[program.NAME]`"),
+        );
         return Vec::new();
     };
     let Some(table) = reader.table(found, "`program`") else { return Vec::new() };

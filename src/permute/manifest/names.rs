@@ -19,27 +19,42 @@ const MACROS: &[&str] = &["VULKAN", "LAMPLIGHT_COMBINED_SAMPLERS"];
 /// What a program or a value is called must be an identifier.
 pub fn check(name: &str, what: &str, span: Span) -> Option<Diagnostic> {
     let problem = problem(name)?;
-    Some(Diagnostic::error(codes::BAD_NAME, format!("{what} cannot be called `{name}`: {problem}")).at(span, "not a usable name"))
+    Some(
+        Diagnostic::error(codes::BAD_NAME, format!("{what} cannot be called `{name}`: {problem}"))
+            .at(span, "not a usable name"),
+    )
 }
 
 /// What an axis is called must not be reserved either.
 pub fn check_axis(name: &str, span: Span) -> Option<Diagnostic> {
-    let reserved = || naga::keywords::wgsl::RESERVED.contains(&name).then(|| "it is a reserved word of WGSL".to_owned());
+    let reserved = || {
+        naga::keywords::wgsl::RESERVED
+            .contains(&name)
+            .then(|| "it is a reserved word of WGSL".to_owned())
+    };
     let problem = problem(name).or_else(reserved)?;
-    Some(Diagnostic::error(codes::BAD_NAME, format!("an axis cannot be called `{name}`: {problem}")).at(span, "not a usable name"))
+    Some(
+        Diagnostic::error(codes::BAD_NAME, format!("an axis cannot be called `{name}`: {problem}"))
+            .at(span, "not a usable name"),
+    )
 }
 
 /// Axes whose GLSL macros are reserved or stand for two things at once.
 pub fn collisions(axes: &[Axis]) -> Vec<Diagnostic> {
     let mut owners: BTreeMap<String, (String, Span)> = BTreeMap::new();
     let mut problems = Vec::new();
-    for (name, meaning, span) in axes.iter().filter(|axis| problem(&axis.name).is_none()).flat_map(macros) {
+    for (name, meaning, span) in
+        axes.iter().filter(|axis| problem(&axis.name).is_none()).flat_map(macros)
+    {
         if name.starts_with("GL_") || name.contains("__") || MACROS.contains(&name.as_str()) {
             let message = format!("{meaning} would be the GLSL macro `{name}`, which is reserved");
-            problems.push(Diagnostic::error(codes::BAD_NAME, message).at(span, "choose another name"));
+            problems
+                .push(Diagnostic::error(codes::BAD_NAME, message).at(span, "choose another name"));
         }
         match owners.get(&name) {
-            Some((other, first)) => problems.push(collision(&name, (&meaning, span), (other, *first))),
+            Some((other, first)) => {
+                problems.push(collision(&name, (&meaning, span), (other, *first)))
+            }
             None => drop(owners.insert(name, (meaning, span))),
         }
     }
@@ -50,12 +65,17 @@ fn macros(axis: &Axis) -> Vec<(String, String, Span)> {
     let values = if axis.kind == Kind::Enum { axis.value_names() } else { Vec::new() };
     let values = values.into_iter().map(|value| format!("value `{value}` of axis `{}`", axis.name));
     let meanings = std::iter::once(format!("axis `{}`", axis.name)).chain(values);
-    axis.macros().into_iter().zip(meanings).map(|(name, meaning)| (name, meaning, axis.span)).collect()
+    axis.macros()
+        .into_iter()
+        .zip(meanings)
+        .map(|(name, meaning)| (name, meaning, axis.span))
+        .collect()
 }
 
 fn collision(name: &str, second: (&str, Span), first: (&str, Span)) -> Diagnostic {
     let message = format!("{} and {} would both be the GLSL macro `{name}`", first.0, second.0);
-    let diagnostic = Diagnostic::error(codes::MACRO_COLLISION, message).at(second.1, "rename this one");
+    let diagnostic =
+        Diagnostic::error(codes::MACRO_COLLISION, message).at(second.1, "rename this one");
     if first.1 == second.1 { diagnostic } else { diagnostic.at(first.1, "or this one") }
 }
 
@@ -63,9 +83,12 @@ fn problem(name: &str) -> Option<String> {
     if is_keyword(name) || name == IN {
         return Some("it is a keyword".to_owned());
     }
-    let fits = |(index, c): (usize, char)| c == '_' || c.is_ascii_alphabetic() || (index > 0 && c.is_ascii_digit());
+    let fits = |(index, c): (usize, char)| {
+        c == '_' || c.is_ascii_alphabetic() || (index > 0 && c.is_ascii_digit())
+    };
     if name.is_empty() || !name.chars().enumerate().all(fits) {
         return Some("names are ASCII letters, digits and `_`, and start with no digit".to_owned());
     }
-    (name == "_" || name.starts_with("__")).then(|| "WGSL has no identifiers `_` or `__...`".to_owned())
+    (name == "_" || name.starts_with("__"))
+        .then(|| "WGSL has no identifiers `_` or `__...`".to_owned())
 }

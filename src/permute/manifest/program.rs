@@ -54,7 +54,19 @@ pub struct Glsl {
     pub fragment: Option<File>,
 }
 
-const KEYS: &[&str] = &["wesl", "glsl", "targets", "axis", "constraint", "include", "only", "exclude", "usage", "limit", "doc"];
+const KEYS: &[&str] = &[
+    "wesl",
+    "glsl",
+    "targets",
+    "axis",
+    "constraint",
+    "include",
+    "only",
+    "exclude",
+    "usage",
+    "limit",
+    "doc",
+];
 
 /// Reads a program; `None` once anything is wrong with it.
 pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> {
@@ -70,7 +82,9 @@ pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> 
     let glsl = table.get("glsl").and_then(|value| glsl(reader, value));
     if !table.contains_key("wesl") && !table.contains_key("glsl") {
         let message = format!("{what} has no source");
-        reader.problems.push(Diagnostic::error(codes::MISSING_KEY, message).at(span, "needs `wesl`, `glsl` or both"));
+        reader.problems.push(
+            Diagnostic::error(codes::MISSING_KEY, message).at(span, "needs `wesl`, `glsl` or both"),
+        );
     }
     let usage = table.get("usage").and_then(|value| file(reader, value, "`usage`"));
     let targets = table.get("targets").map_or(Target::ALL.to_vec(), |value| targets(reader, value));
@@ -93,11 +107,15 @@ fn file(reader: &mut Reader, value: &Value, what: &str) -> Option<File> {
 fn glsl(reader: &mut Reader, value: &Value) -> Option<Glsl> {
     let table = reader.table(value, "`glsl`")?;
     reader.check_keys(table, &["vertex", "fragment"], "`glsl`");
-    let mut stage = |name: &str| table.get(name).and_then(|value| file(reader, value, &format!("`{name}`")));
+    let mut stage =
+        |name: &str| table.get(name).and_then(|value| file(reader, value, &format!("`{name}`")));
     let found = Glsl { vertex: stage("vertex"), fragment: stage("fragment") };
     if table.is_empty() {
         let place = reader.span(value.span());
-        reader.problems.push(Diagnostic::error(codes::MISSING_KEY, "`glsl` has no stage").at(place, "needs `vertex`, `fragment` or both"));
+        reader.problems.push(
+            Diagnostic::error(codes::MISSING_KEY, "`glsl` has no stage")
+                .at(place, "needs `vertex`, `fragment` or both"),
+        );
     }
     Some(found)
 }
@@ -117,18 +135,29 @@ fn target(reader: &mut Reader, value: &Value) -> Option<Target> {
     let found = Target::find(&text.text);
     if found.is_none() {
         let names = || Target::ALL.iter().map(|target| target.name());
-        let unknown = Diagnostic::error(codes::UNKNOWN_TARGET, format!("there is no target `{}`", text.text)).at(text.span, "not a target");
-        reader.problems.push(unknown.suggest(&text.text, names()).note(format!("targets: {}", names().collect::<Vec<_>>().join(", "))));
+        let unknown =
+            Diagnostic::error(codes::UNKNOWN_TARGET, format!("there is no target `{}`", text.text))
+                .at(text.span, "not a target");
+        reader.problems.push(
+            unknown
+                .suggest(&text.text, names())
+                .note(format!("targets: {}", names().collect::<Vec<_>>().join(", "))),
+        );
     }
     found
 }
 
 fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {
     let number = reader.integer(value, "`limit`")?;
-    let found = usize::try_from(number).ok().filter(|limit| (1..=LIMITS.permutations).contains(limit));
+    let found =
+        usize::try_from(number).ok().filter(|limit| (1..=LIMITS.permutations).contains(limit));
     if found.is_none() {
-        let message = format!("`limit` is a number of permutations from 1 to {}", LIMITS.permutations);
-        reader.problems.push(Diagnostic::error(codes::WRONG_TYPE, message).at(reader.span(value.span()), "out of range"));
+        let message =
+            format!("`limit` is a number of permutations from 1 to {}", LIMITS.permutations);
+        reader.problems.push(
+            Diagnostic::error(codes::WRONG_TYPE, message)
+                .at(reader.span(value.span()), "out of range"),
+        );
     }
     found
 }
@@ -138,13 +167,20 @@ fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {
 fn space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Option<Space> {
     let before = errors(reader);
     let axes = table.get("axis").map_or(Some(Vec::new()), |value| axes::axes(reader, value))?;
-    let constraints = table.get("constraint").map_or(Vec::new(), |value| axes::constraints(reader, &axes, value));
+    let constraints =
+        table.get("constraint").map_or(Vec::new(), |value| axes::constraints(reader, &axes, value));
     let only = table.get("only").map_or(Vec::new(), |value| lists::only(reader, &axes, value));
-    let exclude = table.get("exclude").map_or(Vec::new(), |value| lists::exclude(reader, &axes, value));
-    let space = listed(reader, table, axes, constraints, Lists { only, exclude, include: Vec::new() });
+    let exclude =
+        table.get("exclude").map_or(Vec::new(), |value| lists::exclude(reader, &axes, value));
+    let space =
+        listed(reader, table, axes, constraints, Lists { only, exclude, include: Vec::new() });
     let Ok(space) = space else {
-        let message = format!("the constraints and lists of {what} are too complex to count its permutations");
-        reader.problems.push(Diagnostic::error(codes::SPACE_TOO_COMPLEX, message).at(place, "declared here"));
+        let message = format!(
+            "the constraints and lists of {what} are too complex to count its permutations"
+        );
+        reader
+            .problems
+            .push(Diagnostic::error(codes::SPACE_TOO_COMPLEX, message).at(place, "declared here"));
         return None;
     };
     if errors(reader) > before {
@@ -163,7 +199,8 @@ fn listed(
     mut lists: Lists,
 ) -> Result<Space, TooComplex> {
     let valid = Space::new(axes.clone(), constraints.clone(), Lists::default())?;
-    lists.include = table.get("include").map_or(Vec::new(), |value| lists::include(reader, &valid, value));
+    lists.include =
+        table.get("include").map_or(Vec::new(), |value| lists::include(reader, &valid, value));
     if lists == Lists::default() { Ok(valid) } else { Space::new(axes, constraints, lists) }
 }
 
@@ -173,8 +210,12 @@ fn check_limit(reader: &mut Reader, program: &Program) {
     }
     let report = report::report(&program.name, &program.space);
     let limit = report::Count(program.limit as u128);
-    let message = format!("program `{}` has {} permutations, and its limit is {limit}", program.name, report.wanted);
-    let diagnostic = Diagnostic::error(codes::TOO_MANY_PERMUTATIONS, message).at(program.span, "declared here");
+    let message = format!(
+        "program `{}` has {} permutations, and its limit is {limit}",
+        program.name, report.wanted
+    );
+    let diagnostic =
+        Diagnostic::error(codes::TOO_MANY_PERMUTATIONS, message).at(program.span, "declared here");
     let raise = if program.limit < LIMITS.permutations { ", or raise `limit`" } else { "" };
     let advice = format!("add constraints or name the slices you need in `only`{raise}");
     reader.problems.push(diagnostic.note(advice).note(report.to_string()));

@@ -34,17 +34,29 @@ impl<'s> Reader<'s> {
     pub fn check_keys(&mut self, table: &DeTable, known: &[&str], what: &str) {
         for (key, _) in table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref())) {
             let name = key.get_ref();
-            let unknown = Diagnostic::error(codes::UNKNOWN_KEY, format!("{what} has no key `{name}`"));
-            let unknown = unknown.at(self.span(key.span()), "unknown key").suggest(name, known.iter().copied());
+            let unknown =
+                Diagnostic::error(codes::UNKNOWN_KEY, format!("{what} has no key `{name}`"));
+            let unknown = unknown
+                .at(self.span(key.span()), "unknown key")
+                .suggest(name, known.iter().copied());
             self.problems.push(unknown.note(format!("known keys: {}", known.join(", "))));
         }
     }
 
     /// The value of a key that must be there; `place` is the name of the table.
-    pub fn required<'t, 'v>(&mut self, table: &'v DeTable<'t>, key: &str, what: &str, place: Span) -> Option<&'v Value<'t>> {
+    pub fn required<'t, 'v>(
+        &mut self,
+        table: &'v DeTable<'t>,
+        key: &str,
+        what: &str,
+        place: Span,
+    ) -> Option<&'v Value<'t>> {
         let found = table.get(key);
         if found.is_none() {
-            self.problems.push(Diagnostic::error(codes::MISSING_KEY, format!("{what} lacks `{key}`")).at(place, format!("needs `{key}`")));
+            self.problems.push(
+                Diagnostic::error(codes::MISSING_KEY, format!("{what} lacks `{key}`"))
+                    .at(place, format!("needs `{key}`")),
+            );
         }
         found
     }
@@ -60,7 +72,10 @@ impl<'s> Reader<'s> {
     }
 
     pub fn string(&mut self, value: &Value, what: &str) -> Option<Quoted> {
-        let found = value.get_ref().as_str().map(|text| Quoted::toml(self.sources, self.span(value.span()), text));
+        let found = value
+            .get_ref()
+            .as_str()
+            .map(|text| Quoted::toml(self.sources, self.span(value.span()), text));
         self.expect(found, value, what, "a string")
     }
 
@@ -85,11 +100,20 @@ impl<'s> Reader<'s> {
         Some(self.string(value, "`doc`")?.text)
     }
 
-    fn expect<T>(&mut self, found: Option<T>, value: &Value, what: &str, expected: &str) -> Option<T> {
+    fn expect<T>(
+        &mut self,
+        found: Option<T>,
+        value: &Value,
+        what: &str,
+        expected: &str,
+    ) -> Option<T> {
         if found.is_none() {
             let kind = value.get_ref().type_str();
             let message = format!("{what} is {expected}, and this is of type {kind}");
-            self.problems.push(Diagnostic::error(codes::WRONG_TYPE, message).at(self.span(value.span()), format!("expected {expected}")));
+            self.problems.push(
+                Diagnostic::error(codes::WRONG_TYPE, message)
+                    .at(self.span(value.span()), format!("expected {expected}")),
+            );
         }
         found
     }

@@ -33,9 +33,20 @@ const NODES: usize = 1 << 18;
 
 impl Diagram {
     /// The points of the domains where the condition holds, asking the axes in that order.
-    pub fn new(store: &mut Store, condition: Id, domains: &[ValueSet], order: Vec<usize>) -> Result<Self, TooComplex> {
+    pub fn new(
+        store: &mut Store,
+        condition: Id,
+        domains: &[ValueSet],
+        order: Vec<usize>,
+    ) -> Result<Self, TooComplex> {
         let end = Node { level: u8::MAX, children: Box::default() };
-        let mut builder = Builder { store, domains, order: &order, nodes: vec![end.clone(), end], known: HashMap::new() };
+        let mut builder = Builder {
+            store,
+            domains,
+            order: &order,
+            nodes: vec![end.clone(), end],
+            known: HashMap::new(),
+        };
         let root = builder.node(0, condition)?;
         let nodes = builder.nodes;
         Ok(Self { order, nodes, root })
@@ -64,8 +75,13 @@ impl Diagram {
     }
 
     pub fn contains(&self, point: &Assignment) -> bool {
-        let below = |node: u32, axis: &usize| self.nodes[node as usize].children.get(point.ordinal(*axis)).copied().unwrap_or(DEAD);
-        self.order.iter().fold(self.root, |node, axis| if node == DEAD { DEAD } else { below(node, axis) }) == END
+        let below = |node: u32, axis: &usize| {
+            self.nodes[node as usize].children.get(point.ordinal(*axis)).copied().unwrap_or(DEAD)
+        };
+        self.order
+            .iter()
+            .fold(self.root, |node, axis| if node == DEAD { DEAD } else { below(node, axis) })
+            == END
     }
 
     /// The values of each axis that occur in a point, by axis.
@@ -86,7 +102,11 @@ impl Diagram {
 
     /// A point of the values allowed, by axis, or `None` if there is none: `choose` picks for
     /// each axis, in the diagram's order, among the ordinals that lead to one.
-    pub fn pick(&self, allowed: &[ValueSet], mut choose: impl FnMut(usize, ValueSet) -> usize) -> Option<Assignment> {
+    pub fn pick(
+        &self,
+        allowed: &[ValueSet],
+        mut choose: impl FnMut(usize, ValueSet) -> usize,
+    ) -> Option<Assignment> {
         let alive = self.alive(allowed);
         let mut node = self.root;
         let mut point = vec![0; self.order.len()];
@@ -114,12 +134,16 @@ impl Diagram {
 
     fn open(&self, node: u32, allowed: ValueSet, alive: &[bool]) -> ValueSet {
         let children = &self.nodes[node as usize].children;
-        let alive = |ordinal: &usize| children.get(*ordinal).is_some_and(|child| alive[*child as usize]);
+        let alive =
+            |ordinal: &usize| children.get(*ordinal).is_some_and(|child| alive[*child as usize]);
         allowed.iter().filter(alive).collect()
     }
 
     /// Computes the count of each node from the axis it asks, its children and their counts.
-    fn counts(&self, mut count: impl FnMut(usize, &[u32], &[u128]) -> Result<u128, TooComplex>) -> Result<u128, TooComplex> {
+    fn counts(
+        &self,
+        mut count: impl FnMut(usize, &[u32], &[u128]) -> Result<u128, TooComplex>,
+    ) -> Result<u128, TooComplex> {
         let mut counts = vec![0, 1];
         for Node { level, children } in &self.nodes[2..] {
             let found = count(self.order[usize::from(*level)], children, &counts)?;
@@ -130,7 +154,12 @@ impl Diagram {
 
     /// How many points there are below any of the nodes, which are of one level; those below
     /// several count once.
-    fn merged(&self, mut nodes: Vec<u32>, counts: &[u128], known: &mut HashMap<Vec<u32>, u128>) -> Result<u128, TooComplex> {
+    fn merged(
+        &self,
+        mut nodes: Vec<u32>,
+        counts: &[u128],
+        known: &mut HashMap<Vec<u32>, u128>,
+    ) -> Result<u128, TooComplex> {
         nodes.retain(|node| *node != DEAD);
         nodes.sort_unstable();
         nodes.dedup();
@@ -144,7 +173,8 @@ impl Diagram {
         }
         let mut total: u128 = 0;
         for ordinal in 0..values {
-            let below = nodes.iter().map(|node| self.nodes[*node as usize].children[ordinal]).collect();
+            let below =
+                nodes.iter().map(|node| self.nodes[*node as usize].children[ordinal]).collect();
             total = total.saturating_add(self.merged(below, counts, known)?);
         }
         known.insert(nodes, total);
@@ -187,12 +217,21 @@ impl Builder<'_> {
             return Ok(*node);
         }
         let children = self.children(level, axis, condition)?;
-        let node = if children.iter().all(|child| *child == DEAD) { DEAD } else { self.push(level, children)? };
+        let node = if children.iter().all(|child| *child == DEAD) {
+            DEAD
+        } else {
+            self.push(level, children)?
+        };
         self.known.insert((level, condition), node);
         Ok(node)
     }
 
-    fn children(&mut self, level: usize, axis: usize, condition: Id) -> Result<Box<[u32]>, TooComplex> {
+    fn children(
+        &mut self,
+        level: usize,
+        axis: usize,
+        condition: Id,
+    ) -> Result<Box<[u32]>, TooComplex> {
         let domain = self.domains[axis];
         let count = domain.iter().last().map_or(0, |last| last + 1);
         let mut children = vec![DEAD; count];

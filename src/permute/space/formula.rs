@@ -96,8 +96,14 @@ pub struct Store {
 
 impl Store {
     pub fn new(domains: Vec<ValueSet>) -> Self {
-        let mut store =
-            Self { domains, nodes: Vec::new(), support: Vec::new(), ids: HashMap::new(), restricted: HashMap::new(), steps: STEPS };
+        let mut store = Self {
+            domains,
+            nodes: Vec::new(),
+            support: Vec::new(),
+            ids: HashMap::new(),
+            restricted: HashMap::new(),
+            steps: STEPS,
+        };
         store.intern(Node::Constant(false));
         store.intern(Node::Constant(true));
         store
@@ -127,7 +133,10 @@ impl Store {
             Node::Is(_, allowed) if set.without(allowed).is_empty() => TRUE,
             Node::Is(_, allowed) => self.is(axis, allowed.and(set)),
             Node::Join(join, parts) => {
-                let parts = parts.iter().map(|part| self.restrict(*part, axis, set)).collect::<Result<_, _>>()?;
+                let parts = parts
+                    .iter()
+                    .map(|part| self.restrict(*part, axis, set))
+                    .collect::<Result<_, _>>()?;
                 self.join(join, parts)?
             }
         };
@@ -137,15 +146,27 @@ impl Store {
 
     fn add_signed(&mut self, formula: &Formula, positive: bool) -> Result<Id, TooComplex> {
         match formula {
-            Formula::Is(axis, set) => Ok(self.is(*axis, if positive { *set } else { self.domains[*axis].without(*set) })),
+            Formula::Is(axis, set) => {
+                Ok(self.is(*axis, if positive { *set } else { self.domains[*axis].without(*set) }))
+            }
             Formula::Not(inner) => self.add_signed(inner, !positive),
-            Formula::All(parts) => self.add_join(if positive { Join::All } else { Join::Any }, parts, positive),
-            Formula::Any(parts) => self.add_join(if positive { Join::Any } else { Join::All }, parts, positive),
+            Formula::All(parts) => {
+                self.add_join(if positive { Join::All } else { Join::Any }, parts, positive)
+            }
+            Formula::Any(parts) => {
+                self.add_join(if positive { Join::Any } else { Join::All }, parts, positive)
+            }
         }
     }
 
-    fn add_join(&mut self, join: Join, parts: &[Formula], positive: bool) -> Result<Id, TooComplex> {
-        let parts = parts.iter().map(|part| self.add_signed(part, positive)).collect::<Result<_, _>>()?;
+    fn add_join(
+        &mut self,
+        join: Join,
+        parts: &[Formula],
+        positive: bool,
+    ) -> Result<Id, TooComplex> {
+        let parts =
+            parts.iter().map(|part| self.add_signed(part, positive)).collect::<Result<_, _>>()?;
         self.join(join, parts)
     }
 
@@ -174,15 +195,21 @@ impl Store {
                 Node::Join(inner, parts) if inner == join => pending.extend(parts),
                 Node::Join(..) => pending.extend(self.settle(join, part, &atoms, &mut others)?),
                 Node::Is(axis, set) => {
-                    let Some(merged) = self.merge(join, &mut atoms, axis, set) else { return Ok(join.absorbing()) };
-                    let touched = others.iter().copied().filter(|other| self.support[other.0 as usize] >> axis & 1 == 1);
+                    let Some(merged) = self.merge(join, &mut atoms, axis, set) else {
+                        return Ok(join.absorbing());
+                    };
+                    let touched = others
+                        .iter()
+                        .copied()
+                        .filter(|other| self.support[other.0 as usize] >> axis & 1 == 1);
                     let touched: Vec<Id> = touched.filter(|_| merged).collect();
                     others.retain(|other| !touched.contains(other));
                     pending.extend(touched);
                 }
             }
         }
-        let atoms: Vec<Id> = atoms.into_iter().map(|(axis, set)| self.is(axis.into(), set)).collect();
+        let atoms: Vec<Id> =
+            atoms.into_iter().map(|(axis, set)| self.is(axis.into(), set)).collect();
         Ok(self.joined(join, atoms.into_iter().chain(others).collect()))
     }
 
@@ -212,7 +239,13 @@ impl Store {
 
     /// Adds an atom to those of its axis: whether that changed them, `None` if it decides the
     /// whole.
-    fn merge(&self, join: Join, atoms: &mut BTreeMap<u8, ValueSet>, axis: u8, set: ValueSet) -> Option<bool> {
+    fn merge(
+        &self,
+        join: Join,
+        atoms: &mut BTreeMap<u8, ValueSet>,
+        axis: u8,
+        set: ValueSet,
+    ) -> Option<bool> {
         let before = atoms.get(&axis).copied();
         let after = match (join, before) {
             (_, None) => set,
@@ -244,7 +277,9 @@ impl Store {
         self.support.push(match &node {
             Node::Constant(_) => 0,
             Node::Is(axis, _) => 1 << axis,
-            Node::Join(_, parts) => parts.iter().fold(0, |bits, part| bits | self.support[part.0 as usize]),
+            Node::Join(_, parts) => {
+                parts.iter().fold(0, |bits, part| bits | self.support[part.0 as usize])
+            }
         });
         self.nodes.push(node.clone());
         self.ids.insert(node, id);

@@ -33,7 +33,9 @@ pub struct Slice {
 
 impl Slice {
     fn formula(&self) -> Formula {
-        Formula::All(self.values.iter().enumerate().map(|(axis, set)| Formula::Is(axis, *set)).collect())
+        Formula::All(
+            self.values.iter().enumerate().map(|(axis, set)| Formula::Is(axis, *set)).collect(),
+        )
     }
 }
 
@@ -72,10 +74,18 @@ pub struct Space {
 impl Space {
     /// The space of these axes, at most [`super::axis::MAX`], sorted by name; axes are named by
     /// their index in constraints and lists.
-    pub fn new(axes: Vec<Axis>, constraints: Vec<Constraint>, lists: Lists) -> Result<Self, TooComplex> {
+    pub fn new(
+        axes: Vec<Axis>,
+        constraints: Vec<Constraint>,
+        lists: Lists,
+    ) -> Result<Self, TooComplex> {
         let order = order(axes.len(), &constraints);
         let valid = diagram(&axes, &constraints, &Lists::default(), order.clone())?;
-        let wanted = if lists == Lists::default() { valid.clone() } else { diagram(&axes, &constraints, &lists, order)? };
+        let wanted = if lists == Lists::default() {
+            valid.clone()
+        } else {
+            diagram(&axes, &constraints, &lists, order)?
+        };
         Ok(Self { axes, constraints, lists, valid, wanted })
     }
 
@@ -99,7 +109,9 @@ impl Space {
 
     /// Points of the full product; like every count, `u128::MAX` stands for that many or more.
     pub fn full_count(&self) -> u128 {
-        self.axes.iter().fold(1, |product: u128, axis| product.saturating_mul(axis.domain().len() as u128))
+        self.axes
+            .iter()
+            .fold(1, |product: u128, axis| product.saturating_mul(axis.domain().len() as u128))
     }
 
     /// Points that satisfy the constraints.
@@ -148,7 +160,11 @@ impl Space {
 
     /// A valid point with the pinned `(axis, ordinal)` pairs; `choose` picks each ordinal among
     /// those that lead to one. `None` if there is none.
-    pub fn pick_valid(&self, pins: &[(usize, usize)], choose: impl FnMut(usize, ValueSet) -> usize) -> Option<Assignment> {
+    pub fn pick_valid(
+        &self,
+        pins: &[(usize, usize)],
+        choose: impl FnMut(usize, ValueSet) -> usize,
+    ) -> Option<Assignment> {
         let mut allowed = domains(&self.axes);
         pins.iter().for_each(|(axis, ordinal)| allowed[*axis] = ValueSet::single(*ordinal));
         self.valid.pick(&allowed, choose)
@@ -164,7 +180,13 @@ impl Space {
         let domains = domains(&self.axes);
         let mut store = Store::new(domains.clone());
         let condition = store.add(formula)?;
-        Ok(Diagram::new(&mut store, condition, &domains, order(self.axes.len(), &self.constraints))?.count())
+        Ok(Diagram::new(
+            &mut store,
+            condition,
+            &domains,
+            order(self.axes.len(), &self.constraints),
+        )?
+        .count())
     }
 
     /// Every axis at its default.
@@ -181,8 +203,15 @@ impl Space {
     pub fn settings(&self, point: &Assignment) -> Settings {
         let of_kind = |kind| self.axes.iter().filter(move |axis| axis.kind == kind);
         Settings {
-            values: self.axes.iter().enumerate().map(|(index, axis)| (axis.name.clone(), self.value(index, point).clone())).collect(),
-            enums: of_kind(Kind::Enum).map(|axis| (axis.name.clone(), axis.value_names())).collect(),
+            values: self
+                .axes
+                .iter()
+                .enumerate()
+                .map(|(index, axis)| (axis.name.clone(), self.value(index, point).clone()))
+                .collect(),
+            enums: of_kind(Kind::Enum)
+                .map(|axis| (axis.name.clone(), axis.value_names()))
+                .collect(),
             integers: of_kind(Kind::Int).map(|axis| axis.name.clone()).collect(),
             open: self
                 .axes
@@ -199,7 +228,12 @@ impl Space {
     }
 }
 
-fn diagram(axes: &[Axis], constraints: &[Constraint], lists: &Lists, order: Vec<usize>) -> Result<Diagram, TooComplex> {
+fn diagram(
+    axes: &[Axis],
+    constraints: &[Constraint],
+    lists: &Lists,
+    order: Vec<usize>,
+) -> Result<Diagram, TooComplex> {
     let domains = domains(axes);
     let mut store = Store::new(domains.clone());
     let lists = lists.formula();
@@ -217,16 +251,23 @@ fn domains(axes: &[Axis]) -> Vec<ValueSet> {
 /// constraints with those already asked, then the one in most constraints, then by name. Axes
 /// that constrain each other are neighbours, which keeps the diagram narrow.
 fn order(count: usize, constraints: &[Constraint]) -> Vec<usize> {
-    let mentions: Vec<Vec<bool>> = constraints.iter().map(|constraint| mentioned(count, &constraint.formula)).collect();
+    let mentions: Vec<Vec<bool>> =
+        constraints.iter().map(|constraint| mentioned(count, &constraint.formula)).collect();
     let mut order: Vec<usize> = Vec::new();
     let mut near = vec![0usize; count];
     while order.len() < count {
         let involved = |axis: usize| mentions.iter().filter(|axes| axes[axis]).count();
         let rest = (0..count).filter(|axis| !order.contains(axis));
-        let Some(next) = rest.max_by_key(|axis| (near[*axis], involved(*axis), std::cmp::Reverse(*axis))) else { break };
+        let Some(next) =
+            rest.max_by_key(|axis| (near[*axis], involved(*axis), std::cmp::Reverse(*axis)))
+        else {
+            break;
+        };
         order.push(next);
         for axes in mentions.iter().filter(|axes| axes[next]) {
-            axes.iter().zip(&mut near).for_each(|(mentioned, near)| *near += usize::from(*mentioned));
+            axes.iter()
+                .zip(&mut near)
+                .for_each(|(mentioned, near)| *near += usize::from(*mentioned));
         }
     }
     order

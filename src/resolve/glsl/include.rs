@@ -13,12 +13,20 @@ pub const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp", "h"];
 
 /// The package of that number.
 pub fn package(packages: &Packages, number: usize) -> &Package {
-    number.checked_sub(1).and_then(|index| packages.dependencies.get(index)).unwrap_or(&packages.root)
+    number
+        .checked_sub(1)
+        .and_then(|index| packages.dependencies.get(index))
+        .unwrap_or(&packages.root)
 }
 
 /// The places to look at, in order: `"path"` is relative to the includer, then to its package's
 /// root; `<name/path>` is in the package of that name, then relative to the root package's root.
-pub fn candidates(packages: &Packages, includer: &Place, path: &str, angled: bool) -> Result<Vec<Place>, Diagnostic> {
+pub fn candidates(
+    packages: &Packages,
+    includer: &Place,
+    path: &str,
+    angled: bool,
+) -> Result<Vec<Place>, Diagnostic> {
     let mut places = Vec::new();
     if angled {
         if let Some((name, rest)) = path.split_once('/')
@@ -28,7 +36,8 @@ pub fn candidates(packages: &Packages, includer: &Place, path: &str, angled: boo
         }
         places.push((ROOT, normalize("", path).ok_or_else(|| outside(path))?));
     } else {
-        places.push((includer.0, normalize(folder(&includer.1), path).ok_or_else(|| outside(path))?));
+        places
+            .push((includer.0, normalize(folder(&includer.1), path).ok_or_else(|| outside(path))?));
         places.extend(normalize("", path).map(|path| (includer.0, path)));
     }
     Ok(places)
@@ -40,7 +49,12 @@ pub fn searched(packages: &Packages, includer: usize, angled: bool) -> Vec<usize
 }
 
 /// How the includer would write a file.
-pub fn spelling(packages: &Packages, includer: &Place, (number, file): (usize, &str), angled: bool) -> String {
+pub fn spelling(
+    packages: &Packages,
+    includer: &Place,
+    (number, file): (usize, &str),
+    angled: bool,
+) -> String {
     match (angled, number) {
         (true, ROOT) => file.to_owned(),
         (true, _) => format!("{}/{file}", package(packages, number).name),
@@ -70,7 +84,11 @@ pub fn normalize(folder: &str, path: &str) -> Option<String> {
 }
 
 fn named(packages: &Packages, name: &str) -> Option<usize> {
-    let dependency = packages.dependencies.iter().position(|package| package.name == name).map(|index| index + 1);
+    let dependency = packages
+        .dependencies
+        .iter()
+        .position(|package| package.name == name)
+        .map(|index| index + 1);
     dependency.or((packages.root.name == name).then_some(ROOT))
 }
 
@@ -79,7 +97,8 @@ fn folder(path: &str) -> &str {
 }
 
 fn relative(folder: &str, file: &str) -> String {
-    let (mut from, mut to) = (folder.split('/').filter(|part| !part.is_empty()).peekable(), file.split('/').peekable());
+    let (mut from, mut to) =
+        (folder.split('/').filter(|part| !part.is_empty()).peekable(), file.split('/').peekable());
     while from.peek().is_some() && from.peek() == to.peek() {
         from.next();
         to.next();

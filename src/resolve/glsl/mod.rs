@@ -31,7 +31,8 @@ impl Graph {
     pub fn trace(&self, source: SourceId) -> Vec<String> {
         let mut notes = Vec::new();
         let mut at = self.modules.iter().position(|module| module.source == source);
-        while let Some((includer, line)) = at.filter(|at| *at > 0).and_then(|at| self.includer(at)) {
+        while let Some((includer, line)) = at.filter(|at| *at > 0).and_then(|at| self.includer(at))
+        {
             notes.push(format!("included from {}:{line}", self.paths[includer]));
             at = Some(includer);
         }
@@ -41,18 +42,27 @@ impl Graph {
     /// The diagnostic with the chain of includes that led to the file it stands in.
     pub fn traced(&self, diagnostic: Diagnostic) -> Diagnostic {
         let source = diagnostic.labels.first().map(|label| label.span.source);
-        source.map(|source| self.trace(source)).into_iter().flatten().fold(diagnostic, Diagnostic::note)
+        source
+            .map(|source| self.trace(source))
+            .into_iter()
+            .flatten()
+            .fold(diagnostic, Diagnostic::note)
     }
 
     /// Whether the file is of the root package.
     pub fn is_own(&self, source: SourceId) -> bool {
-        self.modules.iter().position(|module| module.source == source).is_some_and(|module| self.packages[module] == include::ROOT)
+        self.modules
+            .iter()
+            .position(|module| module.source == source)
+            .is_some_and(|module| self.packages[module] == include::ROOT)
     }
 
     /// The first file that includes a module, and the line: one read before it, so that chains end.
     fn includer(&self, module: usize) -> Option<(usize, usize)> {
         self.targets[..module].iter().enumerate().find_map(|(includer, targets)| {
-            let index = targets.iter().position(|target| matches!(target, Target::Module(found) if *found == module))?;
+            let index = targets
+                .iter()
+                .position(|target| matches!(target, Target::Module(found) if *found == module))?;
             let span = self.modules[includer].includes[index].span;
             Some((includer, self.modules[includer].line(span.start)))
         })
@@ -87,7 +97,11 @@ struct Loader<'a> {
 ///
 /// A missing or unreadable include is no error here, since its directive may never be active;
 /// a missing root is.
-pub fn load(sources: &mut SourceSet, packages: &Packages, root: &str) -> Result<Graph, Diagnostics> {
+pub fn load(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    root: &str,
+) -> Result<Graph, Diagnostics> {
     let mut loader = Loader {
         sources,
         packages,
@@ -101,7 +115,10 @@ pub fn load(sources: &mut SourceSet, packages: &Packages, root: &str) -> Result<
     let path = include::normalize("", root).ok_or_else(|| vec![include::outside(root)])?;
     let place = (include::ROOT, path);
     if loader.module(&place).map_err(|error| vec![*error])?.is_none() {
-        return Err(vec![Diagnostic::error(codes::MISSING_INCLUDE, format!("there is no file `{root}`"))]);
+        return Err(vec![Diagnostic::error(
+            codes::MISSING_INCLUDE,
+            format!("there is no file `{root}`"),
+        )]);
     }
     let mut targets = Vec::new();
     while targets.len() < loader.modules.len() {
@@ -116,14 +133,19 @@ pub fn load(sources: &mut SourceSet, packages: &Packages, root: &str) -> Result<
 impl Loader<'_> {
     /// Resolves every include of a module that was read.
     fn targets(&mut self, module: usize) -> Result<Vec<Target>, Diagnostics> {
-        let includes: Vec<_> =
-            self.modules[module].includes.iter().map(|include| (include.path.clone(), include.angled, include.span)).collect();
+        let includes: Vec<_> = self.modules[module]
+            .includes
+            .iter()
+            .map(|include| (include.path.clone(), include.angled, include.span))
+            .collect();
         let mut targets = Vec::with_capacity(includes.len());
         for (path, angled, span) in includes {
             targets.push(self.target(module, &path, angled, span));
             if self.modules.len() > LIMITS.files {
                 let message = format!("more than {} files are included", LIMITS.files);
-                return Err(vec![Diagnostic::error(codes::TOO_MANY_FILES, message).at(span, "one too many")]);
+                return Err(vec![
+                    Diagnostic::error(codes::TOO_MANY_FILES, message).at(span, "one too many"),
+                ]);
             }
         }
         Ok(targets)
@@ -145,13 +167,19 @@ impl Loader<'_> {
     }
 
     fn missing(&mut self, module: usize, path: &str, angled: bool, span: Span) -> Diagnostic {
-        let error = Diagnostic::error(codes::MISSING_INCLUDE, format!("cannot find `{path}`")).at(span, "no such file");
+        let error = Diagnostic::error(codes::MISSING_INCLUDE, format!("cannot find `{path}`"))
+            .at(span, "no such file");
         let includer = self.places[module].clone();
         let mut spellings = Vec::new();
         for package in include::searched(self.packages, includer.0, angled) {
-            let files =
-                self.listings.entry(package).or_insert_with(|| include::package(self.packages, package).files.list(include::EXTENSIONS));
-            spellings.extend(files.iter().map(|file| include::spelling(self.packages, &includer, (package, file), angled)));
+            let files = self.listings.entry(package).or_insert_with(|| {
+                include::package(self.packages, package).files.list(include::EXTENSIONS)
+            });
+            spellings.extend(
+                files.iter().map(|file| {
+                    include::spelling(self.packages, &includer, (package, file), angled)
+                }),
+            );
         }
         error.suggest(path, spellings.iter().map(String::as_str))
     }
@@ -162,7 +190,8 @@ impl Loader<'_> {
             return known.clone();
         }
         let package = include::package(self.packages, place.0);
-        let read = source::read(self.sources, package, &place.1).map_err(Box::new);
+        let read =
+            source::read(self.sources, package, &place.1).map_err(|error| Box::new(error.into()));
         let found = read.map(|source| source.map(|source| self.add(place, source)));
         self.known.insert(place.clone(), found.clone());
         found

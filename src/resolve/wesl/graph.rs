@@ -38,14 +38,19 @@ impl Graph {
     /// The diagnostic with the chain of imports that led to the file it stands in.
     pub fn traced(&self, diagnostic: Diagnostic) -> Diagnostic {
         let source = diagnostic.labels.first().map(|label| label.span.source);
-        source.map(|source| self.trace(source)).into_iter().flatten().fold(diagnostic, Diagnostic::note)
+        source
+            .map(|source| self.trace(source))
+            .into_iter()
+            .flatten()
+            .fold(diagnostic, Diagnostic::note)
     }
 
     /// Whether any condition or `constants::` may ask for the axis or feature.
     pub fn may_ask(&self, name: &str) -> bool {
         let Some(name) = self.names.find(name) else { return false };
         let expressions = self.nodes.iter().flat_map(|node| &node.module.expressions);
-        expressions.flat_map(Expression::names).any(|asked| asked == name) || self.constants.iter().any(|constant| constant.name == name)
+        expressions.flat_map(Expression::names).any(|asked| asked == name)
+            || self.constants.iter().any(|constant| constant.name == name)
     }
 
     /// Whether the author of the root package wrote the file.
@@ -54,7 +59,10 @@ impl Graph {
     }
 
     fn importers(&self, source: SourceId) -> impl Iterator<Item = (Span, &str)> {
-        let first = self.by_source.get(&source).and_then(|node| self.nodes[*node as usize].importer.as_ref());
+        let first = self
+            .by_source
+            .get(&source)
+            .and_then(|node| self.nodes[*node as usize].importer.as_ref());
         std::iter::successors(first, |importer| {
             let node = self.by_source.get(&importer.span.source)?;
             self.nodes[*node as usize].importer.as_ref()

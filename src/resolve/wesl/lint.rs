@@ -17,15 +17,28 @@ pub fn lints(names: &Names, node: &Node) -> Vec<Diagnostic> {
     let used = used(node);
     for import in &node.module.imports {
         let (text, span) = (names.text(import.alias), node.module.span(import.alias_range.clone()));
-        let own = node.sets.get(&import.alias).and_then(|set| set.first()).map(|index| &node.module.items[*index as usize]);
+        let own = node
+            .sets
+            .get(&import.alias)
+            .and_then(|set| set.first())
+            .map(|index| &node.module.items[*index as usize]);
         match own {
             Some(item) if item.condition.is_none() && import.condition.is_none() => found.push(
-                Diagnostic::warning(codes::SHADOWED_IMPORT, format!("`{text}` is both imported and declared"))
-                    .at(span, "this import has no effect")
-                    .at(node.module.span(item.name_range.clone()), "the declaration wins"),
+                Diagnostic::warning(
+                    codes::SHADOWED_IMPORT,
+                    format!("`{text}` is both imported and declared"),
+                )
+                .at(span, "this import has no effect")
+                .at(node.module.span(item.name_range.clone()), "the declaration wins"),
             ),
             _ if !used.contains(&import.alias) => {
-                found.push(Diagnostic::warning(codes::UNUSED_IMPORT, format!("`{text}` is imported but never used")).at(span, "not used"));
+                found.push(
+                    Diagnostic::warning(
+                        codes::UNUSED_IMPORT,
+                        format!("`{text}` is imported but never used"),
+                    )
+                    .at(span, "not used"),
+                );
             }
             _ => {}
         }
@@ -37,16 +50,28 @@ pub fn lints(names: &Names, node: &Node) -> Vec<Diagnostic> {
 pub fn clashes(loader: &mut Loader<'_>, node: u32, imported: &HashMap<Name, Vec<Candidate>>) {
     let mut failures = Vec::new();
     let here = &loader.nodes[node as usize];
-    let clashing: HashSet<Name> = imported.iter().filter(|(_, candidates)| differ(candidates)).map(|(alias, _)| *alias).collect();
+    let clashing: HashSet<Name> = imported
+        .iter()
+        .filter(|(_, candidates)| differ(candidates))
+        .map(|(alias, _)| *alias)
+        .collect();
     let mut first: HashMap<Name, usize> = HashMap::new();
-    for (index, import) in here.module.imports.iter().enumerate().filter(|(_, import)| import.condition.is_none()) {
+    for (index, import) in
+        here.module.imports.iter().enumerate().filter(|(_, import)| import.condition.is_none())
+    {
         let earlier = *first.entry(import.alias).or_insert(index);
         if earlier != index && clashing.contains(&import.alias) {
-            let message = format!("`{}` is imported twice, from different places", loader.names.text(import.alias));
+            let message = format!(
+                "`{}` is imported twice, from different places",
+                loader.names.text(import.alias)
+            );
             failures.push(
                 Diagnostic::error(codes::DUPLICATE_ITEM, message)
                     .at(here.module.span(import.alias_range.clone()), "imported again")
-                    .at(here.module.span(here.module.imports[earlier].alias_range.clone()), "imported first")
+                    .at(
+                        here.module.span(here.module.imports[earlier].alias_range.clone()),
+                        "imported first",
+                    )
                     .note("help: give one another name with `as`"),
             );
         }
@@ -60,7 +85,10 @@ pub fn clashes(loader: &mut Loader<'_>, node: u32, imported: &HashMap<Name, Vec<
 
 /// Whether candidates lead to different things, those aside that lead nowhere.
 fn differ(candidates: &[Candidate]) -> bool {
-    let mut targets = candidates.iter().map(|candidate| candidate.target).filter(|target| !matches!(target, Target::Failed(_)));
+    let mut targets = candidates
+        .iter()
+        .map(|candidate| candidate.target)
+        .filter(|target| !matches!(target, Target::Failed(_)));
     let first = targets.next();
     targets.any(|target| Some(target) != first)
 }
@@ -68,12 +96,17 @@ fn differ(candidates: &[Candidate]) -> bool {
 /// The names that references and the paths of imports start with. An import whose own path starts
 /// with its name means a package by it.
 fn used(node: &Node) -> HashSet<Name> {
-    let start = |path: &Path| path.segments.first().copied().filter(|_| path.origin == Origin::Scope);
+    let start =
+        |path: &Path| path.segments.first().copied().filter(|_| path.origin == Origin::Scope);
     let named = node.module.references.iter().filter_map(|reference| match reference {
         Reference::Name(name) => Some(*name),
         Reference::Path(path) => start(path),
     });
-    let passed = node.module.imports.iter().filter_map(|import| start(&import.path).filter(|name| *name != import.alias));
+    let passed = node
+        .module
+        .imports
+        .iter()
+        .filter_map(|import| start(&import.path).filter(|name| *name != import.alias));
     named.chain(passed).collect()
 }
 
@@ -86,9 +119,15 @@ pub fn undeclared(graph: &Graph, settings: &Settings) -> Diagnostics {
             let Expression::Flag(name, range) = expression else { continue };
             let text = graph.names.text(*name);
             if !settings.values.contains_key(text) {
-                let warning = Diagnostic::warning(codes::UNDECLARED_FLAG, format!("no axis declares the flag `{text}`"));
-                let warning = warning.at(node.module.span(range.clone()), "no permutation has asked for it");
-                found.entry(text).or_insert_with(|| warning.suggest(text, settings.values.keys().map(String::as_str)));
+                let warning = Diagnostic::warning(
+                    codes::UNDECLARED_FLAG,
+                    format!("no axis declares the flag `{text}`"),
+                );
+                let warning =
+                    warning.at(node.module.span(range.clone()), "no permutation has asked for it");
+                found.entry(text).or_insert_with(|| {
+                    warning.suggest(text, settings.values.keys().map(String::as_str))
+                });
             }
         }
     }

@@ -39,9 +39,16 @@ impl<'a> Loader<'a> {
 
     /// Reads the root module; false if there is no such file.
     pub fn root(&mut self, file: &str) -> Result<bool, Diagnostic> {
-        let Some(source) = source::read(self.sources, &self.packages.root, file)? else { return Ok(false) };
-        let stem = file.strip_suffix(".wesl").or_else(|| file.strip_suffix(".wgsl")).unwrap_or(file);
-        let path: Vec<String> = stem.split('/').filter(|part| !part.is_empty() && *part != ".").map(str::to_owned).collect();
+        let Some(source) = source::read(self.sources, &self.packages.root, file)? else {
+            return Ok(false);
+        };
+        let stem =
+            file.strip_suffix(".wesl").or_else(|| file.strip_suffix(".wgsl")).unwrap_or(file);
+        let path: Vec<String> = stem
+            .split('/')
+            .filter(|part| !part.is_empty() && *part != ".")
+            .map(str::to_owned)
+            .collect();
         self.known.insert((0, path.join("/")), Ok(Some(0)));
         self.add(source, 0, path, None);
         Ok(true)
@@ -73,7 +80,15 @@ impl<'a> Loader<'a> {
         let mut order: Vec<u32> = (1..nodes.len() as u32).collect();
         order.sort_by(|left, right| nodes[*left as usize].label.cmp(&nodes[*right as usize].label));
         order.push(0);
-        Graph { names: self.names, nodes, order, constants: self.constants, failures: self.failures, totals, by_source }
+        Graph {
+            names: self.names,
+            nodes,
+            order,
+            constants: self.constants,
+            failures: self.failures,
+            totals,
+            by_source,
+        }
     }
 
     pub(super) fn package(&self, index: usize) -> &'a Package {
@@ -84,7 +99,12 @@ impl<'a> Loader<'a> {
     }
 
     /// The module of a package at a path, read at first sight.
-    pub(super) fn module(&mut self, package: usize, path: &[Name], asker: Span) -> Result<Option<u32>, Diagnostic> {
+    pub(super) fn module(
+        &mut self,
+        package: usize,
+        path: &[Name],
+        asker: Span,
+    ) -> Result<Option<u32>, Diagnostic> {
         let path: Vec<String> = path.iter().map(|name| self.names.text(*name).to_owned()).collect();
         let key = (package, path.join("/"));
         if let Some(known) = self.known.get(&key) {
@@ -95,19 +115,29 @@ impl<'a> Loader<'a> {
         outcome
     }
 
-    fn read(&mut self, package: usize, path: &[String], asker: Span) -> Result<Option<u32>, Diagnostic> {
+    fn read(
+        &mut self,
+        package: usize,
+        path: &[String],
+        asker: Span,
+    ) -> Result<Option<u32>, Diagnostic> {
         for stem in self.stems(package, path) {
             // A package's own module may have been read under its file's name, or will be.
             if let Some(known @ (Ok(Some(_)) | Err(_))) = self.known.get(&(package, stem.clone())) {
                 return known.clone();
             }
             for extension in ["wesl", "wgsl"] {
-                let found = source::read(self.sources, self.package(package), &format!("{stem}.{extension}"))
-                    .map_err(|error| error.at(asker, "imported here"))?;
+                let found = source::read(
+                    self.sources,
+                    self.package(package),
+                    &format!("{stem}.{extension}"),
+                )
+                .map_err(|error| Diagnostic::from(error).at(asker, "imported here"))?;
                 if let Some(source) = found {
                     if self.nodes.len() >= LIMITS.files {
                         let message = format!("more than {} modules", LIMITS.files);
-                        return Err(Diagnostic::error(codes::TOO_MANY_FILES, message).at(asker, "the first one too many"));
+                        return Err(Diagnostic::error(codes::TOO_MANY_FILES, message)
+                            .at(asker, "the first one too many"));
                     }
                     let node = self.add(source, package, path.to_vec(), Some(asker));
                     self.known.insert((package, stem), Ok(Some(node)));
@@ -126,11 +156,19 @@ impl<'a> Loader<'a> {
         }
     }
 
-    fn add(&mut self, source: SourceId, package: usize, path: Vec<String>, asker: Option<Span>) -> u32 {
+    fn add(
+        &mut self,
+        source: SourceId,
+        package: usize,
+        path: Vec<String>,
+        asker: Option<Span>,
+    ) -> u32 {
         let text = self.sources.get(source).text.clone();
         let module = wesl::parse(source, text, &mut self.names);
         let mut sets: HashMap<Name, Vec<u32>> = HashMap::new();
-        for (index, item) in module.items.iter().enumerate().filter(|(_, item)| item.name != Name::UNDERSCORE) {
+        for (index, item) in
+            module.items.iter().enumerate().filter(|(_, item)| item.name != Name::UNDERSCORE)
+        {
             sets.entry(item.name).or_default().push(index as u32);
         }
         let mut aliases: HashMap<Name, Vec<usize>> = HashMap::new();
@@ -181,31 +219,46 @@ impl<'a> Loader<'a> {
 
     /// Resolves a module's imports, then its uses.
     fn resolve(&mut self, node: u32) {
-        let imports: Vec<(Option<ConditionId>, Path, Name)> =
-            self.nodes[node as usize].module.imports.iter().map(|import| (import.condition, import.path.clone(), import.alias)).collect();
+        let imports: Vec<(Option<ConditionId>, Path, Name)> = self.nodes[node as usize]
+            .module
+            .imports
+            .iter()
+            .map(|import| (import.condition, import.path.clone(), import.alias))
+            .collect();
         let mut imported: HashMap<Name, Vec<Candidate>> = HashMap::new();
         for (index, (condition, path, alias)) in imports.iter().enumerate() {
             for mut candidate in self.candidates(node, path, Some(index)) {
                 candidate.conditions.extend(*condition);
                 if let Target::Failed(failure) = candidate.target {
-                    self.nodes[node as usize].broken_imports.push((candidate.conditions.clone(), failure));
+                    self.nodes[node as usize]
+                        .broken_imports
+                        .push((candidate.conditions.clone(), failure));
                 }
                 imported.entry(*alias).or_default().push(candidate);
             }
         }
         let references = self.nodes[node as usize].module.references.clone();
-        let bindings = references.iter().map(|reference| self.binding(node, reference, &imported)).collect();
+        let bindings =
+            references.iter().map(|reference| self.binding(node, reference, &imported)).collect();
         self.nodes[node as usize].bindings = bindings;
         lint::clashes(self, node, &imported);
         self.nodes[node as usize].lints = lint::lints(&self.names, &self.nodes[node as usize]);
     }
 
-    fn binding(&mut self, node: u32, reference: &Reference, imported: &HashMap<Name, Vec<Candidate>>) -> Vec<Candidate> {
+    fn binding(
+        &mut self,
+        node: u32,
+        reference: &Reference,
+        imported: &HashMap<Name, Vec<Candidate>>,
+    ) -> Vec<Candidate> {
         match reference {
             Reference::Path(path) => self.candidates(node, path, None),
             Reference::Name(name) => {
                 let own = self.nodes[node as usize].sets.contains_key(name);
-                let own = own.then(|| Candidate { conditions: Vec::new(), target: Target::Items { node, name: *name } });
+                let own = own.then(|| Candidate {
+                    conditions: Vec::new(),
+                    target: Target::Items { node, name: *name },
+                });
                 own.into_iter().chain(imported.get(name).into_iter().flatten().cloned()).collect()
             }
         }
@@ -225,10 +278,16 @@ fn certain_errors(graph: &Graph) -> Diagnostics {
         }
         let node = &graph.nodes[index];
         let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
-        let broken = broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
-        let found = node.module.errors.iter().chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
+        let broken =
+            broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
+        let found = node
+            .module
+            .errors
+            .iter()
+            .chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
         errors.extend(found.map(|error| graph.traced(error.clone())));
-        let certainly = node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
+        let certainly =
+            node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
         open.extend(certainly.filter_map(|candidate| match candidate.target {
             Target::Items { node, .. } => Some(node as usize),
             _ => None,

@@ -24,7 +24,12 @@ const SUGGESTED: usize = 100;
 impl Loader<'_> {
     /// What a path of a module may mean. `import` is its index if an import has it: that one's
     /// own name does not count for its first segment, and it may lead to a module.
-    pub(super) fn candidates(&mut self, node: u32, path: &Path, import: Option<usize>) -> Vec<Candidate> {
+    pub(super) fn candidates(
+        &mut self,
+        node: u32,
+        path: &Path,
+        import: Option<usize>,
+    ) -> Vec<Candidate> {
         let span = self.nodes[node as usize].module.span(path.range.clone());
         let mut visiting: Vec<usize> = import.into_iter().collect();
         let found = self.absolute(node, path, &mut visiting).and_then(|absolutes| {
@@ -34,33 +39,56 @@ impl Loader<'_> {
             };
             absolutes.into_iter().map(candidate).collect()
         });
-        found.unwrap_or_else(|error| vec![Candidate { conditions: Vec::new(), target: self.fail(error) }])
+        found.unwrap_or_else(|error| {
+            vec![Candidate { conditions: Vec::new(), target: self.fail(error) }]
+        })
     }
 
     /// The path from a package's root, for each import that its first segment may mean.
-    fn absolute(&self, node: u32, path: &Path, visiting: &mut Vec<usize>) -> Result<Vec<Absolute>, Diagnostic> {
+    fn absolute(
+        &self,
+        node: u32,
+        path: &Path,
+        visiting: &mut Vec<usize>,
+    ) -> Result<Vec<Absolute>, Diagnostic> {
         let here = &self.nodes[node as usize];
         let span = here.module.span(path.range.clone());
         match path.origin {
-            Origin::Package => Ok(vec![Absolute { package: Some(here.package), segments: path.segments.clone(), conditions: Vec::new() }]),
-            Origin::Super(ups) => self.above(node, ups as usize, &path.segments, span).map(|absolute| vec![absolute]),
+            Origin::Package => Ok(vec![Absolute {
+                package: Some(here.package),
+                segments: path.segments.clone(),
+                conditions: Vec::new(),
+            }]),
+            Origin::Super(ups) => {
+                self.above(node, ups as usize, &path.segments, span).map(|absolute| vec![absolute])
+            }
             Origin::Scope => {
                 let named = here.aliases.get(&path.segments[0]).into_iter().flatten();
-                let (seen, through): (Vec<usize>, Vec<usize>) = named.partition(|index| visiting.contains(index));
+                let (seen, through): (Vec<usize>, Vec<usize>) =
+                    named.partition(|index| visiting.contains(index));
                 if through.is_empty() {
                     let cyclic = visiting.len() > 1 && !seen.is_empty();
-                    return self.in_package(node, &path.segments, span, cyclic).map(|absolute| vec![absolute]);
+                    return self
+                        .in_package(node, &path.segments, span, cyclic)
+                        .map(|absolute| vec![absolute]);
                 }
                 self.through_imports(node, path, &through, visiting)
             }
         }
     }
 
-    fn through_imports(&self, node: u32, path: &Path, imports: &[usize], visiting: &mut Vec<usize>) -> Result<Vec<Absolute>, Diagnostic> {
+    fn through_imports(
+        &self,
+        node: u32,
+        path: &Path,
+        imports: &[usize],
+        visiting: &mut Vec<usize>,
+    ) -> Result<Vec<Absolute>, Diagnostic> {
         let module = &self.nodes[node as usize].module;
         let many = || {
             let message = format!("a path with more than {MEANINGS} meanings");
-            Diagnostic::error(codes::CYCLIC_IMPORT, message).at(module.span(path.range.clone()), "here")
+            Diagnostic::error(codes::CYCLIC_IMPORT, message)
+                .at(module.span(path.range.clone()), "here")
         };
         // Each import has a meaning or an error, and none is followed in vain.
         if imports.len() > MEANINGS {
@@ -86,20 +114,38 @@ impl Loader<'_> {
         Ok(found)
     }
 
-    fn above(&self, node: u32, ups: usize, segments: &[Name], span: Span) -> Result<Absolute, Diagnostic> {
+    fn above(
+        &self,
+        node: u32,
+        ups: usize,
+        segments: &[Name],
+        span: Span,
+    ) -> Result<Absolute, Diagnostic> {
         let here = &self.nodes[node as usize];
         let Some(depth) = here.path.len().checked_sub(ups) else {
-            let message = format!("the path leaves the root of its package: `{}` is {} deep", here.label, here.path.len());
-            return Err(Diagnostic::error(codes::OUTSIDE_ROOT, message).at(span, format!("{ups} times `super`")));
+            let message = format!(
+                "the path leaves the root of its package: `{}` is {} deep",
+                here.label,
+                here.path.len()
+            );
+            return Err(Diagnostic::error(codes::OUTSIDE_ROOT, message)
+                .at(span, format!("{ups} times `super`")));
         };
         let above = here.path[..depth].iter().filter_map(|part| self.names.find(part));
         let segments = above.chain(segments.iter().copied()).collect();
         Ok(Absolute { package: Some(here.package), segments, conditions: Vec::new() })
     }
 
-    fn in_package(&self, node: u32, segments: &[Name], span: Span, in_circle: bool) -> Result<Absolute, Diagnostic> {
+    fn in_package(
+        &self,
+        node: u32,
+        segments: &[Name],
+        span: Span,
+        in_circle: bool,
+    ) -> Result<Absolute, Diagnostic> {
         let first = self.names.text(segments[0]);
-        let dependency = self.packages.dependencies.iter().position(|package| package.name == first);
+        let dependency =
+            self.packages.dependencies.iter().position(|package| package.name == first);
         let own = self.package(self.nodes[node as usize].package).name == first;
         let package = match dependency {
             Some(index) => Some(index + 1),
@@ -112,20 +158,37 @@ impl Loader<'_> {
     }
 
     fn unknown_package(&self, node: u32, first: &str, span: Span) -> Diagnostic {
-        let error = Diagnostic::error(codes::UNKNOWN_PACKAGE, format!("there is no package `{first}`")).at(span, "not a package");
+        let error =
+            Diagnostic::error(codes::UNKNOWN_PACKAGE, format!("there is no package `{first}`"))
+                .at(span, "not a package");
         let files = self.package(self.nodes[node as usize].package).files.list(&["wesl", "wgsl"]);
         let own = files.iter().any(|file| file.split(['/', '.']).next() == Some(first));
         match own {
-            true => error.note(format!("help: for the module of this package write `package::{first}`")),
-            false => error.suggest(first, self.packages.dependencies.iter().map(|package| package.name.as_str())),
+            true => {
+                error.note(format!("help: for the module of this package write `package::{first}`"))
+            }
+            false => error.suggest(
+                first,
+                self.packages.dependencies.iter().map(|package| package.name.as_str()),
+            ),
         }
     }
 
-    fn target(&mut self, absolute: &Absolute, span: Span, import: bool) -> Result<Target, Diagnostic> {
-        let Some(package) = absolute.package else { return Ok(self.constant(&absolute.segments, span)) };
-        let Some((last, parents)) = absolute.segments.split_last() else { return Ok(Target::Module) };
+    fn target(
+        &mut self,
+        absolute: &Absolute,
+        span: Span,
+        import: bool,
+    ) -> Result<Target, Diagnostic> {
+        let Some(package) = absolute.package else {
+            return Ok(self.constant(&absolute.segments, span));
+        };
+        let Some((last, parents)) = absolute.segments.split_last() else {
+            return Ok(Target::Module);
+        };
         let parent = self.module(package, parents, span)?;
-        if let Some(node) = parent.filter(|node| self.nodes[*node as usize].sets.contains_key(last)) {
+        if let Some(node) = parent.filter(|node| self.nodes[*node as usize].sets.contains_key(last))
+        {
             return Ok(Target::Items { node, name: *last });
         }
         if self.is_module(package, &absolute.segments, span, import)? {
@@ -133,7 +196,9 @@ impl Loader<'_> {
         }
         Err(match parent {
             // What is missing may be in the part that could not be read.
-            Some(node) if !self.nodes[node as usize].module.errors.is_empty() => self.nodes[node as usize].module.errors[0].clone(),
+            Some(node) if !self.nodes[node as usize].module.errors.is_empty() => {
+                self.nodes[node as usize].module.errors[0].clone()
+            }
             Some(node) => self.missing_item(node, *last, span),
             // The last name may be an item's or a module's: below a folder, a module's.
             None if parents.is_empty() || self.is_module(package, parents, span, false)? => {
@@ -153,39 +218,70 @@ impl Loader<'_> {
                     self.constants.len() - 1
                 }) as u32)
             }
-            _ => self.fail(Diagnostic::error(codes::MISSING_MODULE, "the module `constants` has no modules").at(span, "too long a path")),
+            _ => self.fail(
+                Diagnostic::error(codes::MISSING_MODULE, "the module `constants` has no modules")
+                    .at(span, "too long a path"),
+            ),
         }
     }
 
     /// Whether a module or a folder is there. Only imports need to know that of files.
-    fn is_module(&mut self, package: usize, segments: &[Name], span: Span, import: bool) -> Result<bool, Diagnostic> {
+    fn is_module(
+        &mut self,
+        package: usize,
+        segments: &[Name],
+        span: Span,
+        import: bool,
+    ) -> Result<bool, Diagnostic> {
         let path = segments.iter().map(|name| self.names.text(*name)).collect::<Vec<_>>().join("/");
         if import && self.module(package, segments, span)?.is_some() {
             return Ok(true);
         }
         let listing = self.listing(package);
-        let within = |file: &String| file.strip_prefix(&path).is_some_and(|rest| rest.starts_with(['/', '.']));
+        let within = |file: &String| {
+            file.strip_prefix(&path).is_some_and(|rest| rest.starts_with(['/', '.']))
+        };
         Ok(listing.iter().any(within))
     }
 
     fn missing_item(&mut self, node: u32, name: Name, span: Span) -> Diagnostic {
         let here = &self.nodes[node as usize];
         let text = self.names.text(name);
-        let error = Diagnostic::error(codes::MISSING_ITEM, format!("`{}` has no item `{text}`", here.label)).at(span, "not found");
+        let error = Diagnostic::error(
+            codes::MISSING_ITEM,
+            format!("`{}` has no item `{text}`", here.label),
+        )
+        .at(span, "not found");
         let imports = here.module.imports.iter().any(|import| import.alias == name);
-        let error = if imports { error.note("it imports that name, but imports are not passed on") } else { error };
+        let error = if imports {
+            error.note("it imports that name, but imports are not passed on")
+        } else {
+            error
+        };
         let suggested = if self.failures.len() < SUGGESTED { here.module.items.len() } else { 0 };
-        error.suggest(text, here.module.items.iter().take(suggested).map(|item| self.names.text(item.name)))
+        error.suggest(
+            text,
+            here.module.items.iter().take(suggested).map(|item| self.names.text(item.name)),
+        )
     }
 
     fn missing_module(&mut self, package: usize, path: &[Name], span: Span) -> Diagnostic {
         let path: Vec<String> = path.iter().map(|name| self.names.text(*name).to_owned()).collect();
         let label = self.label(package, &path);
         let shown = self.package(package).files.display(&path.join("/"));
-        let listing = if self.failures.len() < SUGGESTED { self.listing(package).to_vec() } else { Vec::new() };
+        let listing = if self.failures.len() < SUGGESTED {
+            self.listing(package).to_vec()
+        } else {
+            Vec::new()
+        };
         let mut known: Vec<String> = Vec::new();
         for file in listing {
-            let parts: Vec<String> = file.rsplit_once('.').map_or(&*file, |(stem, _)| stem).split('/').map(str::to_owned).collect();
+            let parts: Vec<String> = file
+                .rsplit_once('.')
+                .map_or(&*file, |(stem, _)| stem)
+                .split('/')
+                .map(str::to_owned)
+                .collect();
             known.extend((1..=parts.len()).map(|depth| self.label(package, &parts[..depth])));
         }
         Diagnostic::error(codes::MISSING_MODULE, format!("there is no module `{label}`"))
@@ -196,5 +292,6 @@ impl Loader<'_> {
 }
 
 fn cyclic(span: Span) -> Diagnostic {
-    Diagnostic::error(codes::CYCLIC_IMPORT, "imported names that stand for each other").at(span, "leads back to itself")
+    Diagnostic::error(codes::CYCLIC_IMPORT, "imported names that stand for each other")
+        .at(span, "leads back to itself")
 }

@@ -18,7 +18,11 @@ use super::Packages;
 ///
 /// Errors that only some settings meet (in a module that is imported under a condition, say) are
 /// kept in the graph, and composing reports them.
-pub fn load(sources: &mut SourceSet, packages: &Packages, root: &str) -> Result<Graph, Diagnostics> {
+pub fn load(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    root: &str,
+) -> Result<Graph, Diagnostics> {
     let mut loader = load::Loader::new(sources, packages);
     match loader.root(root) {
         Ok(true) => loader.finish(),
@@ -29,6 +33,9 @@ pub fn load(sources: &mut SourceSet, packages: &Packages, root: &str) -> Result<
 
 fn missing_root(packages: &Packages, root: &str) -> Diagnostic {
     let known = packages.root.files.list(&["wesl", "wgsl"]);
-    Diagnostic::error(codes::MISSING_MODULE, format!("there is no file `{}`", packages.root.files.display(root)))
-        .suggest(root, known.iter().map(String::as_str))
+    Diagnostic::error(
+        codes::MISSING_MODULE,
+        format!("there is no file `{}`", packages.root.files.display(root)),
+    )
+    .suggest(root, known.iter().map(String::as_str))
 }

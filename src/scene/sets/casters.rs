@@ -14,11 +14,23 @@ pub fn scene() -> Scene {
     let ring = placed(0.1, 1.0, 1.9, 0.5) * DMat4::from_rotation_x(1.25);
     let objects = vec![
         Object::new(floor, DMat4::IDENTITY, DVec3::ONE).of(matt, 7),
-        Object::new(Shape::sphere(1.0, (48, 24)), placed(-2.0, 1.0, -0.5, 0.0), CORAL).of(glossy, 0),
-        Object::new(Shape::cuboid(DVec3::new(0.75, 1.1, 0.75), 1), placed(1.8, 1.1, -0.5, 0.5), TEAL).of(matt, 9),
+        Object::new(Shape::sphere(1.0, (48, 24)), placed(-2.0, 1.0, -0.5, 0.0), CORAL)
+            .of(glossy, 0),
+        Object::new(
+            Shape::cuboid(DVec3::new(0.75, 1.1, 0.75), 1),
+            placed(1.8, 1.1, -0.5, 0.5),
+            TEAL,
+        )
+        .of(matt, 9),
         Object::new(Shape::torus(0.75, 0.24, (56, 24)), ring, AMBER).of(glossy, 1),
     ];
-    let eye = Eye { position: DVec3::new(0.7, 6.2, 9.8), target: DVec3::new(-0.05, 0.6, 0.1), fov_y: 0.6, near: 0.5, far: 40.0 };
+    let eye = Eye {
+        position: DVec3::new(0.7, 6.2, 9.8),
+        target: DVec3::new(-0.05, 0.6, 0.1),
+        fov_y: 0.6,
+        near: 0.5,
+        far: 40.0,
+    };
     let key = Lamp {
         color: DVec3::new(1.0, 0.97, 0.9),
         position: DVec3::new(-4.6, 7.2, 2.6),

@@ -22,8 +22,14 @@ pub struct Maps {
 impl Map {
     /// A square of `side` texels, each from its middle in [0, 1].
     pub fn of(side: usize, at: impl Fn(DVec2) -> DVec4) -> Self {
-        let place = |index: usize| (DVec2::new((index % side) as f64, (index / side) as f64) + 0.5) / side as f64;
-        Self { width: side, height: side, texels: (0..side * side).map(|index| at(place(index))).collect() }
+        let place = |index: usize| {
+            (DVec2::new((index % side) as f64, (index / side) as f64) + 0.5) / side as f64
+        };
+        Self {
+            width: side,
+            height: side,
+            texels: (0..side * side).map(|index| at(place(index))).collect(),
+        }
     }
 
     /// The map at half the size, each texel the mean of four; `None` for a single texel.
@@ -32,7 +38,9 @@ impl Map {
             return None;
         }
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
-        let texel = |x: usize, y: usize| self.texels[y.min(self.height - 1) * self.width + x.min(self.width - 1)];
+        let texel = |x: usize, y: usize| {
+            self.texels[y.min(self.height - 1) * self.width + x.min(self.width - 1)]
+        };
         let mean = |index: usize| {
             let (x, y) = (2 * (index % width), 2 * (index / width));
             (texel(x, y) + texel(x + 1, y) + texel(x, y + 1) + texel(x + 1, y + 1)) * 0.25
@@ -51,13 +59,18 @@ pub fn bricks() -> Maps {
     Maps {
         base: Map::of(256, |at| {
             let brick = Brick::at(at);
-            let clay = DVec3::new(0.86, 0.8, 0.76) * (0.8 + 0.35 * brick.tone) * (0.92 + 0.08 * grain(at));
+            let clay =
+                DVec3::new(0.86, 0.8, 0.76) * (0.8 + 0.35 * brick.tone) * (0.92 + 0.08 * grain(at));
             DVec3::new(0.55, 0.54, 0.52).lerp(clay, brick.height).extend(1.0)
         }),
         normal: Map::of(256, |at| {
             let step = 1.0 / 512.0;
-            let slope = |axis: DVec2| (Brick::at(at + axis * step).height - Brick::at(at - axis * step).height) / (2.0 * step);
-            let normal = DVec3::new(-0.02 * slope(DVec2::X), -0.02 * slope(DVec2::Y), 1.0).normalize();
+            let slope = |axis: DVec2| {
+                (Brick::at(at + axis * step).height - Brick::at(at - axis * step).height)
+                    / (2.0 * step)
+            };
+            let normal =
+                DVec3::new(-0.02 * slope(DVec2::X), -0.02 * slope(DVec2::Y), 1.0).normalize();
             (normal * 0.5 + 0.5).extend(1.0)
         }),
         light: Map::of(32, |at| {
@@ -87,7 +100,10 @@ impl Brick {
         let x = 0.5 - (along.rem_euclid(1.0) - 0.5).abs();
         let y = 0.5 - ((wrapped.y * ROWS).rem_euclid(1.0) - 0.5).abs();
         let distance = (x * ROWS / COLUMNS).min(y);
-        Self { height: ((distance - 0.04) / 0.06).clamp(0.0, 1.0), tone: (0.618 * (7.0 * row + 3.0 * column)).fract() }
+        Self {
+            height: ((distance - 0.04) / 0.06).clamp(0.0, 1.0),
+            tone: (0.618 * (7.0 * row + 3.0 * column)).fract(),
+        }
     }
 }
 

@@ -75,7 +75,9 @@ pub struct Lamp {
     pub kind: LampKind,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What a lamp is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LampKind {
     Directional,
     Point,
@@ -124,7 +126,13 @@ impl Material {
 
 impl Object {
     fn new(shape: Shape, place: DMat4, color: DVec3) -> Self {
-        Self { shape, world_from_object: place, color, material: Material::default(), material_index: 0 }
+        Self {
+            shape,
+            world_from_object: place,
+            color,
+            material: Material::default(),
+            material_index: 0,
+        }
     }
 
     fn of(self, material: Material, material_index: u32) -> Self {
@@ -156,7 +164,12 @@ impl Scene {
     pub fn points(&self) -> Vec<DVec3> {
         let of = |object: &Object| {
             let matrix = object.world_from_object;
-            object.shape.vertices.iter().map(move |vertex| matrix.transform_point3(vertex.position)).collect::<Vec<_>>()
+            object
+                .shape
+                .vertices
+                .iter()
+                .map(move |vertex| matrix.transform_point3(vertex.position))
+                .collect::<Vec<_>>()
         };
         self.objects.iter().flat_map(of).collect()
     }
@@ -169,10 +182,18 @@ pub type Set = (&'static str, &'static str, fn() -> Scene);
 pub const SETS: &[Set] = &[
     ("spheres", "a row of spheres of rising shininess before the viewer", spheres::scene),
     ("floor", "a tessellated floor with a light above it", floor::scene),
-    ("casters", "a sphere, a box and a torus over a floor that their shadows fall on", casters::scene),
+    (
+        "casters",
+        "a sphere, a box and a torus over a floor that their shadows fall on",
+        casters::scene,
+    ),
     ("sheet", "an open, curled sheet: both of its sides are visible", sheet::scene),
     ("room", "a box seen from inside, with textures and a baked lightmap", room::scene),
-    ("screen", "one triangle that covers the picture, before it the casters as the light sees them", screen::scene),
+    (
+        "screen",
+        "one triangle that covers the picture, before it the casters as the light sees them",
+        screen::scene,
+    ),
     ("terrain", "a field of heights under a low sun", terrain::scene),
     ("vessel", "a turned pot with a spout and a handle, on a table", vessel::scene),
 ];

@@ -31,7 +31,9 @@ pub fn materials() -> Vec<[Material; 2]> {
         (DVec3::new(0.75, 0.35, 0.45), 0.35, 30.0),
     ];
     let material = |(color, specular, shininess): (DVec3, f64, f64)| {
-        Material { ambient: color, diffuse: color, ..Material::default() }.glossy(specular).shiny(shininess)
+        Material { ambient: color, diffuse: color, ..Material::default() }
+            .glossy(specular)
+            .shiny(shininess)
     };
     let back = |index: usize| material(FRONTS[(index + 4) % FRONTS.len()]);
     FRONTS.iter().enumerate().map(|(index, front)| [material(*front), back(index)]).collect()

@@ -12,7 +12,8 @@ use crate::scene::shape::Shape;
 /// Half of the room along each axis, its middle at the origin.
 const HALF: DVec3 = DVec3::new(3.0, 2.2, 3.4);
 /// The crate: its middle, half its sides, turned about y.
-const CRATE: (DVec3, DVec3, f64) = (DVec3::new(1.15, -1.35, -1.2), DVec3::new(0.85, 0.85, 0.85), 0.45);
+const CRATE: (DVec3, DVec3, f64) =
+    (DVec3::new(1.15, -1.35, -1.2), DVec3::new(0.85, 0.85, 0.85), 0.45);
 /// The ball: its middle and radius.
 const BALL: (DVec3, f64) = (DVec3::new(-1.35, -1.4, -0.2), 0.8);
 /// The lamp in the ceiling: half its sides along x and z, just below the ceiling.
@@ -72,12 +73,25 @@ pub fn scene() -> Scene {
         .collect();
     let wood = Material::default().glossy(0.2);
     let sides = sides().into_iter().enumerate();
-    let sides = sides.map(|(index, (corner, along, up))| charted(Shape::patch(corner, along, up, (6, 6)), CRATE_CHART + index));
-    objects.push(Object::new(sides.fold(Shape::default(), Shape::with), crate_place(), AMBER).of(wood, 3));
+    let sides = sides.map(|(index, (corner, along, up))| {
+        charted(Shape::patch(corner, along, up, (6, 6)), CRATE_CHART + index)
+    });
+    objects.push(
+        Object::new(sides.fold(Shape::default(), Shape::with), crate_place(), AMBER).of(wood, 3),
+    );
     let (middle, radius) = BALL;
     let ball = charted(Shape::sphere(radius, (40, 20)), BALL_CHART).tiled(DVec2::new(3.0, 2.0));
-    objects.push(Object::new(ball, placed(middle.x, middle.y, middle.z, 0.0), CHALK).of(Material::default().glossy(0.5), 5));
-    let eye = Eye { position: DVec3::new(0.0, 0.1, 9.2), target: DVec3::new(0.0, -0.1, 0.0), fov_y: 0.6, near: 0.5, far: 40.0 };
+    objects.push(
+        Object::new(ball, placed(middle.x, middle.y, middle.z, 0.0), CHALK)
+            .of(Material::default().glossy(0.5), 5),
+    );
+    let eye = Eye {
+        position: DVec3::new(0.0, 0.1, 9.2),
+        target: DVec3::new(0.0, -0.1, 0.0),
+        fov_y: 0.6,
+        near: 0.5,
+        far: 40.0,
+    };
     let key = Lamp {
         color: DVec3::new(1.0, 0.95, 0.85),
         position: DVec3::new(0.0, 1.55, 0.9),
@@ -103,7 +117,8 @@ fn baked() -> Map {
         let (column, row) = (index % width, index / width);
         let chart = column / CHART + CHARTS.0 * (row / CHART);
         let place = |at: usize| ((at % CHART) as f64 + 0.5 - 1.5) / (CHART as f64 - 3.0);
-        let (point, normal) = surface(chart, DVec2::new(place(column), place(row)).clamp(DVec2::ZERO, DVec2::ONE));
+        let (point, normal) =
+            surface(chart, DVec2::new(place(column), place(row)).clamp(DVec2::ZERO, DVec2::ONE));
         arriving(point, normal).extend(1.0)
     };
     Map { width, height, texels: (0..width * height).into_par_iter().map(texel).collect() }
@@ -111,11 +126,15 @@ fn baked() -> Map {
 
 /// The point and the normal at a chart's place.
 fn surface(chart: usize, uv: DVec2) -> (DVec3, DVec3) {
-    let flat = |corner: DVec3, along: DVec3, up: DVec3| (corner + along * uv.x + up * uv.y, along.cross(up).normalize());
+    let flat = |corner: DVec3, along: DVec3, up: DVec3| {
+        (corner + along * uv.x + up * uv.y, along.cross(up).normalize())
+    };
     if let Some((corner, along, up, _, _)) = walls().get(chart) {
         return flat(*corner, *along, *up);
     }
-    if let Some((corner, along, up)) = chart.checked_sub(CRATE_CHART).and_then(|side| sides().get(side).copied()) {
+    if let Some((corner, along, up)) =
+        chart.checked_sub(CRATE_CHART).and_then(|side| sides().get(side).copied())
+    {
         let (point, normal) = flat(corner, along, up);
         return (crate_place().transform_point3(point), crate_place().transform_vector3(normal));
     }
@@ -131,7 +150,8 @@ fn arriving(point: DVec3, normal: DVec3) -> DVec3 {
     let mut sum = 0.0;
     for index in 0..SIDE * SIDE {
         let place = |at: usize, half: f64| ((at as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * half;
-        let lamp = DVec3::new(place(index % SIDE, PANEL.0), HALF.y - 0.02, place(index / SIDE, PANEL.1));
+        let lamp =
+            DVec3::new(place(index % SIDE, PANEL.0), HALF.y - 0.02, place(index / SIDE, PANEL.1));
         let offset = lamp - point;
         let towards = offset.normalize();
         let cosines = normal.dot(towards).max(0.0) * towards.y.max(0.0);

@@ -13,8 +13,16 @@ pub fn scene() -> Scene {
         DVec3::new(radius * turn.cos(), 2.0 * v - 1.0, -radius * turn.sin())
     });
     let place = placed(0.0, 0.0, 0.0, 0.15) * DMat4::from_rotation_x(0.55);
-    let objects = vec![Object::new(curl, place, CHALK * 1.2).of(Material::default().glossy(0.5).shiny(40.0), 9)];
-    let eye = Eye { position: DVec3::new(0.2, 2.9, 7.8), target: DVec3::new(0.0, -0.15, 0.0), fov_y: 0.6, near: 0.5, far: 40.0 };
+    let objects = vec![
+        Object::new(curl, place, CHALK * 1.2).of(Material::default().glossy(0.5).shiny(40.0), 9),
+    ];
+    let eye = Eye {
+        position: DVec3::new(0.2, 2.9, 7.8),
+        target: DVec3::new(0.0, -0.15, 0.0),
+        fov_y: 0.6,
+        near: 0.5,
+        far: 40.0,
+    };
     let key = Lamp {
         color: DVec3::splat(1.0),
         position: DVec3::new(-2.2, 5.5, 4.5),

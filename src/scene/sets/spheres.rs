@@ -18,7 +18,13 @@ pub fn scene() -> Scene {
         Object::new(ball.clone(), place, *color).of(material, index as u32)
     };
     let objects = COLORS.iter().enumerate().map(object).collect();
-    let eye = Eye { position: DVec3::new(-0.6, 0.6, 12.4), target: DVec3::new(-0.5, -0.1, 0.0), fov_y: 0.63, near: 0.5, far: 40.0 };
+    let eye = Eye {
+        position: DVec3::new(-0.6, 0.6, 12.4),
+        target: DVec3::new(-0.5, -0.1, 0.0),
+        fov_y: 0.63,
+        near: 0.5,
+        far: 40.0,
+    };
     let key = Lamp {
         color: DVec3::splat(0.95),
         position: DVec3::new(-3.5, 5.5, 6.5),

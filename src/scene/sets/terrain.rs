@@ -14,7 +14,8 @@ pub fn height(x: f64, z: f64) -> f64 {
     // Rounded, or the ridges would be knives.
     let ridge = 1.0 - ((0.8 * (0.45 * x + 0.9 * (0.3 * z).sin()).sin()).powi(2) + 0.01).sqrt();
     let valley = 1.0 - (-(x - 0.6 * (0.5 * z).sin()).powi(2) / 3.0).exp();
-    let bumps = 0.16 * (1.9 * x + 0.7).sin() * (1.7 * z).cos() + 0.07 * (3.7 * x + 1.3 * z).sin() * (3.1 * z - 0.4).cos();
+    let bumps = 0.16 * (1.9 * x + 0.7).sin() * (1.7 * z).cos()
+        + 0.07 * (3.7 * x + 1.3 * z).sin() * (3.1 * z - 0.4).cos();
     valley * (1.5 * ridge * ridge + 0.4) + bumps
 }
 
@@ -24,14 +25,24 @@ pub fn scene() -> Scene {
         DVec3::new(x, height(x, z), z)
     };
     let land = Shape::surface(120, 120, at).map(|vertex| {
-        let (grass, rock, snow) = (DVec3::new(0.2, 0.32, 0.1), DVec3::new(0.36, 0.31, 0.26), DVec3::new(0.8, 0.82, 0.86));
+        let (grass, rock, snow) =
+            (DVec3::new(0.2, 0.32, 0.1), DVec3::new(0.36, 0.31, 0.26), DVec3::new(0.8, 0.82, 0.86));
         let steep = ((0.93 - vertex.normal.y) * 6.0).clamp(0.0, 1.0);
         let high = ((vertex.position.y - 1.25) * 3.0).clamp(0.0, 1.0);
         vertex.color = grass.lerp(snow, high).lerp(rock, steep);
         vertex.uv *= 8.0;
     });
-    let objects = vec![Object::new(land, DMat4::IDENTITY, DVec3::ONE).of(Material::default().glossy(0.04).shiny(12.0), 12)];
-    let eye = Eye { position: DVec3::new(3.2, 6.6, 10.5), target: DVec3::new(0.0, -0.3, -1.0), fov_y: 0.72, near: 0.5, far: 60.0 };
+    let objects = vec![
+        Object::new(land, DMat4::IDENTITY, DVec3::ONE)
+            .of(Material::default().glossy(0.04).shiny(12.0), 12),
+    ];
+    let eye = Eye {
+        position: DVec3::new(3.2, 6.6, 10.5),
+        target: DVec3::new(0.0, -0.3, -1.0),
+        fov_y: 0.72,
+        near: 0.5,
+        far: 60.0,
+    };
     let key = Lamp {
         color: DVec3::new(1.25, 1.08, 0.85),
         position: DVec3::new(-8.0, 6.5, 4.5),

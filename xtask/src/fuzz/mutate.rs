@@ -52,7 +52,9 @@ fn collect(folder: &Path, ending: &str, found: &mut Vec<std::path::PathBuf>) {
 
 /// Test cases of several files as one input each.
 fn cases(files: &[std::path::PathBuf]) -> Vec<Vec<u8>> {
-    let main = |path: &&std::path::PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("main."));
+    let main = |path: &&std::path::PathBuf| {
+        path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("main."))
+    };
     let case = |main: &std::path::PathBuf| {
         let folder = main.parent()?;
         let mut text = fs::read_to_string(main).ok()?;
@@ -105,9 +107,15 @@ fn range(random: &mut Random, length: usize) -> std::ops::Range<usize> {
     start..(start + 1 + random.below(most)).min(length).max(start)
 }
 
-fn chunk(random: &mut Random, pieces: &[Piece], change: impl FnOnce(&[Piece]) -> Vec<Piece>) -> Vec<u8> {
+fn chunk(
+    random: &mut Random,
+    pieces: &[Piece],
+    change: impl FnOnce(&[Piece]) -> Vec<Piece>,
+) -> Vec<u8> {
     let range = range(random, pieces.len());
-    [&pieces[..range.start], &change(&pieces[range.clone()]), &pieces[range.end..]].concat().concat()
+    [&pieces[..range.start], &change(&pieces[range.clone()]), &pieces[range.end..]]
+        .concat()
+        .concat()
 }
 
 /// A few words very often: nesting, long lists, long chains.
@@ -116,7 +124,9 @@ fn many(random: &mut Random, pieces: &[Piece]) -> Vec<u8> {
     let range = range(random, pieces.len());
     let part = &pieces[range.start..range.end.min(range.start + 6)];
     let repeated: Vec<u8> = part.concat().repeat(times);
-    [&pieces[..range.end].concat(), &repeated, &pieces[range.end..].concat()].map(Vec::as_slice).concat()
+    [&pieces[..range.end].concat(), &repeated, &pieces[range.end..].concat()]
+        .map(Vec::as_slice)
+        .concat()
 }
 
 fn swapped(random: &mut Random, mut pieces: Vec<Piece>) -> Vec<u8> {
@@ -164,8 +174,19 @@ fn invented(random: &mut Random, mut pieces: Vec<Piece>, words: &[&str]) -> Vec<
 }
 
 fn numbers(random: &mut Random, mut pieces: Vec<Piece>) -> Vec<u8> {
-    const EXTREMES: [&str; 8] = ["0", "1", "255", "256", "4294967295", "4294967296", "9223372036854775807", "99999999999999999999999"];
-    let places: Vec<usize> = (0..pieces.len()).filter(|place| pieces[*place].first().is_some_and(u8::is_ascii_digit)).collect();
+    const EXTREMES: [&str; 8] = [
+        "0",
+        "1",
+        "255",
+        "256",
+        "4294967295",
+        "4294967296",
+        "9223372036854775807",
+        "99999999999999999999999",
+    ];
+    let places: Vec<usize> = (0..pieces.len())
+        .filter(|place| pieces[*place].first().is_some_and(u8::is_ascii_digit))
+        .collect();
     if !places.is_empty() {
         pieces[places[random.below(places.len())]] = EXTREMES[random.below(EXTREMES.len())].into();
     }

@@ -1,0 +1,32 @@
+//! A clear coat: a thin dielectric layer over another material.
+
+#ifndef LAMPLIGHT_BRDF_COAT_GLSL
+#define LAMPLIGHT_BRDF_COAT_GLSL
+
+/// The light of a coated surface: what the coat reflects, and what the base does below it.
+///
+/// Parameters: `base`, `coat` linear light of the base and of the coat's highlight without its Fresnel term; `cc` strength of the coat, [0, 1]; `fr` the coat's reflectance towards the viewer, [0, 1]: for an index of 1.5 `0.04 + 0.96*(1 - nv)^5`.
+/// Returns: `mix(base, coat, cc*fr)`.
+/// Source: Khronos Group, KHR_materials_clearcoat, 2020.
+/// Edges: `base` for no coat; the share `cc*fr` is clamped to [0, 1].
+/// Error model: absolute 3*2^-23*(|base| + |coat|).
+vec3 coat_mix(vec3 base, vec3 coat, float cc, float fr) {
+    float share = clamp(cc * fr, 0.0, 1.0);
+    return base * (1.0 - share) + coat * share;
+}
+
+/// The reflectance at normal incidence that a base has towards a coat instead of air.
+///
+/// Parameters: `f0` linear reflectance of the base in air, [0, 1]; `ior` index of refraction of the coat, at least 0, 1.5 for lacquer.
+/// Returns: `((A + B*sqrt(f0))/(B + A*sqrt(f0)))^2` with `A = 1 - ior`, `B = 1 + ior`, [0, 1].
+/// Source: Fresnel's equation at normal incidence, for the index that `ior_from_f0` gives, divided by the coat's; Guy, Agopian, "Physically Based Rendering in Filament", section 4.9.3, has a fit of it for 1.5.
+/// Edges: `f0` for an index of 1; a reflectance outside [0, 1] is clamped to it; a negative index counts as 0.
+/// Error model: absolute 16*2^-23.
+vec3 coat_f0(vec3 f0, float ior) {
+    vec3 s = sqrt(clamp(f0, vec3(0.0), vec3(1.0)));
+    float n = max(ior, 0.0);
+    vec3 r = (vec3(1.0) + s - n * (vec3(1.0) - s)) / (vec3(1.0) + s + n * (vec3(1.0) - s));
+    return r * r;
+}
+
+#endif

@@ -1,0 +1,86 @@
+//! Microfacet terms beyond one roughness: anisotropy, and roughness that grows with what a pixel covers.
+//!
+//! Cosines are named by their two directions: `th` is the tangent's and the half vector's, `bv` the bitangent's and the viewer's.
+
+#ifndef LAMPLIGHT_BRDF_MICROFACET_GLSL
+#define LAMPLIGHT_BRDF_MICROFACET_GLSL
+
+#include "../math/safe.glsl"
+
+/// The GGX distribution of microfacet normals with one roughness along the tangent and one along the bitangent.
+///
+/// Parameters: `th`, `bh`, `nh` cosines t.h, b.h and n.h, [-1, 1], the last at least 0; `at`, `ab` alpha along the tangent and the bitangent, [0, 1].
+/// Returns: `1/(pi*at*ab*s^2)` with `s = (th/at)^2 + (bh/ab)^2 + nh^2`, 1/sr, at least 0; `d_ggx` where both alphas are the same.
+/// Source: Burley, "Physically-Based Shading at Disney", 2012, appendix B.2, equation 13.
+/// Edges: 0 where an alpha is below 1e-9, the mirror direction included; `s` is 1 or more for unit vectors, and counts as 1 where it is less.
+/// Error model: 20 ULP.
+float d_ggx_aniso(float th, float bh, float nh, float at, float ab) {
+    if (!(min(at, ab) >= 1e-9)) {
+        return 0.0;
+    }
+    float t = th / at;
+    float b = bh / ab;
+    float s = max(t * t + b * b + nh * nh, 1.0);
+    return 0.31830989 / (at * ab * s * s);
+}
+
+/// The height-correlated Smith visibility of GGX with two roughnesses, divided by 4*nl*nv.
+///
+/// It is 1/4 or more, and has no upper bound: implementations that clamp it to 1 lose most of the light at grazing angles.
+///
+/// Parameters: `tv`, `bv`, `nv` cosines t.v, b.v and n.v; `tl`, `bl`, `nl` those of the light, [-1, 1]; `at`, `ab` alpha along the tangent and the bitangent, [0, 1].
+/// Returns: `0.5/(nl*|(at*tv, ab*bv, nv)| + nv*|(at*tl, ab*bl, nl)|)`, at least 0; `v_smith_ggx` where both alphas are the same.
+/// Source: Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014, equations 86 and 99.
+/// Edges: 0 where the light or the viewer is at or behind the horizon.
+/// Error model: 14 ULP.
+float v_smith_ggx_aniso(float tv, float bv, float nv, float tl, float bl, float nl, float at, float ab) {
+    if (!(nv > 0.0 && nl > 0.0)) {
+        return 0.0;
+    }
+    float from_view = nl * length(vec3(at * tv, ab * bv, nv));
+    float from_light = nv * length(vec3(at * tl, ab * bl, nl));
+    return 0.5 / max(from_view + from_light, SMALLEST_NORMAL);
+}
+
+/// The two alphas of a surface that is brushed along its tangent.
+///
+/// Parameters: `alpha` squared perceptual roughness, [0, 1]; `strength` of the anisotropy, [0, 1].
+/// Returns: alpha along the tangent, `mix(alpha, 1, strength^2)`, and along the bitangent, `alpha`.
+/// Source: Khronos Group, KHR_materials_anisotropy, 2023.
+/// Edges: parameters outside [0, 1] are clamped to it.
+/// Error model: 3 ULP.
+vec2 alpha_aniso(float alpha, float strength) {
+    float a = clamp(alpha, 0.0, 1.0);
+    float s = clamp(strength, 0.0, 1.0);
+    return vec2(a + (1.0 - a) * (s * s), a);
+}
+
+/// The alpha of a pixel within which the normal turns, so that highlights do not flicker.
+///
+/// Parameters: `alpha` squared perceptual roughness, [0, 1]; `dx`, `dy` change of the unit normal from this pixel to the next, across and down; `sigma2` variance of the pixel's filter, 0.25 or 1/(2*pi) by source; `limit` most that is added to alpha squared, 0.18 in the source.
+/// Returns: `sqrt(alpha^2 + min(2*sigma2*(dx.dx + dy.dy), limit))`, [0, 1].
+/// Source: Tokuyoshi, Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
+/// Edges: alpha itself for a flat surface; sums outside [0, 1] are clamped to it.
+/// Error model: 8 ULP.
+float specular_aa(float alpha, vec3 dx, vec3 dy, float sigma2, float limit) {
+    float added = min(2.0 * sigma2 * (dot(dx, dx) + dot(dy, dy)), limit);
+    return sqrt(clamp(alpha * alpha + added, 0.0, 1.0));
+}
+
+/// The direction in which a brushed surface mirrors its surroundings, for a lookup in an environment that knows one roughness.
+///
+/// The normal is bent towards the plane of the tangent and the viewer's mirror image.
+///
+/// Parameters: `v`, `n` unit, one space, `v` away from the surface; `b` unit bitangent, that space; `strength` of the anisotropy, [0, 1]; `roughness` perceptual, [0, 1].
+/// Returns: unit direction, that space: `reflect(-v, normalize(mix(bent, n, (1 - strength*(1 - roughness))^4)))`, with `bent` the part of `v` across `b`.
+/// Source: Khronos Group, KHR_materials_anisotropy, 2023: image-based lighting.
+/// Edges: where `v` is along `b`, or the mixture is zero, as for an isotropic surface; parameters outside [0, 1] are clamped to it.
+/// Error model: absolute 16*2^-23/|v - b*(b.v)|.
+vec3 bent_reflection(vec3 v, vec3 n, vec3 b, float strength, float roughness) {
+    vec3 bent = safe_normalize(v - b * dot(b, v), n);
+    float x = 1.0 - clamp(strength, 0.0, 1.0) * (1.0 - clamp(roughness, 0.0, 1.0));
+    float share = x * x * x * x;
+    return reflect(-v, safe_normalize(bent + (n - bent) * share, n));
+}
+
+#endif

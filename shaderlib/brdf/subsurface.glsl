@@ -1,0 +1,44 @@
+//! Subsurface scattering by normalised diffusion: how far from where it entered light leaves a body.
+
+#ifndef LAMPLIGHT_BRDF_SUBSURFACE_GLSL
+#define LAMPLIGHT_BRDF_SUBSURFACE_GLSL
+
+/// The profile of normalised diffusion.
+///
+/// Parameters: `r` distance on the surface, scene units, at least 0; `s` of `diffusion_s` over the mean free path, 1/scene unit, above 0.
+/// Returns: `s*(exp(-s*r) + exp(-s*r/3))/(8*pi*r)`, 1/scene unit^2: its integral over the plane is 1.
+/// Source: Christensen, Burley, "Approximate Reflectance Profiles for Efficient Subsurface Scattering", 2015.
+/// Edges: a product `s*r` below 0.0001 counts as 0.0001, so the peak is finite; a negative `r` counts as 0, `s` is clamped to [0, 1e6].
+/// Error model: relative (8 + 2*s*r)*2^-23.
+float diffusion_profile(float r, float s) {
+    float k = clamp(s, 0.0, 1e6);
+    float x = max(k * r, 1e-4);
+    return k * k * (exp(-x) + exp(-x / 3.0)) / x * 0.039788736;
+}
+
+/// The share of light that leaves a body within a distance.
+///
+/// Parameters: `r` distance on the surface, scene units, at least 0; `s` as for `diffusion_profile`.
+/// Returns: `1 - exp(-s*r)/4 - 3*exp(-s*r/3)/4`, [0, 1].
+/// Source: Christensen, Burley, "Approximate Reflectance Profiles for Efficient Subsurface Scattering", 2015.
+/// Edges: 0 for a product `s*r` of 0 or below.
+/// Error model: absolute 4*2^-23.
+float diffusion_cdf(float r, float s) {
+    float x = max(s * r, 0.0);
+    return 1.0 - 0.25 * exp(-x) - 0.75 * exp(-x / 3.0);
+}
+
+/// The factor that fits normalised diffusion to a surface's albedo, for light that enters in one direction.
+///
+/// Parameters: `albedo` linear albedo of the surface, [0, 1].
+/// Returns: `1.85 - A + 7*|A - 0.8|^3`, to be divided by the mean free path.
+/// Source: Christensen, Burley, "Approximate Reflectance Profiles for Efficient Subsurface Scattering", 2015, equation 5: for searchlights; diffuse light and paths given as diffuse means have other fits.
+/// Edges: an albedo outside [0, 1] is clamped to it.
+/// Error model: 4 ULP.
+vec3 diffusion_s(vec3 albedo) {
+    vec3 a = clamp(albedo, vec3(0.0), vec3(1.0));
+    vec3 x = abs(a - vec3(0.8));
+    return vec3(1.85) - a + 7.0 * x * x * x;
+}
+
+#endif

@@ -1,0 +1,101 @@
+//! Transmission: what passes a surface, where it goes, and what a volume absorbs of it.
+
+#ifndef LAMPLIGHT_BRDF_TRANSMISSION_GLSL
+#define LAMPLIGHT_BRDF_TRANSMISSION_GLSL
+
+#include "../math/safe.glsl"
+#include "fresnel.glsl"
+#include "specular.glsl"
+
+/// The reflectance of a dielectric at normal incidence with an artist's weight and colour.
+///
+/// The reflectance at grazing incidence is the weight. What is below gets `1 - max(F)` of the light, the largest channel for all.
+///
+/// Parameters: `ior` index of refraction, from 1 on, or 0 for a full reflection; `weight` of the reflection, [0, 1]; `color` linear, at least 0.
+/// Returns: `min(f0_from_ior(ior)*color, 1)*weight`, [0, 1].
+/// Source: Khronos Group, KHR_materials_specular, 2021, and KHR_materials_ior, 2021.
+/// Edges: the weight itself for an `ior` of 0 and white; a weight outside [0, 1] is clamped to it; negative colours count as 0.
+/// Error model: 9 ULP.
+vec3 specular_f0(float ior, float weight, vec3 color) {
+    return clamp(f0_from_ior(ior) * color, vec3(0.0), vec3(1.0)) * clamp(weight, 0.0, 1.0);
+}
+
+/// The share of light that a volume lets through.
+///
+/// Parameters: `color` linear colour that white light has after the distance `d`, [0, 1]; `x` length of the way, scene units; `d` distance, scene units.
+/// Returns: `color^(x/d)`, [0, 1].
+/// Source: Beer's law; Khronos Group, KHR_materials_volume, 2021.
+/// Edges: 1 for a way of 0 or below, and for a distance of 0 or below, which counts as infinite; colours outside [0, 1] are clamped to it; x/d is at most 1e6.
+/// Error model: that of `safe_pow` with an exponent of relative error 2^-22.
+vec3 volume_transmittance(vec3 color, float x, float d) {
+    if (!(x > 0.0 && d > 0.0)) {
+        return vec3(1.0);
+    }
+    vec3 c = min(color, vec3(1.0));
+    float e = x / max(d, x * 1e-6);
+    return vec3(safe_pow(c.x, e), safe_pow(c.y, e), safe_pow(c.z, e));
+}
+
+/// The way of a refracted view ray to the far side of a body.
+///
+/// Parameters: `v`, `n` unit, one space, `v` away from the surface, on the side of `n`; `ior` index of refraction, from 1 on; `thickness` length of the way, scene units.
+/// Returns: `refract(-v, n, 1/ior)*thickness`, that space.
+/// Source: Khronos Group, KHR_materials_volume, 2021, as the glTF Sample Viewer reads it.
+/// Edges: straight on for an index of 1, or below, which counts as 1; `-n*thickness*sqrt(1 - 1/ior^2)` for a zero `v`.
+/// Error model: absolute 8*2^-23*thickness.
+vec3 refract_exit(vec3 v, vec3 n, float ior, float thickness) {
+    float eta = 1.0 / max(ior, 1.0);
+    float along = eta * dot(n, v);
+    // 1 - eta^2*(1 - n.v^2), which cancels at the horizon for indices close to 1.
+    float inside = sqrt((1.0 - eta) * (1.0 + eta) + along * along);
+    return (n * (along - inside) - v * eta) * thickness;
+}
+
+/// The roughness that a refraction has: a body that hardly bends light hardly blurs it.
+///
+/// Parameters: `roughness` perceptual, or alpha, [0, 1]; `ior` index of refraction, from 1 on.
+/// Returns: `roughness*saturate(2*ior - 2)`.
+/// Source: Khronos Group, glTF Sample Viewer, 2021.
+/// Edges: 0 for an index of 1 or below, `roughness` from 1.5 on.
+/// Error model: 2 ULP.
+float transmission_roughness(float roughness, float ior) {
+    return roughness * clamp(2.0 * ior - 2.0, 0.0, 1.0);
+}
+
+/// Light that passes a thin rough sheet: the specular lobe of the light mirrored to the viewer's side.
+///
+/// It is to be multiplied by `1 - F` and by the colour of the sheet.
+///
+/// Parameters: `n`, `l`, `v` unit, one space, away from the surface; `l` on the far side of the sheet; `alpha` squared perceptual roughness, [0, 1].
+/// Returns: a BTDF, 1/sr, at least 0: `d_ggx` of the mirrored light with the product of both sides' Smith visibilities.
+/// Source: Khronos Group, KHR_materials_transmission, 2021, which has the visibilities separate where the reflection has them correlated.
+/// Edges: 0 where the light is on the viewer's side or at the horizon, and where the viewer is behind it; 0 for an alpha of 0; a product of the visibilities' denominators below 1e-12 counts as 1e-12.
+/// Error model: relative 2^-17/alpha^2, from the half vector.
+float btdf_thin(vec3 n, vec3 l, vec3 v, float alpha) {
+    float nl = -dot(n, l);
+    float nv = dot(n, v);
+    if (!(nl > 0.0 && nv > 0.0)) {
+        return 0.0;
+    }
+    vec3 h = safe_normalize(l + 2.0 * nl * n + v, n);
+    vec3 across = cross(n, h);
+    float a2 = alpha * alpha;
+    float from_light = nl + sqrt(a2 + (1.0 - a2) * nl * nl);
+    float from_view = nv + sqrt(a2 + (1.0 - a2) * nv * nv);
+    return d_ggx(dot(n, h), dot(across, across), alpha) / max(from_light * from_view, 1e-12);
+}
+
+/// Three indices of refraction, for the red, green and blue part of a spectrum.
+///
+/// Parameters: `ior` index of refraction in the middle of the spectrum, from 1 on; `dispersion` 20 over the Abbe number, at least 0.
+/// Returns: `ior` less, with and plus half the spread `(ior - 1)*0.025*dispersion` on both sides, at least 1.
+/// Source: Khronos Group, KHR_materials_dispersion, 2024.
+/// Edges: red is never below 1; an index below 1 and a negative dispersion count as 1 and 0.
+/// Error model: 3 ULP.
+vec3 dispersion_ior(float ior, float dispersion) {
+    float n = max(ior, 1.0);
+    float spread = (n - 1.0) * 0.025 * max(dispersion, 0.0);
+    return vec3(max(n - spread, 1.0), n, n + spread);
+}
+
+#endif

@@ -1,0 +1,263 @@
+//! A text without its comments and its layout: the same program in a third of the bytes.
+//!
+//! To naga comments and blanks are the same, so that what it makes of a lean text differs in its
+//! spans only, and nothing that is written has spans. Texts that differ in comments or in layout
+//! alone are compiled once, and an edited comment compiles nothing.
+//!
+//! Type aliases are replaced by what they stand for. naga gives an alias a type of its own, and
+//! Metal would take an array and its alias for two types.
+
+use std::ops::Range;
+
+use super::{Composed, Part, PartKind, SourceMap};
+use crate::bundle::Language;
+
+/// Aliases within each other after which they stay as they are, for naga to report.
+const ALIAS_DEPTH: usize = 64;
+
+/// Bytes that the aliases of one part may be expanded to.
+const ALIAS_BYTES: usize = 1 << 16;
+
+/// The text to compile. It leads nowhere: for errors, validate the whole text.
+pub fn lean(composed: &Composed) -> Composed {
+    let mut text = String::with_capacity(composed.text.len() / 2);
+    let mut parts = Vec::with_capacity(composed.parts.len());
+    if composed.parts.is_empty() {
+        text = squeeze(composed.language, &composed.text);
+    }
+    for part in &composed.parts {
+        let start = text.len();
+        let whole = expanded(composed, part);
+        if part.kind != PartKind::Alias || whole.is_none() {
+            let written = whole.as_deref().unwrap_or(&composed.text[part.range.clone()]);
+            text.push_str(&squeeze(composed.language, written));
+        }
+        let (range, names) = (start..text.len(), part.names.clone());
+        let (uses, aliases) = (part.uses.clone(), Vec::new());
+        parts.push(Part { kind: part.kind, names, range, uses, aliases });
+        if text.len() > start && !text.ends_with('\n') {
+            text.push('\n');
+        }
+    }
+    Composed {
+        text,
+        map: SourceMap::default(),
+        parts,
+        reads: Vec::new(),
+        warnings: Vec::new(),
+        decisions: Vec::new(),
+        ..*composed
+    }
+}
+
+fn squeeze(language: Language, text: &str) -> String {
+    match language {
+        Language::Wesl => wgsl(text),
+        // A backslash continues a line, comments too; a line may end with a carriage return alone,
+        // and be asked for its number.
+        Language::Glsl if text.contains(['\\', '\r']) || text.contains("__LINE__") => {
+            text.to_owned()
+        }
+        Language::Glsl => glsl(text),
+    }
+}
+
+/// A part with what its aliases stand for; `None` where they cannot be expanded.
+fn expanded(composed: &Composed, part: &Part) -> Option<String> {
+    let mut text = String::new();
+    append(composed, part, part.range.clone(), ALIAS_DEPTH, &mut text)?;
+    Some(text)
+}
+
+/// Appends a range of a part, each alias in it replaced by its type.
+fn append(
+    composed: &Composed,
+    part: &Part,
+    range: Range<usize>,
+    depth: usize,
+    text: &mut String,
+) -> Option<()> {
+    let mut at = range.start;
+    let within = |used: &Range<usize>| used.start >= range.start && used.end <= range.end;
+    for (used, alias) in part.aliases.iter().filter(|(used, _)| within(used)) {
+        text.push_str(composed.text.get(at..used.start)?);
+        let alias = composed.parts.get(*alias as usize)?;
+        let declaration = &composed.text[alias.range.clone()];
+        let name = alias.names.first()?;
+        let equals = alias.range.start + declares(declaration, name)?;
+        let end = alias.range.start + declaration.rfind(';')?;
+        // A blank on both sides: the bracket that ends a type must not meet a `=` or `>`.
+        text.push(' ');
+        append(composed, alias, equals..end, depth.checked_sub(1)?, text)?;
+        text.push(' ');
+        if text.len() > part.range.len() + ALIAS_BYTES {
+            return None;
+        }
+        at = used.end;
+    }
+    text.push_str(composed.text.get(at..range.end)?);
+    Some(())
+}
+
+/// Where the type begins in the declaration of an alias: after the `=` that follows its name.
+fn declares(declaration: &str, name: &str) -> Option<usize> {
+    let squeezed = wgsl(declaration);
+    // Comments may hold anything, so the place is found by what it must look like.
+    let (_, target) = squeezed.split_once('=')?;
+    let plain = squeezed.strip_prefix("alias ")?.trim_start().strip_prefix(name)?;
+    let ends = declaration.rfind(';')?;
+    let is_plain = plain.trim_start().starts_with('=');
+    let places = declaration.match_indices('=').map(|(at, _)| at + 1);
+    let mut fitting = places.filter(|at| {
+        *at <= ends && format!("{};", wgsl(&declaration[*at..ends])).trim() == target.trim()
+    });
+    fitting.next().filter(|_| is_plain)
+}
+
+/// What WGSL calls blank: line breaks and the marks of direction among it.
+const BLANKS: [char; 11] = [
+    ' ', '\t', '\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{200e}', '\u{200f}', '\u{2028}',
+    '\u{2029}',
+];
+
+/// Each of WGSL's line breaks ends a line comment.
+const BREAKS: [char; 7] = ['\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{2028}', '\u{2029}'];
+
+/// WGSL without comments and layout. It has no strings: `//` and `/*` always begin a comment, and
+/// block comments nest.
+pub fn wgsl(text: &str) -> String {
+    let mut lean = String::with_capacity(text.len());
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        let gap = gap(rest);
+        if gap > 0 && gap < rest.len() {
+            part(&mut lean, &rest[gap..]);
+        }
+        let token = token(&rest[gap..]);
+        lean.push_str(&rest[gap..gap + token]);
+        at += gap + token;
+    }
+    lean
+}
+
+/// Writes a blank where what comes next could become one token with what is there.
+fn part(lean: &mut String, next: &str) {
+    let alone = |found: Option<&u8>| found.is_none_or(|byte| stands_alone(*byte));
+    if !alone(lean.as_bytes().last()) && !alone(next.as_bytes().first()) {
+        lean.push(' ');
+    }
+}
+
+/// Bytes before the first blank or comment.
+fn token(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while let Some(&byte) = bytes.get(at) {
+        at += match byte {
+            b'/' if comment(&text[at..]).is_some() => return at,
+            b'!'..=b'~' => 1,
+            _ => match text[at..].chars().next() {
+                Some(found) if !BLANKS.contains(&found) => found.len_utf8(),
+                _ => return at,
+            },
+        };
+    }
+    at
+}
+
+/// Bytes of the blanks and comments that the text begins with.
+fn gap(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while let Some(&byte) = bytes.get(at) {
+        at += match byte {
+            // Nearly all blanks are of these two.
+            b' ' | b'\n' => 1,
+            b'!'..=b'.' | b'0'..=b'~' => return at,
+            _ => match (comment(&text[at..]), text[at..].chars().next()) {
+                (Some(length), _) => length,
+                (None, Some(found)) if BLANKS.contains(&found) => found.len_utf8(),
+                _ => return at,
+            },
+        };
+    }
+    at
+}
+
+/// Whether nothing next to the character can become one token with it.
+fn stands_alone(found: u8) -> bool {
+    matches!(found, b'\n' | b'(' | b')' | b'[' | b']' | b'{' | b'}' | b',' | b';')
+}
+
+/// Bytes of the comment that the text begins with.
+fn comment(text: &str) -> Option<usize> {
+    match text.as_bytes() {
+        [b'/', b'/', ..] => Some(line(text)),
+        [b'/', b'*', ..] => Some(block(text)),
+        _ => None,
+    }
+}
+
+fn line(text: &str) -> usize {
+    // Looked for byte by byte as long as these are characters.
+    let first = text
+        .bytes()
+        .position(|byte| matches!(byte, b'\n'..=b'\r') || !byte.is_ascii())
+        .unwrap_or(text.len());
+    text[first..].find(BREAKS).map_or(text.len(), |more| first + more)
+}
+
+fn block(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let (mut depth, mut at) = (0, 0);
+    while at < bytes.len() {
+        match (bytes[at], bytes.get(at + 1)) {
+            (b'/', Some(b'*')) => depth += 1,
+            (b'*', Some(b'/')) => depth -= 1,
+            _ => {
+                at += 1;
+                continue;
+            }
+        }
+        at += 2;
+        if depth == 0 {
+            break;
+        }
+    }
+    at
+}
+
+/// GLSL without comments and layout. Directives end with their line, so lines stay; block comments
+/// do not nest.
+pub fn glsl(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find('/') {
+        let (before, comment) = rest.split_at(start);
+        plain.push_str(before);
+        let length = match comment.as_bytes() {
+            [_, b'/', ..] => comment.find(['\n', '\r']).unwrap_or(comment.len()),
+            [_, b'*', ..] => comment[2..].find("*/").map_or(comment.len(), |end| end + 4),
+            _ => 0,
+        };
+        plain.push(if length > 0 { ' ' } else { '/' });
+        rest = &comment[length.max(1)..];
+    }
+    plain.push_str(rest);
+    let mut lean = String::with_capacity(plain.len());
+    for line in plain.lines().filter(|line| !line.trim_ascii().is_empty()) {
+        let is_directive = line.trim_ascii().starts_with('#');
+        for word in line.split_ascii_whitespace() {
+            // A macro with parameters is another than one whose text is in brackets.
+            if is_directive && !lean.ends_with('\n') && !lean.is_empty() {
+                lean.push(' ')
+            } else {
+                part(&mut lean, word)
+            }
+            lean.push_str(word);
+        }
+        lean.push('\n');
+    }
+    lean
+}

@@ -1,0 +1,77 @@
+//! Everything that can run a kernel: one file of `executors/` each.
+
+use super::Session;
+use super::gpu::{self, Api, OpenGl};
+use crate::bundle::Target;
+
+/// An executor, closed.
+pub struct Entry {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// One line.
+    pub about: &'static str,
+    /// Debian packages it needs.
+    pub needs: &'static [&'static str],
+    /// What must be done while the process has one thread, before the executor is opened.
+    pub before_threads: Option<fn()>,
+    /// Places in each pixel of a picture that are averaged, where no other number is asked for;
+    /// `None` if the executor draws no frames.
+    pub samples: Option<u32>,
+    /// Opens a device.
+    pub open: fn() -> Result<Box<dyn Session>, Unavailable>,
+}
+
+/// Why an executor cannot be used on this machine.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unavailable {
+    pub reason: String,
+}
+
+impl Entry {
+    /// An open executor; the error is for someone on whose machine it is missing. Open, use and
+    /// drop it inside of [`on_thread`](super::on_thread).
+    pub fn start(&self) -> Result<Box<dyn Session>, String> {
+        (self.open)().map_err(|unavailable| self.missing(&unavailable))
+    }
+
+    /// What to tell someone on whose machine it is missing.
+    pub fn missing(&self, unavailable: &Unavailable) -> String {
+        let install = if self.needs.is_empty() {
+            String::new()
+        } else {
+            format!("\ninstall it with: apt-get install {}", self.needs.join(" "))
+        };
+        format!("the executor `{}` is not available: {}{install}", self.name, unavailable.reason)
+    }
+}
+
+/// Places in each pixel that devices average.
+const DEVICE_SAMPLES: u32 = 4;
+
+/// A session on a device of wgpu.
+fn opened(wanted: gpu::Wanted) -> Result<Box<dyn Session>, Unavailable> {
+    match gpu::open(wanted) {
+        Ok(gpu) => Ok(Box::new(gpu)),
+        Err(reason) => Err(Unavailable { reason }),
+    }
+}
+
+/// A session on a context of OpenGL, for the texts of a target.
+fn opened_opengl(api: Api, target: Target) -> Result<Box<dyn Session>, Unavailable> {
+    match OpenGl::open(api, target) {
+        Ok(opengl) => Ok(Box::new(opengl)),
+        Err(reason) => Err(Unavailable { reason }),
+    }
+}
+
+include!(concat!(env!("OUT_DIR"), "/executors.rs"));
+
+/// Prepares the process for executors. Call this while it has one thread.
+pub fn prepare(entries: &[&Entry]) {
+    entries.iter().filter_map(|entry| entry.before_threads).for_each(|prepare| prepare());
+}
+
+/// The executor of that name.
+pub fn find(name: &str) -> Option<&'static Entry> {
+    ALL.iter().copied().find(|entry| entry.name == name)
+}

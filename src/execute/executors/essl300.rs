@@ -1,0 +1,14 @@
+//! The emitted GLSL ES 3.00 as it is, on OpenGL ES 3.0.
+
+use super::Entry;
+use crate::bundle::Target;
+use crate::execute::gpu::Api;
+
+pub const EXECUTOR: Entry = Entry {
+    name: "essl300",
+    about: "the emitted GLSL ES 3.00 as it is, on OpenGL ES 3.0, Mesa's llvmpipe preferred",
+    needs: &["libegl1", "libgles2", "libgl1-mesa-dri"],
+    before_threads: None,
+    samples: None,
+    open: || super::opened_opengl(Api::Embedded(3, 0), Target::ESSL300),
+};

@@ -1,0 +1,14 @@
+//! The emitted GLSL 4.50 as it is, on OpenGL 4.5.
+
+use super::Entry;
+use crate::bundle::Target;
+use crate::execute::gpu::Api;
+
+pub const EXECUTOR: Entry = Entry {
+    name: "glsl",
+    about: "the emitted GLSL 4.50 as it is, on OpenGL 4.5, Mesa's llvmpipe preferred",
+    needs: &["libegl1", "libgl1-mesa-dri"],
+    before_threads: None,
+    samples: None,
+    open: || super::opened_opengl(Api::Core(4, 5), Target::GLSL450),
+};

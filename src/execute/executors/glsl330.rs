@@ -1,0 +1,14 @@
+//! The emitted GLSL 3.30 as it is, on OpenGL 3.3 with the core profile.
+
+use super::Entry;
+use crate::bundle::Target;
+use crate::execute::gpu::Api;
+
+pub const EXECUTOR: Entry = Entry {
+    name: "glsl330",
+    about: "the emitted GLSL 3.30 as it is, on OpenGL 3.3 core, Mesa's llvmpipe preferred",
+    needs: &["libegl1", "libgl1-mesa-dri"],
+    before_threads: None,
+    samples: None,
+    open: || super::opened_opengl(Api::Core(3, 3), Target::GLSL330),
+};

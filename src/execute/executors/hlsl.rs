@@ -1,0 +1,26 @@
+//! The emitted HLSL, compiled to SPIR-V by glslangValidator, on SwiftShader: its sampler heaps are
+//! arrays that a number from a buffer indexes, which lavapipe cannot do.
+
+use super::{Entry, Unavailable, swiftshader};
+use crate::bundle::Target;
+use crate::execute::gpu::{Named, Shaders, Wanted};
+use crate::tools::{GLSLANG, SPIRV_OPT};
+
+pub const EXECUTOR: Entry = Entry {
+    name: "hlsl",
+    about: "the emitted HLSL by way of glslangValidator's SPIR-V, on Chromium's SwiftShader",
+    needs: &["glslang-tools", "spirv-tools", "chromium", "libvulkan1"],
+    before_threads: Some(swiftshader::announce),
+    samples: None,
+    open: || {
+        if let Some(tool) = [GLSLANG, SPIRV_OPT].iter().find(|tool| tool.path().is_none()) {
+            return Err(Unavailable { reason: format!("`{}` is not installed", tool.program) });
+        }
+        swiftshader::installed()?;
+        super::opened(Wanted {
+            backend: wgpu::Backends::VULKAN,
+            named: Named::With(swiftshader::NAME),
+            shaders: Shaders::Emitted(Target::HLSL),
+        })
+    },
+};

@@ -1,0 +1,17 @@
+//! The emitted MSL as it is, compiled for the CPU by clang with headers of our own.
+
+use super::{Entry, Unavailable};
+use crate::execute::metal::Metal;
+use crate::tools::CLANG;
+
+pub const EXECUTOR: Entry = Entry {
+    name: "msl",
+    about: "the emitted MSL as it is, compiled for the CPU by clang",
+    needs: &[CLANG.package],
+    before_threads: None,
+    samples: Some(1),
+    open: || match Metal::open() {
+        Ok(metal) => Ok(Box::new(metal)),
+        Err(missing) => Err(Unavailable { reason: missing.reason }),
+    },
+};

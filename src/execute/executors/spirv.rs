@@ -1,0 +1,20 @@
+//! The emitted SPIR-V as it is, on the driver of `vulkan`.
+
+use super::{Entry, swiftshader};
+use crate::bundle::Target;
+use crate::execute::gpu::{Named, Shaders, Wanted};
+
+pub const EXECUTOR: Entry = Entry {
+    name: "spirv",
+    about: "the emitted SPIR-V as it is, on Vulkan, Mesa's lavapipe preferred",
+    needs: &["mesa-vulkan-drivers", "libvulkan1"],
+    before_threads: None,
+    samples: None,
+    open: || {
+        super::opened(Wanted {
+            backend: wgpu::Backends::VULKAN,
+            named: Named::Without(swiftshader::NAME),
+            shaders: Shaders::Emitted(Target::SPIRV),
+        })
+    },
+};

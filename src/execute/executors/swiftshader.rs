@@ -1,0 +1,61 @@
+//! wgpu on SwiftShader, the software Vulkan driver that Chromium ships: another compiler than Mesa's.
+
+use std::path::Path;
+use std::sync::Once;
+
+use super::{DEVICE_SAMPLES, Entry, Unavailable};
+use crate::execute::gpu::{Named, Shaders, Wanted};
+
+pub const EXECUTOR: Entry = Entry {
+    name: "swiftshader",
+    about: "wgpu on Vulkan, Chromium's SwiftShader",
+    needs: &["chromium", "libvulkan1"],
+    before_threads: Some(announce),
+    samples: Some(DEVICE_SAMPLES),
+    open: || {
+        installed()?;
+        super::opened(Wanted {
+            backend: wgpu::Backends::VULKAN,
+            named: Named::With(NAME),
+            shaders: Shaders::Translated,
+        })
+    },
+};
+
+/// Whether the driver is there; it is announced if it is.
+pub fn installed() -> Result<(), Unavailable> {
+    announce();
+    manifest().map(|_| ()).ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
+}
+
+/// Part of the adapter's name.
+pub const NAME: &str = "SwiftShader";
+
+/// Where packages put the driver's manifest.
+const MANIFESTS: &[&str] = &[
+    "/usr/lib/chromium/vk_swiftshader_icd.json",
+    "/usr/lib64/chromium-browser/vk_swiftshader_icd.json",
+    "/opt/google/chrome/vk_swiftshader_icd.json",
+];
+
+/// Tells the Vulkan loader of the driver, beside those it knows, where it is installed.
+///
+/// The loader reads the environment when an instance is made. Call this before other threads are
+/// started: it is done once, and opening the executor does it too.
+pub fn announce() {
+    static ONCE: Once = Once::new();
+    let Some(manifest) = manifest() else { return };
+    ONCE.call_once(|| {
+        let known = std::env::var("VK_ADD_DRIVER_FILES").unwrap_or_default();
+        let list =
+            if known.is_empty() { manifest.to_owned() } else { format!("{known}:{manifest}") };
+        // SAFETY: Rust's own accesses are locked. The command line and the tests call this while
+        // they have one thread, so that no foreign code reads the environment meanwhile.
+        unsafe { std::env::set_var("VK_ADD_DRIVER_FILES", list) };
+    });
+}
+
+/// The driver's manifest, where it is installed.
+fn manifest() -> Option<&'static str> {
+    MANIFESTS.iter().copied().find(|path| Path::new(path).is_file())
+}

@@ -1,0 +1,19 @@
+//! wgpu on a Vulkan driver: lavapipe where it is installed.
+
+use super::{DEVICE_SAMPLES, Entry, swiftshader};
+use crate::execute::gpu::{Named, Shaders, Wanted};
+
+pub const EXECUTOR: Entry = Entry {
+    name: "vulkan",
+    about: "wgpu on Vulkan, Mesa's lavapipe preferred",
+    needs: &["mesa-vulkan-drivers", "libvulkan1"],
+    before_threads: None,
+    samples: Some(DEVICE_SAMPLES),
+    open: || {
+        super::opened(Wanted {
+            backend: wgpu::Backends::VULKAN,
+            named: Named::Without(swiftshader::NAME),
+            shaders: Shaders::Translated,
+        })
+    },
+};

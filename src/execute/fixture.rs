@@ -1,0 +1,167 @@
+//! Textures and samplers that the parameters of a function under test are bound to.
+
+use super::kernel::ResourceClass;
+use naga::{ImageClass, ImageDimension, ScalarKind};
+
+/// A texture or a sampler.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fixture {
+    Texture(Texture),
+    Sampler(Sampler),
+}
+
+/// Texels of one level, in f32.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texture {
+    pub kind: TextureKind,
+    pub width: u32,
+    pub height: u32,
+    /// Row by row from the top, layer by layer (cube faces +x, -x, +y, -y, +z, -z); one value a
+    /// texel for depth, four for colour.
+    pub texels: Vec<f32>,
+}
+
+/// Kinds of texture a fixture may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TextureKind {
+    Depth2d,
+    DepthCube,
+    Color2d,
+    ColorCube,
+}
+
+impl TextureKind {
+    /// Name in a case file, and kind.
+    pub const NAMES: &'static [(&'static str, Self)] = &[
+        ("depth_2d", Self::Depth2d),
+        ("depth_cube", Self::DepthCube),
+        ("color_2d", Self::Color2d),
+        ("color_cube", Self::ColorCube),
+    ];
+
+    /// Values of a texel.
+    pub fn channels(self) -> usize {
+        if self.is_depth() { 1 } else { 4 }
+    }
+
+    /// 1, or 6 for cubes.
+    pub fn layers(self) -> u32 {
+        if matches!(self, Self::DepthCube | Self::ColorCube) { 6 } else { 1 }
+    }
+
+    /// Whether it is sampled as depth.
+    pub fn is_depth(self) -> bool {
+        matches!(self, Self::Depth2d | Self::DepthCube)
+    }
+}
+
+/// How a texture is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sampler {
+    pub compare: Option<Compare>,
+    pub linear: bool,
+    pub address: Address,
+}
+
+/// What a comparison sampler asks of `reference OP stored`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Compare {
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+}
+
+impl Compare {
+    /// Name in a case file, and function.
+    pub const NAMES: &'static [(&'static str, Self)] = &[
+        ("less", Self::Less),
+        ("less_equal", Self::LessEqual),
+        ("greater", Self::Greater),
+        ("greater_equal", Self::GreaterEqual),
+    ];
+
+    /// Whether the reference passes against the stored depth.
+    pub fn passes(self, reference: f64, stored: f64) -> bool {
+        match self {
+            Self::Less => reference < stored,
+            Self::LessEqual => reference <= stored,
+            Self::Greater => reference > stored,
+            Self::GreaterEqual => reference >= stored,
+        }
+    }
+}
+
+/// What lies outside [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Address {
+    Clamp,
+    Repeat,
+    Mirror,
+}
+
+impl Address {
+    /// Name in a case file, and mode.
+    pub const NAMES: &'static [(&'static str, Self)] =
+        &[("clamp", Self::Clamp), ("repeat", Self::Repeat), ("mirror", Self::Mirror)];
+
+    /// The texel index that stands for `index` on an axis of `size` texels.
+    pub fn wrap(self, index: i64, size: u32) -> u32 {
+        let size = i64::from(size);
+        (match self {
+            Self::Clamp => index.clamp(0, size - 1),
+            Self::Repeat => index.rem_euclid(size),
+            Self::Mirror => {
+                let folded = index.rem_euclid(2 * size);
+                folded.min(2 * size - 1 - folded)
+            }
+        }) as u32
+    }
+}
+
+impl Fixture {
+    /// Whether the shader's declaration can be bound to it.
+    pub fn fits(&self, class: ResourceClass) -> bool {
+        match (self, class) {
+            (Self::Sampler(sampler), ResourceClass::Sampler { comparison }) => {
+                comparison == sampler.compare.is_some()
+            }
+            (Self::Texture(texture), ResourceClass::Texture { dim, arrayed: false, class }) => {
+                let depth = match class {
+                    ImageClass::Depth { multi: false } => true,
+                    ImageClass::Sampled { kind: ScalarKind::Float, multi: false } => false,
+                    _ => return false,
+                };
+                let cube = dim == ImageDimension::Cube;
+                (cube || dim == ImageDimension::D2)
+                    && cube == (texture.kind.layers() == 6)
+                    && depth == texture.kind.is_depth()
+            }
+            _ => false,
+        }
+    }
+
+    /// In words, for diagnostics.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Texture(texture) => {
+                let name = TextureKind::NAMES
+                    .iter()
+                    .find(|(_, kind)| *kind == texture.kind)
+                    .map_or("texture", |(name, _)| name);
+                format!("a {name} of {} x {}", texture.width, texture.height)
+            }
+            Self::Sampler(Sampler { compare: Some(_), .. }) => "a comparison sampler".to_owned(),
+            Self::Sampler(_) => "a sampler without comparison".to_owned(),
+        }
+    }
+}
+
+impl Texture {
+    /// One channel of a texel.
+    pub fn texel(&self, x: u32, y: u32, layer: u32, channel: usize) -> f64 {
+        let index =
+            (layer as usize * self.height as usize + y as usize) * self.width as usize + x as usize;
+        f64::from(self.texels[index * self.kind.channels() + channel])
+    }
+}

@@ -1,0 +1,153 @@
+//! Frames: what an executor that draws is given, and what it gives back.
+//!
+//! A frame's targets hold words, four a pixel, so that results are exact to the bit everywhere.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::fixture::{Fixture, Texture};
+
+/// Triangles, the attributes of their corners interleaved.
+#[derive(Debug, Clone, Default)]
+pub struct Mesh {
+    /// Without any, it is one triangle that the vertex stage makes from the index.
+    pub attributes: Vec<Attribute>,
+    /// Words of every vertex, attribute after attribute.
+    pub words: Vec<u32>,
+    /// Three vertices for each triangle; empty where every three in order are one.
+    pub indices: Vec<u32>,
+}
+
+/// One attribute of a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Attribute {
+    pub location: u32,
+    pub format: wgpu::VertexFormat,
+}
+
+/// An entry point of a module.
+#[derive(Debug, Clone, Copy)]
+pub struct EntryPoint<'a> {
+    pub module: &'a naga::Module,
+    pub entry: &'a str,
+}
+
+/// Bytes of uniform buffers by group and binding.
+pub type Buffers = BTreeMap<(u32, u32), Vec<u8>>;
+
+/// What frames are drawn with. Buffers, textures and samplers that the entry points do not use
+/// are skipped.
+#[derive(Debug)]
+pub struct Drawing<'a> {
+    pub vertex: EntryPoint<'a>,
+    /// Returns four words at each of the locations 0 to `targets - 1`; `None` draws depth alone.
+    pub fragment: Option<EntryPoint<'a>>,
+    pub targets: u32,
+    /// Drawn in order, all into each frame.
+    pub items: &'a [Item<'a>],
+    /// One frame for each, with buffers of its own.
+    pub views: &'a [Buffers],
+    /// Uniform buffers of all frames and items.
+    pub buffers: &'a Buffers,
+    /// Those uniform buffers that no texture coordinate depends on: the first to be bound otherwise
+    /// where a driver fails with as many as there are.
+    pub plain: &'a [(u32, u32)],
+    /// Textures and samplers.
+    pub fixtures: &'a BTreeMap<(u32, u32), Arc<Fixture>>,
+    /// Smaller levels of those textures that have them, the larger first.
+    pub levels: &'a BTreeMap<(u32, u32), Vec<Texture>>,
+    /// Pixels from left to right, and from top to bottom.
+    pub size: [u32; 2],
+    pub state: State,
+}
+
+/// A mesh with uniform buffers of its own.
+#[derive(Debug, Clone, Copy)]
+pub struct Item<'a> {
+    pub mesh: &'a Mesh,
+    pub buffers: &'a Buffers,
+}
+
+/// What the pipeline does beside its stages.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct State {
+    /// Whether nearer fragments (of smaller depth) hide others.
+    pub depth_test: bool,
+    /// Whether the frame has its depth.
+    pub keep_depth: bool,
+    pub cull: Option<Side>,
+    /// Whether front faces wind clockwise in the frame: it is drawn mirrored.
+    pub mirrored: bool,
+    /// Added to depths, as of polygon offset: a share of the slope, and smallest steps.
+    pub offset: [f32; 2],
+}
+
+/// A side of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    Front,
+    Back,
+}
+
+/// What was drawn.
+#[derive(Debug)]
+pub struct Frame {
+    /// The words of each target, four a pixel, row by row from the top; pixels that nothing
+    /// covers hold [`SENTINEL`](crate::execute::kernel::SENTINEL).
+    pub targets: Vec<Vec<u32>>,
+    /// Of each pixel, 1 where nothing is; empty unless it was to be kept.
+    pub depth: Vec<f32>,
+    /// What was done otherwise than asked for, since the driver would have failed.
+    pub detour: Option<&'static str>,
+}
+
+/// Group and binding.
+pub(super) type Place = (u32, u32);
+
+impl Mesh {
+    pub(super) fn stride(&self) -> u64 {
+        self.attributes.iter().map(|attribute| attribute.format.size()).sum()
+    }
+
+    /// Vertices.
+    pub fn vertices(&self) -> u32 {
+        if self.attributes.is_empty() {
+            3
+        } else {
+            (self.words.len() as u64 * 4 / self.stride().max(4)) as u32
+        }
+    }
+
+    pub(super) fn layout(&self) -> Vec<wgpu::VertexAttribute> {
+        let offsets = self.attributes.iter().scan(0, |offset, attribute| {
+            Some(std::mem::replace(offset, *offset + attribute.format.size()))
+        });
+        let attribute = |(attribute, offset): (&Attribute, u64)| wgpu::VertexAttribute {
+            format: attribute.format,
+            offset,
+            shader_location: attribute.location,
+        };
+        self.attributes.iter().zip(offsets).map(attribute).collect()
+    }
+}
+
+impl Drawing<'_> {
+    /// The buffer of a binding: the view's, the item's, or that of all.
+    pub fn buffer<'b>(
+        &'b self,
+        view: &'b Buffers,
+        item: &'b Item<'_>,
+        place: Place,
+    ) -> Option<&'b Vec<u8>> {
+        view.get(&place).or_else(|| item.buffers.get(&place)).or_else(|| self.buffers.get(&place))
+    }
+
+    pub(super) fn is_buffer(&self, place: Place) -> bool {
+        let everywhere = self
+            .views
+            .iter()
+            .chain(self.items.iter().map(|item| item.buffers))
+            .chain([self.buffers]);
+        everywhere.into_iter().any(|buffers| buffers.contains_key(&place))
+    }
+}

@@ -1,0 +1,248 @@
+//! Draws meshes with a program into targets of words, depth, or both.
+
+mod bindings;
+mod target;
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{AddressSpace, StorageAccess};
+use wgpu::util::DeviceExt;
+
+use super::{Gpu, TARGET_FORMAT, failed};
+use crate::diagnostic::Diagnostic;
+use crate::execute::frame::{Drawing, EntryPoint, Frame, Mesh, Place, Side, State};
+use bindings::Bindings;
+use target::{DEPTH_FORMAT, Targets};
+
+/// Uniform blocks of one stage above which lavapipe must not see them.
+///
+/// Mesa 22.3 looks for uniforms that a branch reads, to compile them in. It notes their places in
+/// rows of four and counts its way there in rows of 32 (`lvp_inline_uniforms.c`,
+/// `uni_offsets[ubo * PIPE_MAX_CONSTANT_BUFFERS + i]`), so that those of the fourth block land on
+/// the table of counts behind. The next draw then reads a push constant that there is not, and
+/// the process dies: `forward` with a shadow branches on its fourth block. Storage blocks, laid
+/// out the same, are not looked at; but where a triangle ends, what they hold is 0 in the helpers of a
+/// quad, and derivatives of what was computed from it are wrong.
+const LAVAPIPE_BLOCKS: usize = 3;
+const LAVAPIPE_DETOUR: &str = "uniform blocks were bound as storage blocks: lavapipe crashes where a branch reads the fourth of a stage";
+
+impl Gpu {
+    /// Draws the frame of every view and reads it back.
+    pub(super) fn frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        let used: Vec<_> = std::iter::once(drawing.vertex)
+            .chain(drawing.fragment)
+            .map(used)
+            .collect::<Result<_, _>>()?;
+        let as_storage = if self.is_lavapipe() { spared(drawing, &used) } else { BTreeSet::new() };
+        let all: BTreeSet<Place> = used.into_iter().flatten().collect();
+        let frames = self.guarded(|gpu| gpu.submit_frames(drawing, all, &as_storage))??;
+        let detour = (!as_storage.is_empty()).then_some(LAVAPIPE_DETOUR);
+        frames.into_iter().map(|frame| frame.read(self, detour)).collect()
+    }
+
+    fn is_lavapipe(&self) -> bool {
+        let info = self.device.adapter_info();
+        info.backend == wgpu::Backend::Vulkan && info.name.starts_with("llvmpipe")
+    }
+
+    fn submit_frames(
+        &self,
+        drawing: &Drawing<'_>,
+        used: BTreeSet<Place>,
+        as_storage: &BTreeSet<Place>,
+    ) -> Result<Vec<target::Pending>, Diagnostic> {
+        let pipeline = self.mesh_pipeline(drawing, as_storage);
+        let bindings = Bindings::new(self, drawing, used)?;
+        let meshes: Vec<_> =
+            drawing.items.iter().map(|item| Uploaded::new(self, item.mesh)).collect();
+        let mut frames = Vec::new();
+        for view in drawing.views {
+            let groups: Vec<_> = drawing
+                .items
+                .iter()
+                .map(|item| bindings.groups(self, drawing, view, item, &pipeline))
+                .collect::<Result<_, _>>()?;
+            let targets = Targets::new(&self.device, drawing);
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            targets.pass(&mut encoder, |pass| {
+                pass.set_pipeline(&pipeline);
+                for (mesh, groups) in meshes.iter().zip(&groups) {
+                    groups
+                        .iter()
+                        .for_each(|(index, group)| pass.set_bind_group(*index, group, &[]));
+                    mesh.draw(pass);
+                }
+            });
+            let pending = targets.download(self, &mut encoder);
+            self.queue.submit([encoder.finish()]);
+            frames.push(pending);
+        }
+        Ok(frames)
+    }
+
+    fn shader(&self, stage: EntryPoint<'_>, as_storage: &BTreeSet<Place>) -> wgpu::ShaderModule {
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(storage_blocks(stage.module, as_storage)));
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
+    }
+
+    fn mesh_pipeline(
+        &self,
+        drawing: &Drawing<'_>,
+        as_storage: &BTreeSet<Place>,
+    ) -> wgpu::RenderPipeline {
+        let mesh = drawing.items.first().map(|item| item.mesh);
+        let attributes = mesh.map(Mesh::layout).unwrap_or_default();
+        let layout = wgpu::VertexBufferLayout {
+            array_stride: mesh.map_or(0, Mesh::stride),
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
+        };
+        let buffers = if attributes.is_empty() { Vec::new() } else { vec![Some(layout)] };
+        let targets =
+            vec![Some(wgpu::ColorTargetState::from(TARGET_FORMAT)); drawing.targets as usize];
+        let fragment = drawing.fragment.map(|stage| (self.shader(stage, as_storage), stage.entry));
+        let compilation_options = wgpu::PipelineCompilationOptions::default();
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &self.shader(drawing.vertex, as_storage),
+                entry_point: Some(drawing.vertex.entry),
+                compilation_options: compilation_options.clone(),
+                buffers: &buffers,
+            },
+            primitive: primitive(drawing.state),
+            depth_stencil: drawing.state.depth_test.then(|| depth_state(drawing.state)),
+            multisample: Default::default(),
+            fragment: fragment.as_ref().map(|(module, entry)| wgpu::FragmentState {
+                module,
+                entry_point: Some(entry),
+                compilation_options,
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+
+    fn buffer(&self, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents,
+            usage,
+        })
+    }
+}
+
+fn primitive(state: State) -> wgpu::PrimitiveState {
+    wgpu::PrimitiveState {
+        front_face: if state.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+        cull_mode: state.cull.map(|side| match side {
+            Side::Front => wgpu::Face::Front,
+            Side::Back => wgpu::Face::Back,
+        }),
+        ..Default::default()
+    }
+}
+
+fn depth_state(state: State) -> wgpu::DepthStencilState {
+    let [slope_scale, constant] = state.offset;
+    wgpu::DepthStencilState {
+        format: DEPTH_FORMAT,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::Less),
+        stencil: Default::default(),
+        bias: wgpu::DepthBiasState { constant: constant as i32, slope_scale, clamp: 0.0 },
+    }
+}
+
+/// A mesh on the device.
+struct Uploaded {
+    vertices: Option<wgpu::Buffer>,
+    indices: Option<wgpu::Buffer>,
+    count: u32,
+}
+
+impl Uploaded {
+    fn new(gpu: &Gpu, mesh: &Mesh) -> Self {
+        let buffer = |numbers: &[u32], usage| {
+            (!numbers.is_empty()).then(|| gpu.buffer(&words(numbers), usage))
+        };
+        let count =
+            if mesh.indices.is_empty() { mesh.vertices() } else { mesh.indices.len() as u32 };
+        Self {
+            vertices: buffer(&mesh.words, wgpu::BufferUsages::VERTEX),
+            indices: buffer(&mesh.indices, wgpu::BufferUsages::INDEX),
+            count,
+        }
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(vertices) = &self.vertices {
+            pass.set_vertex_buffer(0, vertices.slice(..));
+        }
+        match &self.indices {
+            Some(indices) => {
+                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(0..self.count, 0, 0..1);
+            }
+            None => pass.draw(0..self.count, 0..1),
+        }
+    }
+}
+
+/// The uniform blocks to bind otherwise, so that no stage has too many: as few of the plain ones
+/// as will do, or all blocks.
+fn spared(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<Place> {
+    let blocks: Vec<BTreeSet<Place>> = stages
+        .iter()
+        .map(|used| used.iter().copied().filter(|place| drawing.is_buffer(*place)).collect())
+        .collect();
+    let fits = |spared: &BTreeSet<Place>| {
+        blocks.iter().all(|blocks| blocks.difference(spared).count() <= LAVAPIPE_BLOCKS)
+    };
+    let mut spared = BTreeSet::new();
+    for place in drawing.plain {
+        if fits(&spared) {
+            break;
+        }
+        spared.insert(*place);
+    }
+    if fits(&spared) { spared } else { blocks.into_iter().flatten().collect() }
+}
+
+/// The module with some uniform blocks declared as storage blocks that are read.
+fn storage_blocks(module: &naga::Module, places: &BTreeSet<Place>) -> naga::Module {
+    let mut module = module.clone();
+    for (_, variable) in module.global_variables.iter_mut() {
+        let is_spared =
+            variable.binding.is_some_and(|place| places.contains(&(place.group, place.binding)));
+        if variable.space == AddressSpace::Uniform && is_spared {
+            variable.space = AddressSpace::Storage { access: StorageAccess::LOAD };
+        }
+    }
+    module
+}
+
+fn words(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+/// Bindings that the entry point uses: those of the derived layout.
+fn used(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
+    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(stage.module);
+    let info = info.map_err(|error| failed(format!("the program is not valid: {error}")))?;
+    let index = stage.module.entry_points.iter().position(|point| point.name == stage.entry);
+    let index =
+        index.ok_or_else(|| failed(format!("the program has no entry point `{}`", stage.entry)))?;
+    let variables = stage
+        .module
+        .global_variables
+        .iter()
+        .filter(|(handle, _)| !info.get_entry_point(index)[*handle].is_empty());
+    Ok(variables
+        .filter_map(|(_, variable)| variable.binding.map(|place| (place.group, place.binding)))
+        .collect())
+}

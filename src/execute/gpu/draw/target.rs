@@ -1,0 +1,232 @@
+//! What a frame is drawn into, and how it comes back.
+
+use super::super::{Gpu, TARGET_FORMAT, pipeline};
+use crate::diagnostic::Diagnostic;
+use crate::execute::frame::{Drawing, Frame};
+use crate::execute::kernel::SENTINEL;
+
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Depth cannot be copied into a buffer everywhere, only read: the shader that reads it.
+const DEPTH: &str = "
+@group(0) @binding(0) var drawn: texture_2d<f32>;
+@vertex fn triangle(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    let corner = vec2u((index << 1u) & 2u, index & 2u);
+    return vec4f(vec2f(corner) * 2.0 - 1.0, 0.0, 1.0);
+}
+@fragment fn read(@builtin(position) position: vec4f) -> @location(0) vec4u {
+    return vec4u(bitcast<u32>(textureLoad(drawn, vec2u(position.xy), 0).x), 0u, 0u, 0u);
+}";
+
+/// The attachments of one frame.
+pub struct Targets {
+    size: [u32; 2],
+    color: Vec<wgpu::Texture>,
+    depth: Option<wgpu::Texture>,
+    keep_depth: bool,
+}
+
+/// A frame on its way back.
+pub struct Pending {
+    size: [u32; 2],
+    color: Vec<wgpu::Buffer>,
+    depth: Option<wgpu::Buffer>,
+}
+
+impl Targets {
+    pub fn new(device: &wgpu::Device, drawing: &Drawing<'_>) -> Self {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let depth_usage =
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let size = drawing.size;
+        Self {
+            size,
+            color: (0..drawing.targets)
+                .map(|_| create(device, size, TARGET_FORMAT, usage))
+                .collect(),
+            depth: drawing
+                .state
+                .depth_test
+                .then(|| create(device, size, DEPTH_FORMAT, depth_usage)),
+            keep_depth: drawing.state.keep_depth,
+        }
+    }
+
+    /// One pass over cleared attachments.
+    pub fn pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        draws: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
+        let views: Vec<_> =
+            self.color.iter().map(|target| target.create_view(&Default::default())).collect();
+        let attachments: Vec<_> = views.iter().map(|view| Some(color_attachment(view))).collect();
+        let depth = self.depth.as_ref().map(|depth| depth.create_view(&Default::default()));
+        let depth_stencil_attachment =
+            depth.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            });
+        let descriptor = wgpu::RenderPassDescriptor {
+            color_attachments: &attachments,
+            depth_stencil_attachment,
+            ..Default::default()
+        };
+        draws(&mut encoder.begin_render_pass(&descriptor));
+    }
+
+    /// Has everything copied to where it can be read.
+    pub fn download(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Pending {
+        let color =
+            self.color.iter().map(|target| copied(gpu, encoder, target, self.size)).collect();
+        let kept = self.depth.as_ref().filter(|_| self.keep_depth);
+        let depth = kept.map(|depth| {
+            let target = as_words(gpu, encoder, depth, self.size);
+            copied(gpu, encoder, &target, self.size)
+        });
+        Pending { size: self.size, color, depth }
+    }
+}
+
+impl Pending {
+    pub fn read(&self, gpu: &Gpu, detour: Option<&'static str>) -> Result<Frame, Diagnostic> {
+        let row = self.size[0] as usize * 4;
+        let read = |buffer: &wgpu::Buffer| -> Result<Vec<u32>, Diagnostic> {
+            let words = gpu.read(buffer)?;
+            Ok(words
+                .chunks(padded(self.size[0]) as usize / 4)
+                .flat_map(|words| &words[..row])
+                .copied()
+                .collect())
+        };
+        let targets = self.color.iter().map(read).collect::<Result<_, _>>()?;
+        let depth = self.depth.as_ref().map(read).transpose()?.unwrap_or_default();
+        Ok(Frame {
+            targets,
+            depth: depth.chunks(4).map(|pixel| f32::from_bits(pixel[0])).collect(),
+            detour,
+        })
+    }
+}
+
+fn color_attachment(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+    let cleared = f64::from(SENTINEL);
+    let load = wgpu::LoadOp::Clear(wgpu::Color { r: cleared, g: cleared, b: cleared, a: cleared });
+    wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+    }
+}
+
+/// Bytes of a row in a buffer.
+fn padded(width: u32) -> u32 {
+    (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
+}
+
+fn copied(
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
+    target: &wgpu::Texture,
+    [width, height]: [u32; 2],
+) -> wgpu::Buffer {
+    let row = padded(width);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(row) * u64::from(height),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    encoder.copy_texture_to_buffer(
+        target.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        size,
+    );
+    buffer
+}
+
+/// The bits of a depth texture, drawn into a target of words.
+fn as_words(
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
+    depth: &wgpu::Texture,
+    size: [u32; 2],
+) -> wgpu::Texture {
+    let device = &gpu.device;
+    let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let ty = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let entry = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &[entry],
+    });
+    let pipeline = pipeline::pipeline(
+        device,
+        &[&layout],
+        &module,
+        (&module, "read"),
+        Some(TARGET_FORMAT),
+        None,
+    );
+    let view = depth.create_view(&Default::default());
+    let entry =
+        wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) };
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &layout,
+        entries: &[entry],
+    });
+    let target = create(
+        device,
+        size,
+        TARGET_FORMAT,
+        wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+    );
+    let view = target.create_view(&Default::default());
+    let attachments = [Some(color_attachment(&view))];
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &attachments,
+        ..Default::default()
+    });
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.draw(0..3, 0..1);
+    drop(pass);
+    target
+}
+
+fn create(
+    device: &wgpu::Device,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}

@@ -1,0 +1,53 @@
+//! Kernels as the files that the crate emits.
+
+use naga::Module;
+use naga::valid::{ValidationFlags, Validator};
+
+use super::failed;
+use crate::bundle::{Language, Native, Target};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::emit::Emitted;
+use crate::execute::kernel::{ENTRY, Kernel};
+use crate::link;
+use crate::validate::{CAPABILITIES, Validated};
+
+/// The kernel's entry point in a target's language: the one place where executors of emitted
+/// files get their bytes.
+///
+/// # Errors
+/// `executor-lacks` where the target's language has no word for something in the kernel.
+pub fn emit(kernel: &Kernel, target: Target) -> Result<Emitted, Diagnostic> {
+    Ok(of_module(&kernel.module, ENTRY, target)?.0)
+}
+
+/// An entry point of a module in a target's language, and the module as it was checked.
+///
+/// # Errors
+/// Those of [`emit`].
+pub fn of_module(
+    module: &Module,
+    entry: &str,
+    target: Target,
+) -> Result<(Emitted, Validated), Diagnostic> {
+    let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(module);
+    let info = info.map_err(|error| failed(format!("the module is not valid: {error}")))?;
+    let validated = Validated { language: Language::Wesl, module: module.clone(), info };
+    match link::compile_module(&validated, entry, target) {
+        Ok(artifact) => {
+            let (bytes, native) = (artifact.bytes.to_vec(), Native::clone(&artifact.native));
+            Ok((Emitted { bytes, native }, validated))
+        }
+        Err(errors) => Err(refused(errors, target)),
+    }
+}
+
+/// The first of a kernel's errors; a construct that the target lacks is the executor's matter.
+fn refused(errors: Diagnostics, target: Target) -> Diagnostic {
+    let lost = || Diagnostic::error(codes::EMIT_FAILED, format!("no output for {target}"));
+    let error = errors.into_iter().next().unwrap_or_else(lost);
+    if error.code.name == codes::EMIT_FAILED.name {
+        Diagnostic::error(codes::EXECUTOR_LACKS, error.message)
+    } else {
+        error
+    }
+}

@@ -1,0 +1,245 @@
+//! Fixtures as textures and samplers of a device.
+
+use super::pipeline;
+use crate::eval::{half_from, half_to};
+use crate::execute::fixture::{Address, Compare, Sampler, Texture};
+
+/// Depth cannot be copied into a texture, only drawn: the shader that draws it.
+const DEPTH: &str = "
+@group(0) @binding(0) var stored: texture_2d<u32>;
+@vertex fn triangle(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    let corner = vec2u((index << 1u) & 2u, index & 2u);
+    return vec4f(vec2f(corner) * 2.0 - 1.0, 0.0, 1.0);
+}
+@fragment fn depth(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
+    return bitcast<f32>(textureLoad(stored, vec2u(position.xy), 0).x);
+}";
+
+/// A view of the texture with its texels in place.
+pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
+    upload_levels(device, queue, texture, &[])
+}
+
+/// A view of a texture with smaller levels, which colours may have.
+pub fn upload_levels(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &Texture,
+    smaller: &[Texture],
+) -> wgpu::TextureView {
+    let cube = texture.kind.layers() == 6;
+    let dimension =
+        if cube { wgpu::TextureViewDimension::Cube } else { wgpu::TextureViewDimension::D2 };
+    let created = if texture.kind.is_depth() {
+        depth(device, queue, texture)
+    } else {
+        color(device, queue, texture, smaller)
+    };
+    created.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(dimension),
+        ..Default::default()
+    })
+}
+
+/// The sampler of a fixture.
+pub fn sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
+    let address = match sampler.address {
+        Address::Clamp => wgpu::AddressMode::ClampToEdge,
+        Address::Repeat => wgpu::AddressMode::Repeat,
+        Address::Mirror => wgpu::AddressMode::MirrorRepeat,
+    };
+    let filter = if sampler.linear { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
+    let compare = sampler.compare.map(|compare| match compare {
+        Compare::Less => wgpu::CompareFunction::Less,
+        Compare::LessEqual => wgpu::CompareFunction::LessEqual,
+        Compare::Greater => wgpu::CompareFunction::Greater,
+        Compare::GreaterEqual => wgpu::CompareFunction::GreaterEqual,
+    });
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: address,
+        address_mode_v: address,
+        address_mode_w: address,
+        mag_filter: filter,
+        min_filter: filter,
+        // Between levels, where a texture has them.
+        mipmap_filter: if sampler.linear && compare.is_none() {
+            wgpu::MipmapFilterMode::Linear
+        } else {
+            wgpu::MipmapFilterMode::Nearest
+        },
+        compare,
+        ..Default::default()
+    })
+}
+
+/// A texture with all its levels in 32 bits, or in 16 where those say the same and the device
+/// filters no others.
+fn color(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &Texture,
+    smaller: &[Texture],
+) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let levels = || std::iter::once(texture).chain(smaller);
+    let half = !device.features().contains(wgpu::Features::FLOAT32_FILTERABLE)
+        && levels().all(|level| level.texels.iter().all(|texel| is_half(*texel)));
+    let format =
+        if half { wgpu::TextureFormat::Rgba16Float } else { wgpu::TextureFormat::Rgba32Float };
+    let created =
+        create(device, texture, texture.kind.layers(), 1 + smaller.len() as u32, format, usage);
+    for (index, level) in levels().enumerate() {
+        let bytes: Vec<u8> = match half {
+            true => level
+                .texels
+                .iter()
+                .flat_map(|texel| half_from(f64::from(*texel)).to_le_bytes())
+                .collect(),
+            false => level.texels.iter().flat_map(|texel| texel.to_le_bytes()).collect(),
+        };
+        write(queue, &created, level, index as u32, level.kind.layers(), &bytes);
+    }
+    created
+}
+
+fn is_half(texel: f32) -> bool {
+    half_to(half_from(f64::from(texel))) == f64::from(texel)
+}
+
+fn depth(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
+    let created =
+        create(device, texture, texture.kind.layers(), 1, wgpu::TextureFormat::Depth32Float, usage);
+    let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let ty = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Uint,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let entry = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &[entry],
+    });
+    let drawing = pipeline::pipeline(
+        device,
+        &[&layout],
+        &module,
+        (&module, "depth"),
+        None,
+        Some(wgpu::TextureFormat::Depth32Float),
+    );
+    for layer in 0..texture.kind.layers() {
+        draw_layer(device, queue, texture, layer, &created, &layout, &drawing);
+    }
+    created
+}
+
+fn draw_layer(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &Texture,
+    layer: u32,
+    target: &wgpu::Texture,
+    layout: &wgpu::BindGroupLayout,
+    drawing: &wgpu::RenderPipeline,
+) {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let staged = create(device, texture, 1, 1, wgpu::TextureFormat::R32Uint, usage);
+    let size = (texture.width * texture.height) as usize;
+    let texels = texture.texels.iter().skip(layer as usize * size).take(size);
+    write(
+        queue,
+        &staged,
+        texture,
+        0,
+        1,
+        &texels.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>(),
+    );
+    let stored = staged.create_view(&Default::default());
+    let entry =
+        wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&stored) };
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &[entry],
+    });
+    let view = target.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_array_layer: layer,
+        array_layer_count: Some(1),
+        ..Default::default()
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let attachment = wgpu::RenderPassDepthStencilAttachment {
+        view: &view,
+        depth_ops: Some(wgpu::Operations {
+            load: wgpu::LoadOp::Clear(0.0),
+            store: wgpu::StoreOp::Store,
+        }),
+        stencil_ops: None,
+    };
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        depth_stencil_attachment: Some(attachment),
+        ..Default::default()
+    });
+    pass.set_pipeline(drawing);
+    pass.set_bind_group(0, &group, &[]);
+    pass.draw(0..3, 0..1);
+    drop(pass);
+    queue.submit([encoder.finish()]);
+}
+
+fn create(
+    device: &wgpu::Device,
+    texture: &Texture,
+    layers: u32,
+    levels: u32,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d {
+            width: texture.width,
+            height: texture.height,
+            depth_or_array_layers: layers,
+        },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// Copies the bytes of so many layers into a level of the texture; `texture` has that level's size.
+fn write(
+    queue: &wgpu::Queue,
+    target: &wgpu::Texture,
+    texture: &Texture,
+    level: u32,
+    layers: u32,
+    bytes: &[u8],
+) {
+    let row = bytes.len() as u32 / (texture.height * layers).max(1);
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(row),
+        rows_per_image: Some(texture.height),
+    };
+    let size = wgpu::Extent3d {
+        width: texture.width,
+        height: texture.height,
+        depth_or_array_layers: layers,
+    };
+    let place = wgpu::TexelCopyTextureInfo { mip_level: level, ..target.as_image_copy() };
+    queue.write_texture(place, bytes, layout, size);
+}

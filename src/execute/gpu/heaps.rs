@@ -1,0 +1,152 @@
+//! The sampler heaps of HLSL, bound on a Vulkan device.
+//!
+//! | binding | holds |
+//! |---|---|
+//! | 0 | the heap of samplers |
+//! | 1 | the heap of comparison samplers |
+//! | 2 + N | the numbers of group N: where in its heap each sampler is |
+//!
+//! Every other element of a heap is a sampler that gives other results, so that a number that was
+//! read from the wrong place shows.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::num::NonZeroU32;
+
+use wgpu::util::DeviceExt as _;
+
+use super::fixtures;
+use crate::bundle::{HeapSampler, SamplerHeap};
+use crate::execute::fixture::{Address, Compare, Sampler};
+
+/// Bindings in front of the buffers with numbers.
+const HEAPS: u32 = 2;
+/// Places in a heap: the first that is used, and the distance to the next.
+const FIRST: u32 = 5;
+const STEP: u32 = 7;
+
+/// The name of each heap and of each buffer of numbers in the output, and its binding.
+pub fn bindings(heaps: &[SamplerHeap]) -> impl Iterator<Item = (String, u32)> {
+    let samplers = heaps.iter().flat_map(|heap| &heap.samplers);
+    let buffers = samplers.map(|sampler| {
+        (format!("nagaGroup{}SamplerIndexArray", sampler.group), HEAPS + sampler.group)
+    });
+    heaps.iter().map(|heap| (heap.name.clone(), u32::from(heap.comparison))).chain(buffers)
+}
+
+/// The bind group of the heaps of all stages, with its layout. `sampler` gives the sampler of a
+/// group and a binding.
+pub fn bind(
+    device: &wgpu::Device,
+    heaps: &[SamplerHeap],
+    sampler: &dyn Fn([u32; 2]) -> Option<Sampler>,
+) -> Result<(wgpu::BindGroupLayout, wgpu::BindGroup), String> {
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &layout_entries(heaps),
+    });
+    let places = places(heaps);
+    let arrays = [
+        array(device, heaps, false, &places, sampler)?,
+        array(device, heaps, true, &places, sampler)?,
+    ];
+    let arrays = arrays.each_ref().map(|array| array.iter().collect::<Vec<_>>());
+    let buffers: Vec<_> =
+        numbers(heaps, &places).iter().map(|numbers| buffer(device, numbers)).collect();
+    let of_arrays = arrays.iter().map(|array| wgpu::BindingResource::SamplerArray(array));
+    let of_buffers = buffers.iter().map(wgpu::Buffer::as_entire_binding);
+    let entries: Vec<_> = (0..)
+        .zip(of_arrays.chain(of_buffers))
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &layout,
+        entries: &entries,
+    });
+    Ok((layout, group))
+}
+
+/// Bindings without gaps, since wgpu numbers them so: both heaps, and a buffer for each group up
+/// to the last.
+fn layout_entries(heaps: &[SamplerHeap]) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let array = |kind| (wgpu::BindingType::Sampler(kind), NonZeroU32::new(size(heaps)));
+    let numbers = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let kinds = [wgpu::SamplerBindingType::Filtering, wgpu::SamplerBindingType::Comparison];
+    let types = kinds.map(array).into_iter().chain((0..groups(heaps)).map(|_| (numbers, None)));
+    let entry = |(binding, (ty, count))| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty,
+        count,
+    };
+    (0..).zip(types).map(entry).collect()
+}
+
+/// The samplers of one heap.
+fn array(
+    device: &wgpu::Device,
+    heaps: &[SamplerHeap],
+    comparison: bool,
+    places: &BTreeMap<[u32; 2], u32>,
+    sampler: &dyn Fn([u32; 2]) -> Option<Sampler>,
+) -> Result<Vec<wgpu::Sampler>, String> {
+    let mut array = vec![fixtures::sampler(device, decoy(comparison)); size(heaps) as usize];
+    let own = heaps.iter().filter(|heap| heap.comparison == comparison);
+    for HeapSampler { group, binding, .. } in own.flat_map(|heap| &heap.samplers) {
+        let place = [*group, *binding];
+        let settings = sampler(place)
+            .ok_or_else(|| format!("no sampler for group {group}, binding {binding}"))?;
+        array[places[&place] as usize] = fixtures::sampler(device, settings);
+    }
+    Ok(array)
+}
+
+/// Elements of each heap.
+fn size(heaps: &[SamplerHeap]) -> u32 {
+    heaps.iter().map(|heap| heap.size).max().unwrap_or(1)
+}
+
+fn samplers(heaps: &[SamplerHeap]) -> impl Iterator<Item = &HeapSampler> {
+    heaps.iter().flat_map(|heap| &heap.samplers)
+}
+
+/// Groups up to the last that has samplers.
+fn groups(heaps: &[SamplerHeap]) -> u32 {
+    samplers(heaps).map(|sampler| sampler.group + 1).max().unwrap_or(0)
+}
+
+/// Where in its heap each sampler goes.
+fn places(heaps: &[SamplerHeap]) -> BTreeMap<[u32; 2], u32> {
+    let all: BTreeSet<[u32; 2]> =
+        samplers(heaps).map(|sampler| [sampler.group, sampler.binding]).collect();
+    all.into_iter().zip((FIRST..).step_by(STEP as usize)).collect()
+}
+
+/// The numbers of each group, at least one.
+fn numbers(heaps: &[SamplerHeap], places: &BTreeMap<[u32; 2], u32>) -> Vec<Vec<u32>> {
+    let mut numbers = vec![vec![0]; groups(heaps) as usize];
+    for sampler in samplers(heaps) {
+        let own = &mut numbers[sampler.group as usize];
+        own.resize(own.len().max(sampler.element as usize + 1), 0);
+        own[sampler.element as usize] = places[&[sampler.group, sampler.binding]];
+    }
+    numbers
+}
+
+fn buffer(device: &wgpu::Device, numbers: &[u32]) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: None,
+        contents: &numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>(),
+        usage: wgpu::BufferUsages::STORAGE,
+    })
+}
+
+/// What no case asks for.
+fn decoy(comparison: bool) -> Sampler {
+    let compare = comparison.then_some(Compare::Greater);
+    Sampler { compare, linear: false, address: Address::Mirror }
+}

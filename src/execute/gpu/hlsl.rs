@@ -1,0 +1,121 @@
+//! Emitted HLSL as SPIR-V: what a Direct3D driver would do, done for a Vulkan driver.
+//!
+//! glslangValidator compiles the text as it is. Three things that a host of Direct3D says beside
+//! the text are then written into the SPIR-V: an input layout and the stages find each other by
+//! semantics, which become locations; register spaces of sampler heaps, and of the buffers with
+//! places in them, become bindings of one group, since Vulkan has no registers of separate kinds.
+
+use std::collections::BTreeMap;
+
+use super::heaps;
+use crate::bundle::{Native, Stage};
+use crate::emit::spirv::{HEADER_WORDS, instructions, words};
+use crate::tools::{GLSLANG, SPIRV_OPT};
+
+const OP_NAME: u32 = 5;
+const OP_EXTENSION: u32 = 10;
+const OP_DECORATE: u32 = 71;
+const OP_DECORATE_STRING: u32 = 5632;
+const OP_MEMBER_DECORATE_STRING: u32 = 5633;
+const LOCATION: u32 = 30;
+const BINDING: u32 = 33;
+const DESCRIPTOR_SET: u32 = 34;
+const USER_SEMANTIC: u32 = 5635;
+
+/// The text as SPIR-V, its samplers' heaps in bind group `group`.
+///
+/// # Errors
+/// In words: those of glslangValidator and spirv-opt, or what is not installed.
+pub fn spirv(text: &[u8], stage: Stage, native: &Native, group: u32) -> Result<Vec<u32>, String> {
+    let stage = match stage {
+        Stage::Vertex => "vert",
+        Stage::Fragment => "frag",
+        Stage::Compute => "comp",
+    };
+    let compiled = GLSLANG.pipe(
+        &[
+            "--stdin",
+            "--quiet",
+            "-D",
+            "-V",
+            "--target-env",
+            "vulkan1.1",
+            "-fhlsl_functionality1",
+            "-S",
+            stage,
+            "-e",
+            &native.entry_name,
+            "-o",
+            "/dev/stdout",
+        ],
+        text,
+    )?;
+    // Static samplers are variables until now, which Vulkan does not know.
+    let legal = SPIRV_OPT
+        .pipe(&["--target-env=vulkan1.1", "--legalize-hlsl", "-o", "-", "-"], &compiled)?;
+    bound(&words(&legal), native, group)
+}
+
+/// Locations by semantics, and bindings of heaps.
+fn bound(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String> {
+    let places = places(words, native);
+    let locations = locations(words)?;
+    let header = words.get(..HEADER_WORDS).ok_or("glslangValidator wrote no module")?;
+    let mut out = header.to_vec();
+    for instruction in instructions(words) {
+        match (instruction[0] & 0xffff, instruction) {
+            (OP_DECORATE_STRING | OP_MEMBER_DECORATE_STRING, _) => {}
+            (OP_EXTENSION, [_, name @ ..]) if text(name).starts_with("SPV_GOOGLE") => {}
+            (OP_DECORATE, [head, id, decoration, value]) => {
+                let value = match (*decoration, places.get(id), locations.get(id)) {
+                    (LOCATION, _, Some(location)) => *location,
+                    (BINDING, Some(binding), _) => *binding,
+                    (DESCRIPTOR_SET, Some(_), _) => group,
+                    _ => *value,
+                };
+                out.extend([*head, *id, *decoration, value]);
+            }
+            _ => out.extend_from_slice(instruction),
+        }
+    }
+    Ok(out)
+}
+
+/// The binding of each variable that is a heap or a buffer of places, by its name.
+fn places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
+    let by_name: BTreeMap<String, u32> = heaps::bindings(&native.sampler_heaps).collect();
+    let mut places = BTreeMap::new();
+    let mut variables = Vec::new();
+    for instruction in instructions(words) {
+        match (instruction[0] & 0xffff, instruction) {
+            (OP_NAME, [_, id, name @ ..]) => {
+                places.extend(by_name.get(&text(name)).map(|binding| (*id, *binding)));
+            }
+            (OP_DECORATE, [_, id, DESCRIPTOR_SET, _]) => variables.push(*id),
+            _ => {}
+        }
+    }
+    // A struct may be called as its variable is: it has no descriptor set.
+    places.retain(|id, _| variables.contains(id));
+    places
+}
+
+/// The location that the semantic `LOCn` of each variable says.
+fn locations(words: &[u32]) -> Result<BTreeMap<u32, u32>, String> {
+    let mut locations = BTreeMap::new();
+    for instruction in instructions(words) {
+        if let [head, id, USER_SEMANTIC, name @ ..] = instruction
+            && head & 0xffff == OP_DECORATE_STRING
+            && let Some(number) = text(name).strip_prefix("LOC")
+        {
+            let number = number.parse().map_err(|_| format!("the semantic LOC{number}"))?;
+            locations.insert(*id, number);
+        }
+    }
+    Ok(locations)
+}
+
+fn text(words: &[u32]) -> String {
+    let bytes = words.iter().flat_map(|word| word.to_le_bytes()).take_while(|byte| *byte != 0);
+    String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
+}

@@ -1,0 +1,314 @@
+//! Runs kernels through wgpu, without a surface. What the GPU executors share.
+
+mod draw;
+pub mod emitted;
+mod fixtures;
+mod heaps;
+mod hlsl;
+mod open;
+mod opengl;
+mod passthrough;
+mod pipeline;
+
+pub use open::{Named, Shaders, Wanted, open};
+pub use opengl::{Api, OpenGl};
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use super::frame::{Drawing, Frame};
+use super::kernel::{ECHO, INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
+use super::{Session, draws_none};
+use crate::bundle::Stage;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::emit::Emitted;
+use passthrough::Binary;
+use pipeline::Prepared;
+
+/// Longest wait for one draw: a hundred thousand times what one takes.
+const PATIENCE: Duration = Duration::from_secs(60);
+const TARGET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+
+/// An open device.
+pub struct Gpu {
+    adapter: String,
+    shaders: Shaders,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    /// Errors that no scope caught, and the loss of the device.
+    faults: Arc<Mutex<Vec<String>>>,
+    vertex: wgpu::ShaderModule,
+    prepared: HashMap<u64, Prepared>,
+    runs: u32,
+}
+
+impl Session for Gpu {
+    fn adapter(&self) -> String {
+        self.adapter.clone()
+    }
+
+    fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+    }
+
+    fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        match self.shaders {
+            Shaders::Translated => self.frames(drawing),
+            Shaders::Emitted(_) => Err(draws_none()),
+        }
+    }
+}
+
+/// The results of as many draws as the inputs take; `draw` is given the words and the count of one.
+pub fn batched(
+    kernel: &Kernel,
+    inputs: &[u32],
+    mut draw: impl FnMut(&[u32], u32) -> Result<Vec<u32>, Diagnostic>,
+) -> Result<Vec<u32>, Diagnostic> {
+    if kernel.input_words() == 0 {
+        return draw(&[], 1);
+    }
+    let stride = kernel.input_words() as usize;
+    let mut results = Vec::new();
+    for batch in inputs.chunks(kernel.batch() as usize * stride) {
+        results.extend(draw(batch, (batch.len() / stride) as u32)?);
+    }
+    Ok(results)
+}
+
+impl Gpu {
+    /// One draw: the result words of `count` invocations.
+    fn draw(
+        &mut self,
+        kernel: &Kernel,
+        inputs: &[u32],
+        count: u32,
+    ) -> Result<Vec<u32>, Diagnostic> {
+        self.runs = self.runs.wrapping_add(1);
+        let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
+        let header = [count, rows * TARGET_WIDTH, self.runs, 0];
+        self.prepare(kernel)?;
+        let buffer =
+            self.guarded(|gpu| gpu.submit(kernel, &input_texels(kernel, inputs, header), rows))??;
+        let pixels = self.read(&buffer)?;
+        unpack(kernel, &pixels, header)
+    }
+
+    fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
+        if !self.prepared.contains_key(&kernel.id) {
+            let emitted = match self.shaders {
+                Shaders::Translated => None,
+                Shaders::Emitted(target) => {
+                    let Emitted { bytes, native } = emitted::emit(kernel, target)?;
+                    let heaps = pipeline::HEAPS;
+                    let binary = Binary::new(target, Stage::Fragment, &bytes, &native, heaps);
+                    Some(binary.map_err(failed)?)
+                }
+            };
+            let prepared = self.guarded(|gpu| {
+                Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref())
+            })?;
+            self.prepared.insert(kernel.id, prepared.map_err(failed)?);
+        }
+        Ok(())
+    }
+
+    fn submit(
+        &self,
+        kernel: &Kernel,
+        texels: &[u32],
+        rows: u32,
+    ) -> Result<wgpu::Buffer, Diagnostic> {
+        let prepared =
+            self.prepared.get(&kernel.id).ok_or_else(|| failed("the kernel was not prepared"))?;
+        let inputs = self.inputs(texels);
+        let target = self.texture(
+            TARGET_WIDTH,
+            rows,
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        );
+        let group = prepared.bind(&self.device, &inputs.create_view(&Default::default()));
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let cleared = f64::from(SENTINEL);
+        let load =
+            wgpu::LoadOp::Clear(wgpu::Color { r: cleared, g: cleared, b: cleared, a: cleared });
+        let view = target.create_view(&Default::default());
+        let attachment = wgpu::RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(attachment)],
+            ..Default::default()
+        });
+        pass.set_pipeline(&prepared.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        if let Some(heaps) = &prepared.heaps {
+            pass.set_bind_group(pipeline::HEAPS, heaps, &[]);
+        }
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        let buffer = self.download(&mut encoder, &target, rows);
+        self.queue.submit([encoder.finish()]);
+        Ok(buffer)
+    }
+
+    fn inputs(&self, texels: &[u32]) -> wgpu::Texture {
+        let rows = (texels.len() as u32 / 4).div_ceil(INPUT_WIDTH);
+        let texture = self.texture(
+            INPUT_WIDTH,
+            rows,
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        );
+        let bytes: Vec<u8> = texels.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(INPUT_WIDTH * 16),
+            rows_per_image: None,
+        };
+        let size = wgpu::Extent3d { width: INPUT_WIDTH, height: rows, depth_or_array_layers: 1 };
+        self.queue.write_texture(texture.as_image_copy(), &bytes, layout, size);
+        texture
+    }
+
+    fn texture(&self, width: u32, height: u32, usage: wgpu::TextureUsages) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TARGET_FORMAT,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    fn download(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::Texture,
+        rows: u32,
+    ) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(rows) * u64::from(TARGET_WIDTH) * 16,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(TARGET_WIDTH * 16),
+            rows_per_image: None,
+        };
+        let size = wgpu::Extent3d { width: TARGET_WIDTH, height: rows, depth_or_array_layers: 1 };
+        encoder.copy_texture_to_buffer(
+            target.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+            size,
+        );
+        buffer
+    }
+
+    fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, Diagnostic> {
+        let outcome = Arc::new(Mutex::new(None));
+        let sender = Arc::clone(&outcome);
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| *lock(&sender) = Some(result));
+        let waited = self
+            .device
+            .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) });
+        waited.map_err(|error| {
+            failed(format!("no answer within {} s: {error}", PATIENCE.as_secs()))
+        })?;
+        self.check_faults()?;
+        match lock(&outcome).take() {
+            Some(Ok(())) => {}
+            Some(Err(error)) => return Err(failed(error.to_string())),
+            None => return Err(failed("the result was never handed over")),
+        }
+        let view = buffer.get_mapped_range(..).map_err(|error| failed(format!("{error:?}")))?;
+        let words =
+            view.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+        drop(view);
+        buffer.unmap();
+        Ok(words)
+    }
+
+    /// Runs wgpu calls with every error caught, panics of the driver layer included.
+    fn guarded<T>(&self, calls: impl FnOnce(&Self) -> T) -> Result<T, Diagnostic> {
+        let filters = [
+            wgpu::ErrorFilter::Validation,
+            wgpu::ErrorFilter::Internal,
+            wgpu::ErrorFilter::OutOfMemory,
+        ];
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
+        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| calls(self)));
+        let caught: Vec<_> =
+            scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+        let value = outcome.map_err(|_| failed("wgpu or naga panicked"))?;
+        match caught.first() {
+            Some(error) => Err(failed(error.to_string())),
+            None => self.check_faults().map(|()| value),
+        }
+    }
+
+    fn check_faults(&self) -> Result<(), Diagnostic> {
+        match lock(&self.faults).first() {
+            Some(fault) => Err(failed(fault.clone())),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The input texture's words, header first, whole rows.
+pub fn input_texels(kernel: &Kernel, inputs: &[u32], header: [u32; 4]) -> Vec<u32> {
+    let stride = kernel.input_words().max(1) as usize;
+    let padding = (kernel.input_texels() * 4 - kernel.input_words()) as usize;
+    let mut texels = header.to_vec();
+    if kernel.input_words() > 0 {
+        for invocation in inputs.chunks(stride) {
+            texels.extend_from_slice(invocation);
+            texels.extend(std::iter::repeat_n(0, padding));
+        }
+    }
+    let row = INPUT_WIDTH as usize * 4;
+    texels.resize(texels.len().next_multiple_of(row), 0);
+    texels
+}
+
+/// The result words, once echo and padding prove that the target was written as meant.
+pub fn unpack(kernel: &Kernel, pixels: &[u32], header: [u32; 4]) -> Result<Vec<u32>, Diagnostic> {
+    let pixel = |index: usize| &pixels[index * 4..index * 4 + 4];
+    let last = header[1] as usize - 1;
+    for index in [0, last] {
+        if pixel(index) != [header[0], header[1], header[2], ECHO ^ index as u32] {
+            let found = pixel(index);
+            return Err(failed(format!(
+                "pixel {index} of {last} echoes {found:08x?}: the target was not written as laid out"
+            )));
+        }
+    }
+    let texels = kernel.result_texels() as usize;
+    let end = 1 + header[0] as usize * texels;
+    if (1..end).any(|index| pixel(index) == [SENTINEL; 4]) {
+        return Err(failed("a pixel was never written"));
+    }
+    if (end..last).any(|index| pixel(index) != pixel(end - texels + (index - end) % texels)) {
+        return Err(failed("the padding does not repeat the last invocation"));
+    }
+    let words = kernel.result_words() as usize;
+    Ok((0..header[0] as usize)
+        .flat_map(|index| pixels[(1 + index * texels) * 4..].iter().take(words).copied())
+        .collect())
+}
+
+fn failed(message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, message)
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

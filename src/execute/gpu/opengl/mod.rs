@@ -1,0 +1,231 @@
+//! Emitted GLSL on OpenGL and OpenGL ES themselves, as it is.
+//!
+//! Why not through wgpu: its GL backend takes a shader's text as it is, but learns which sampler
+//! belongs to which texture only from its own translation, so that shadow lookups cannot work;
+//! and it opens one kind of context only.
+
+mod context;
+mod program;
+mod texture;
+
+pub use context::Api;
+
+use std::collections::HashMap;
+
+use glow::HasContext as _;
+
+use super::{emitted, failed, input_texels, unpack};
+use crate::bundle::{Combined, Target};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::emit::Emitted;
+use crate::execute::Session;
+use crate::execute::fixture::{Fixture, Sampler};
+use crate::execute::kernel::{INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
+use context::Context;
+
+/// Group and binding of a kernel's input texture.
+const INPUTS: [u32; 2] = [0, 0];
+
+/// A context that runs the texts of one target.
+pub struct OpenGl {
+    context: Context,
+    target: Target,
+    kept: HashMap<u64, Kept>,
+    runs: u32,
+}
+
+/// What a kernel keeps: the program, the unit of its inputs, and the fixtures on their units.
+struct Kept {
+    program: glow::Program,
+    inputs: u32,
+    units: Vec<Unit>,
+}
+
+/// A texture unit and what is on it.
+struct Unit {
+    index: u32,
+    target: u32,
+    texture: glow::Texture,
+    sampler: Option<glow::Sampler>,
+}
+
+impl OpenGl {
+    /// Opens a context for the texts of a target; the error is in words.
+    pub fn open(api: Api, target: Target) -> Result<Self, String> {
+        Ok(Self { context: Context::open(api)?, target, kept: HashMap::new(), runs: 0 })
+    }
+
+    fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
+        if !self.kept.contains_key(&kernel.id) {
+            let emitted = emitted::emit(kernel, self.target)?;
+            let missing =
+                self.context.with(|gl| Ok(program::missing_extension(gl, &emitted.bytes)));
+            if let Some(name) = missing.map_err(failed)? {
+                let message = format!("the driver has no {name}, which the emitted text requires");
+                return Err(Diagnostic::error(codes::EXECUTOR_LACKS, message));
+            }
+            let vertex = program::triangle(self.context.api());
+            let kept = self.context.with(|gl| keep(gl, kernel, &vertex, &emitted));
+            self.kept.insert(kernel.id, kept.map_err(failed)?);
+        }
+        Ok(())
+    }
+
+    fn draw(
+        &mut self,
+        kernel: &Kernel,
+        inputs: &[u32],
+        count: u32,
+    ) -> Result<Vec<u32>, Diagnostic> {
+        self.runs = self.runs.wrapping_add(1);
+        let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
+        let header = [count, rows * TARGET_WIDTH, self.runs, 0];
+        self.prepare(kernel)?;
+        let kept =
+            self.kept.get(&kernel.id).ok_or_else(|| failed("the kernel was not prepared"))?;
+        let (texels, api) = (input_texels(kernel, inputs, header), self.context.api());
+        let pixels = self.context.with(|gl| draw(gl, api, kept, &texels, rows));
+        unpack(kernel, &pixels.map_err(failed)?, header)
+    }
+}
+
+impl Session for OpenGl {
+    fn adapter(&self) -> String {
+        self.context.adapter()
+    }
+
+    fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        super::batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+    }
+}
+
+fn keep(
+    gl: &glow::Context,
+    kernel: &Kernel,
+    vertex: &str,
+    emitted: &Emitted,
+) -> Result<Kept, String> {
+    let text = str::from_utf8(&emitted.bytes).map_err(|error| error.to_string())?;
+    let program = program::link(gl, vertex, text)?;
+    let (mut inputs, mut units) = (0, Vec::new());
+    for (order, combined) in emitted.native.combined.iter().enumerate() {
+        let index = unit(gl, program, emitted, combined, order as u32);
+        if combined.texture == INPUTS {
+            inputs = index;
+            continue;
+        }
+        let Some(Fixture::Texture(fixture)) = fixture(kernel, combined.texture) else {
+            return Err(format!("`{}` has no fixture", combined.name));
+        };
+        let sampler = match combined.sampler.and_then(|place| fixture_of_sampler(kernel, place)) {
+            Some(settings) => Some(texture::sampler(gl, settings)?),
+            None => None,
+        };
+        let (target, texture) = texture::upload(gl, fixture)?;
+        units.push(Unit { index, target, texture, sampler });
+    }
+    program::check(gl)?;
+    Ok(Kept { program, inputs, units })
+}
+
+/// The unit that the text declares, or where the language cannot say, the next one by name.
+fn unit(
+    gl: &glow::Context,
+    program: glow::Program,
+    emitted: &Emitted,
+    combined: &Combined,
+    order: u32,
+) -> u32 {
+    let slot =
+        emitted.native.slots.iter().find(|slot| [slot.group, slot.binding] == combined.texture);
+    slot.and_then(|slot| slot.index).unwrap_or_else(|| {
+        program::set_unit(gl, program, &combined.name, order);
+        order
+    })
+}
+
+fn fixture(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<&Fixture> {
+    kernel.resources().find(|other| other.binding == binding).map(|resource| &*resource.fixture)
+}
+
+fn fixture_of_sampler(kernel: &Kernel, place: [u32; 2]) -> Option<Sampler> {
+    match fixture(kernel, place)? {
+        Fixture::Sampler(settings) => Some(*settings),
+        Fixture::Texture(_) => None,
+    }
+}
+
+fn draw(
+    gl: &glow::Context,
+    api: Api,
+    kept: &Kept,
+    texels: &[u32],
+    rows: u32,
+) -> Result<Vec<u32>, String> {
+    let bytes: Vec<u8> = texels.iter().flat_map(|word| word.to_ne_bytes()).collect();
+    let mut pixels = vec![0u8; (rows * TARGET_WIDTH) as usize * 16];
+    let (width, height) = (TARGET_WIDTH as i32, rows as i32);
+    // SAFETY: the context is current, every name is of it, and `pixels` holds the whole target.
+    unsafe {
+        let target = texture::words(gl, [TARGET_WIDTH, rows], None)?;
+        let height_of_inputs = texels.len() as u32 / 4 / INPUT_WIDTH;
+        let inputs = texture::words(gl, [INPUT_WIDTH, height_of_inputs], Some(&bytes))?;
+        let (frame, array) = (gl.create_framebuffer()?, gl.create_vertex_array()?);
+        gl.bind_framebuffer(glow::FRAMEBUFFER, Some(frame));
+        gl.framebuffer_texture_2d(
+            glow::FRAMEBUFFER,
+            glow::COLOR_ATTACHMENT0,
+            glow::TEXTURE_2D,
+            Some(target),
+            0,
+        );
+        gl.draw_buffers(&[glow::COLOR_ATTACHMENT0]);
+        gl.read_buffer(glow::COLOR_ATTACHMENT0);
+        plain_state(gl, api);
+        gl.viewport(0, 0, width, height);
+        gl.clear_buffer_u32_slice(glow::COLOR, 0, &[SENTINEL; 4]);
+        bind(gl, kept, inputs);
+        gl.bind_vertex_array(Some(array));
+        gl.use_program(Some(kept.program));
+        gl.draw_arrays(glow::TRIANGLES, 0, 3);
+        let target_bytes = glow::PixelPackData::Slice(Some(&mut pixels));
+        gl.read_pixels(0, 0, width, height, glow::RGBA_INTEGER, glow::UNSIGNED_INT, target_bytes);
+        gl.bind_framebuffer(glow::FRAMEBUFFER, None);
+        gl.delete_framebuffer(frame);
+        gl.delete_vertex_array(array);
+        gl.delete_texture(target);
+        gl.delete_texture(inputs);
+    }
+    program::check(gl)?;
+    Ok(pixels.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect())
+}
+
+/// Every fragment is written, and cubes are filtered across their edges as WebGPU means it:
+/// OpenGL does so only where it is told to, OpenGL ES 3 knows no other way.
+fn plain_state(gl: &glow::Context, api: Api) {
+    let off =
+        [glow::SCISSOR_TEST, glow::DEPTH_TEST, glow::STENCIL_TEST, glow::CULL_FACE, glow::BLEND];
+    // SAFETY: the context is current.
+    unsafe {
+        off.iter().for_each(|state| gl.disable(*state));
+        gl.color_mask(true, true, true, true);
+        if matches!(api, Api::Core(..)) {
+            gl.enable(glow::TEXTURE_CUBE_MAP_SEAMLESS);
+        }
+    }
+}
+
+/// Puts the inputs and the fixtures on their units.
+fn bind(gl: &glow::Context, kept: &Kept, inputs: glow::Texture) {
+    // SAFETY: the context is current and every name is of it.
+    unsafe {
+        gl.active_texture(glow::TEXTURE0 + kept.inputs);
+        gl.bind_texture(glow::TEXTURE_2D, Some(inputs));
+        gl.bind_sampler(kept.inputs, None);
+        for unit in &kept.units {
+            gl.active_texture(glow::TEXTURE0 + unit.index);
+            gl.bind_texture(unit.target, Some(unit.texture));
+            gl.bind_sampler(unit.index, unit.sampler);
+        }
+    }
+}

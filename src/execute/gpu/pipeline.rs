@@ -1,0 +1,202 @@
+//! A kernel's pipeline and the bindings that stay the same over its draws.
+
+use super::passthrough::Binary;
+use super::{TARGET_FORMAT, fixtures, heaps};
+use crate::execute::fixture::{Fixture, Sampler};
+use crate::execute::kernel::{ENTRY, Kernel, ResourceClass};
+
+/// Everything of a kernel that a device keeps.
+pub struct Prepared {
+    pub pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    resources: Vec<(u32, Bound)>,
+    /// Group [`HEAPS`], where the shader takes its samplers from heaps.
+    pub heaps: Option<wgpu::BindGroup>,
+}
+
+/// The bind group of sampler heaps: the kernel's own is the first.
+pub const HEAPS: u32 = 1;
+
+enum Bound {
+    View(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+}
+
+impl Prepared {
+    /// Compiles the kernel, of which `emitted` is the shader if it is given to the driver as it
+    /// is, and uploads its fixtures. Errors of the device go to its error scopes.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        vertex: &wgpu::ShaderModule,
+        kernel: &Kernel,
+        emitted: Option<&Binary>,
+    ) -> Result<Self, String> {
+        let layout = layout(device, kernel);
+        let fragment = match emitted {
+            Some(emitted) => emitted.module(device, &kernel.name),
+            None => {
+                let source =
+                    wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(kernel.module.clone()));
+                device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(&kernel.name),
+                    source,
+                })
+            }
+        };
+        let heaps = match emitted {
+            Some(emitted) if !emitted.heaps.is_empty() => {
+                Some(heaps::bind(device, &emitted.heaps, &|place| sampler(kernel, place))?)
+            }
+            _ => None,
+        };
+        let layouts: Vec<_> =
+            std::iter::once(&layout).chain(heaps.as_ref().map(|(layout, _)| layout)).collect();
+        let entry = emitted.map_or(ENTRY, Binary::entry);
+        let pipeline =
+            pipeline(device, &layouts, vertex, (&fragment, entry), Some(TARGET_FORMAT), None);
+        let resources = kernel
+            .resources()
+            .map(|resource| (resource.binding, bound(device, queue, &resource.fixture)))
+            .collect();
+        Ok(Self { pipeline, layout, resources, heaps: heaps.map(|(_, group)| group) })
+    }
+
+    /// The bind group of one draw.
+    pub fn bind(&self, device: &wgpu::Device, inputs: &wgpu::TextureView) -> wgpu::BindGroup {
+        let first = wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::TextureView(inputs),
+        };
+        let rest = self.resources.iter().map(|(binding, bound)| wgpu::BindGroupEntry {
+            binding: *binding,
+            resource: match bound {
+                Bound::View(view) => wgpu::BindingResource::TextureView(view),
+                Bound::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+            },
+        });
+        let entries: Vec<_> = std::iter::once(first).chain(rest).collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.layout,
+            entries: &entries,
+        })
+    }
+}
+
+/// A pipeline that draws one full-screen triangle.
+pub fn pipeline(
+    device: &wgpu::Device,
+    layouts: &[&wgpu::BindGroupLayout],
+    vertex: &wgpu::ShaderModule,
+    fragment: (&wgpu::ShaderModule, &str),
+    color: Option<wgpu::TextureFormat>,
+    depth: Option<wgpu::TextureFormat>,
+) -> wgpu::RenderPipeline {
+    let layouts: Vec<_> = layouts.iter().copied().map(Some).collect();
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &layouts,
+        immediate_size: 0,
+    });
+    let targets: Vec<_> =
+        color.map(|format| Some(wgpu::ColorTargetState::from(format))).into_iter().collect();
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: vertex,
+            entry_point: Some("triangle"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: depth.map(|format| wgpu::DepthStencilState {
+            format,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: fragment.0,
+            entry_point: Some(fragment.1),
+            compilation_options: Default::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn sampler(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<Sampler> {
+    let resource = kernel.resources().find(|resource| resource.binding == binding)?;
+    match &*resource.fixture {
+        Fixture::Sampler(settings) => Some(*settings),
+        Fixture::Texture(_) => None,
+    }
+}
+
+/// Samplers have a place here in any case: wgpu numbers bindings without gaps, and an emitted
+/// shader has the author's numbers.
+fn layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
+    let inputs = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
+    // Not every device filters textures of f32: only kernels that filter colours need one that does.
+    let filterable = kernel
+        .resources()
+        .any(|resource| matches!(&*resource.fixture, Fixture::Sampler(sampler) if sampler.linear && sampler.compare.is_none()));
+    let rest = kernel.resources().map(|resource| {
+        (resource.binding, binding_type(resource.class, &resource.fixture, filterable))
+    });
+    let entries: Vec<_> = std::iter::once((0, inputs))
+        .chain(rest)
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        })
+        .collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &entries,
+    })
+}
+
+fn binding_type(class: ResourceClass, fixture: &Fixture, filterable: bool) -> wgpu::BindingType {
+    match class {
+        ResourceClass::Sampler { comparison: true } => {
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)
+        }
+        ResourceClass::Sampler { comparison: false } => wgpu::BindingType::Sampler(match fixture {
+            Fixture::Sampler(sampler) if sampler.linear => wgpu::SamplerBindingType::Filtering,
+            _ => wgpu::SamplerBindingType::NonFiltering,
+        }),
+        ResourceClass::Texture { dim, class, .. } => {
+            let dimension = match dim {
+                naga::ImageDimension::Cube => wgpu::TextureViewDimension::Cube,
+                _ => wgpu::TextureViewDimension::D2,
+            };
+            let sample = match class {
+                naga::ImageClass::Depth { .. } => wgpu::TextureSampleType::Depth,
+                _ => wgpu::TextureSampleType::Float { filterable },
+            };
+            texture_type(sample, dimension)
+        }
+    }
+}
+
+fn texture_type(
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindingType {
+    wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
+}
+
+fn bound(device: &wgpu::Device, queue: &wgpu::Queue, fixture: &Fixture) -> Bound {
+    match fixture {
+        Fixture::Texture(texture) => Bound::View(fixtures::upload(device, queue, texture)),
+        Fixture::Sampler(sampler) => Bound::Sampler(fixtures::sampler(device, *sampler)),
+    }
+}

@@ -1,0 +1,180 @@
+//! Kernels on the crate's own interpreter, in any of its numbers.
+
+use super::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use super::kernel::{Kernel, ParameterKind};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::eval::{self, FunctionId, Machine, Number, Program, Resources};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Module, ScalarKind};
+
+/// A kernel's module, lowered.
+pub struct Interpreter {
+    program: Program,
+    function: FunctionId,
+    /// What each slot of the arguments takes.
+    slots: Vec<Slot>,
+    resources: Resources,
+}
+
+/// An argument slot of the function.
+#[derive(Clone, Copy)]
+enum Slot {
+    /// The next word of the row, of that kind.
+    Word(ScalarKind),
+    /// The handle of a texture or sampler.
+    Handle(u32),
+}
+
+/// Memory for a kernel's calls in one kind of number.
+pub struct Calls<'p, N> {
+    interpreter: &'p Interpreter,
+    /// The machine, for its findings and limits.
+    pub machine: Machine<'p, N>,
+    arguments: Vec<N>,
+}
+
+impl Interpreter {
+    /// Validates and lowers the kernel's module.
+    pub fn new(kernel: &Kernel) -> Result<Self, Diagnostic> {
+        Self::of(kernel, &kernel.module)
+    }
+
+    /// As [`Self::new`], with another module that has the kernel's function at the same handle.
+    pub fn of(kernel: &Kernel, module: &Module) -> Result<Self, Diagnostic> {
+        let validated =
+            Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module);
+        let info = validated.map_err(|error| {
+            Diagnostic::error(codes::EXECUTOR_FAILED, format!("the kernel is not valid: {error}"))
+        })?;
+        let program = Program::new(module, &info).map_err(failed)?;
+        let slots = slots(kernel, &program)?;
+        Ok(Self {
+            function: FunctionId::from(kernel.function),
+            program,
+            slots,
+            resources: resources(kernel),
+        })
+    }
+
+    /// The lowered module.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// Memory to call it with; the calls of one thread.
+    pub fn calls<N: Number>(&self) -> Result<Calls<'_, N>, Diagnostic> {
+        let mut machine = Machine::new(&self.program).map_err(failed)?;
+        machine.bind(self.resources.clone()).map_err(failed)?;
+        Ok(Calls { interpreter: self, machine, arguments: Vec::new() })
+    }
+}
+
+impl<N: Number> Calls<'_, N> {
+    /// The flattened result of one row of words.
+    pub fn call(&mut self, row: &[u32]) -> Result<&[N], Diagnostic> {
+        let mut words = row.iter().copied();
+        self.arguments.clear();
+        self.arguments.extend(self.interpreter.slots.iter().map(|slot| match slot {
+            Slot::Handle(handle) => N::from_word(*handle),
+            Slot::Word(kind) => number(words.next().unwrap_or(0), *kind),
+        }));
+        self.machine.call(self.interpreter.function, &self.arguments).map_err(failed)
+    }
+}
+
+/// A slot from a word of the kind.
+fn number<N: Number>(word: u32, kind: ScalarKind) -> N {
+    match kind {
+        ScalarKind::Float => N::from_f64(f64::from(f32::from_bits(word))),
+        _ => N::from_word(word),
+    }
+}
+
+/// A slot as the number it stands for.
+pub fn value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
+    match kind {
+        ScalarKind::Float => slot.value(),
+        _ => super::kernel::number(slot.word(), kind),
+    }
+}
+
+/// A slot as the word that f32 and integers have for it.
+pub fn word_of<N: Number>(slot: N, kind: ScalarKind) -> u32 {
+    match kind {
+        ScalarKind::Float => slot.bits(),
+        _ => slot.word(),
+    }
+}
+
+fn slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagnostic> {
+    let mut slots = Vec::new();
+    for parameter in &kernel.parameters {
+        match &parameter.kind {
+            ParameterKind::Words { shape, .. } => {
+                slots.extend(shape.kinds().into_iter().map(Slot::Word))
+            }
+            ParameterKind::Resource(resource) => {
+                let unbound = || {
+                    Diagnostic::error(
+                        codes::EVAL_UNBOUND,
+                        format!("the kernel has no binding {}", resource.binding),
+                    )
+                };
+                slots.push(Slot::Handle(program.handle(0, resource.binding).ok_or_else(unbound)?));
+            }
+        }
+    }
+    Ok(slots)
+}
+
+/// The fixtures of a kernel at their bindings.
+pub fn resources(kernel: &Kernel) -> Resources {
+    let mut resources = Resources::default();
+    for resource in kernel.resources() {
+        let place = (0, resource.binding);
+        match &*resource.fixture {
+            Fixture::Texture(fixture) => drop(resources.textures.insert(place, fixture.into())),
+            Fixture::Sampler(fixture) => drop(resources.samplers.insert(place, (*fixture).into())),
+        }
+    }
+    resources
+}
+
+impl From<&Texture> for eval::Texture {
+    fn from(fixture: &Texture) -> Self {
+        let shape = match fixture.kind {
+            TextureKind::Depth2d | TextureKind::Color2d => eval::Shape::D2,
+            TextureKind::DepthCube | TextureKind::ColorCube => eval::Shape::Cube,
+        };
+        let texel = |channels: &[f32]| {
+            std::array::from_fn(|channel| {
+                channels.get(channel).map_or(0.0, |value| f64::from(*value))
+            })
+        };
+        let texels = fixture.texels.chunks(fixture.kind.channels()).map(texel).collect();
+        Self::flat(shape, fixture.width, fixture.height, fixture.kind.layers(), texels)
+    }
+}
+
+impl From<Sampler> for eval::Sampler {
+    fn from(fixture: Sampler) -> Self {
+        let address = match fixture.address {
+            Address::Clamp => eval::Address::Clamp,
+            Address::Repeat => eval::Address::Repeat,
+            Address::Mirror => eval::Address::Mirror,
+        };
+        let filter = if fixture.linear { eval::Filter::Linear } else { eval::Filter::Nearest };
+        let compare = fixture.compare.map(|compare| match compare {
+            Compare::Less => eval::Compare::Less,
+            Compare::LessEqual => eval::Compare::LessEqual,
+            Compare::Greater => eval::Compare::Greater,
+            Compare::GreaterEqual => eval::Compare::GreaterEqual,
+        });
+        Self { address: [address; 3], mag: filter, min: filter, compare, ..Self::default() }
+    }
+}
+
+/// The text naga read is the kernel's, not the author's: no place is given.
+pub fn failed(error: eval::Error) -> Diagnostic {
+    Diagnostic::error(error.code, error.message)
+}

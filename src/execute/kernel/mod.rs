@@ -1,0 +1,299 @@
+//! A function under test, wrapped into a fragment shader that every executor can run.
+//!
+//! One invocation is one call. Its arguments lie as 32-bit words in a `Rgba32Uint` texture, its
+//! result goes as words to a `Rgba32Uint` target: exact to the bit, renderable on every backend
+//! (`Rgba32Float` is not, on the GL driver of Mesa), and free of storage buffers, whose values
+//! have wrong derivatives along the diagonal of a full-screen triangle on software drivers.
+//!
+//! | texture | texel | holds |
+//! |---|---|---|
+//! | inputs, [`INPUT_WIDTH`] wide | 0 | count of invocations, pixels of the target, run number, 0 |
+//! | | `1 + i*t ..` | words of invocation `i`, in `t` = [`Kernel::input_texels`] texels |
+//! | target, [`TARGET_WIDTH`] wide | first, last | echo: the header with `ECHO ^ index` as last word |
+//! | | `1 + i*p + j` | words `4j..4j+4` of invocation `i`, `p` = [`Kernel::result_texels`] |
+//!
+//! Pixels after the last invocation repeat it: no fragment returns early.
+
+mod shape;
+mod wrap;
+
+pub use shape::Shape;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use naga::{Function, Handle, ImageClass, ImageDimension, Module, ScalarKind, TypeInner};
+
+use crate::diagnostic::{Diagnostic, codes};
+use crate::execute::fixture::Fixture;
+
+/// Texels in a row of the input texture.
+pub const INPUT_WIDTH: u32 = 1024;
+/// Pixels in a row of the target: rows of 4,096 bytes, which need no padding when copied.
+pub const TARGET_WIDTH: u32 = 256;
+/// Rows that every backend allows for a texture.
+pub const MAX_ROWS: u32 = 8192;
+/// Invocations of one draw, if their words fit.
+pub const BATCH: u32 = 65_536;
+/// Last word of an echo pixel, exclusive-or its index.
+pub const ECHO: u32 = 0x6c61_6d70;
+/// Every word of a pixel that nothing was written to.
+pub const SENTINEL: u32 = 0xdead_beef;
+/// Name of the fragment entry point.
+pub const ENTRY: &str = "lamplight_kernel";
+
+/// A parameter of the function, in the order of declaration.
+#[derive(Debug, Clone)]
+pub struct Parameter {
+    pub name: String,
+    pub kind: ParameterKind,
+}
+
+/// Where a parameter's value comes from.
+#[derive(Debug, Clone)]
+pub enum ParameterKind {
+    /// Words of the input, from `offset` on.
+    Words { offset: u32, shape: Shape },
+    /// A global binding, filled from a fixture.
+    Resource(Resource),
+}
+
+/// A texture or a sampler bound in group 0.
+#[derive(Debug, Clone)]
+pub struct Resource {
+    pub binding: u32,
+    pub class: ResourceClass,
+    pub fixture: Arc<Fixture>,
+}
+
+/// What the shader declares the binding to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ResourceClass {
+    Texture { dim: ImageDimension, arrayed: bool, class: ImageClass },
+    Sampler { comparison: bool },
+}
+
+/// A function with an entry point around it, ready for any [`super::Session`].
+#[derive(Debug)]
+pub struct Kernel {
+    /// Distinguishes kernels within a process: sessions keep pipelines by it.
+    pub id: u64,
+    /// Name of the function under test.
+    pub name: String,
+    /// The module with [`ENTRY`] as its only entry point.
+    pub module: Module,
+    /// The function under test in `module`.
+    pub function: Handle<Function>,
+    pub parameters: Vec<Parameter>,
+    /// The function's result, then what it left behind its pointer parameters.
+    pub results: Vec<Shape>,
+}
+
+impl Kernel {
+    /// Words of one invocation's arguments.
+    pub fn input_words(&self) -> u32 {
+        self.words().map(|(_, shape)| shape.words()).sum()
+    }
+
+    /// Words of one invocation's results.
+    pub fn result_words(&self) -> u32 {
+        self.results.iter().map(Shape::words).sum()
+    }
+
+    /// Input texels of one invocation.
+    pub fn input_texels(&self) -> u32 {
+        self.input_words().div_ceil(4)
+    }
+
+    /// Pixels of one invocation.
+    pub fn result_texels(&self) -> u32 {
+        self.result_words().div_ceil(4).max(1)
+    }
+
+    /// Scalar kind of each result word.
+    pub fn result_kinds(&self) -> Vec<ScalarKind> {
+        self.results.iter().flat_map(Shape::kinds).collect()
+    }
+
+    /// Parameters that are words: name and shape, in the order of their words.
+    pub fn words(&self) -> impl Iterator<Item = (&str, &Shape)> {
+        self.parameters.iter().filter_map(|parameter| match &parameter.kind {
+            ParameterKind::Words { shape, .. } => Some((parameter.name.as_str(), shape)),
+            ParameterKind::Resource(_) => None,
+        })
+    }
+
+    /// Parameters that are bindings.
+    pub fn resources(&self) -> impl Iterator<Item = &Resource> {
+        self.parameters.iter().filter_map(|parameter| match &parameter.kind {
+            ParameterKind::Resource(resource) => Some(resource),
+            ParameterKind::Words { .. } => None,
+        })
+    }
+
+    /// Most invocations of one draw.
+    pub fn batch(&self) -> u32 {
+        let by_inputs = (MAX_ROWS * INPUT_WIDTH - 1) / self.input_texels().max(1);
+        let by_results = (MAX_ROWS * TARGET_WIDTH - 2) / self.result_texels();
+        BATCH.min(by_inputs).min(by_results)
+    }
+}
+
+/// Wraps `function` of a module; textures and samplers among its parameters are bound to the
+/// fixtures of their names.
+///
+/// Errors: no such function, a parameter or result that is no 32-bit data, a missing fixture.
+pub fn build(
+    module: &Module,
+    function: &str,
+    fixtures: &BTreeMap<String, Arc<Fixture>>,
+) -> Result<Kernel, Diagnostic> {
+    let handle = find(module, function)?;
+    let parameters = parameters(module, handle, fixtures)?;
+    let results = results(module, handle)?;
+    let kernel = Kernel {
+        id: next_id(),
+        name: function.to_owned(),
+        module: Module::default(),
+        function: handle,
+        parameters,
+        results,
+    };
+    if kernel.batch() == 0 {
+        return Err(Diagnostic::error(
+            codes::UNTESTABLE_FUNCTION,
+            format!("the words of `{function}` do not fit into a texture"),
+        ));
+    }
+    let (module, function) = wrap::wrap(module, &kernel)?;
+    Ok(Kernel { module, function, ..kernel })
+}
+
+fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+fn find(module: &Module, name: &str) -> Result<Handle<Function>, Diagnostic> {
+    let named = |function: &Function| function.name.as_deref() == Some(name);
+    module
+        .functions
+        .iter()
+        .find(|(_, function)| named(function))
+        .map(|(handle, _)| handle)
+        .ok_or_else(|| {
+            let known =
+                module.functions.iter().filter_map(|(_, function)| function.name.as_deref());
+            Diagnostic::error(codes::UNKNOWN_FUNCTION, format!("there is no function `{name}`"))
+                .suggest(name, known)
+        })
+}
+
+fn parameters(
+    module: &Module,
+    function: Handle<Function>,
+    fixtures: &BTreeMap<String, Arc<Fixture>>,
+) -> Result<Vec<Parameter>, Diagnostic> {
+    let (mut offset, mut binding) = (0, 0);
+    let mut found = Vec::new();
+    for (index, argument) in module.functions[function].arguments.iter().enumerate() {
+        let name = argument.name.clone().unwrap_or_else(|| format!("parameter {index}"));
+        let kind = match resource_class(module, argument.ty) {
+            Some(class) => {
+                binding += 1;
+                ParameterKind::Resource(Resource {
+                    binding,
+                    class,
+                    fixture: fixture(fixtures, &name, class)?,
+                })
+            }
+            None => {
+                let shape = Shape::of(module, pointee(module, argument.ty))
+                    .ok_or_else(|| untestable(&name))?;
+                let first = offset;
+                offset = shape.words().saturating_add(offset);
+                ParameterKind::Words { offset: first, shape }
+            }
+        };
+        found.push(Parameter { name, kind });
+    }
+    Ok(found)
+}
+
+fn results(module: &Module, function: Handle<Function>) -> Result<Vec<Shape>, Diagnostic> {
+    let function = &module.functions[function];
+    let returned = function.result.as_ref().map(|result| result.ty);
+    let written =
+        function.arguments.iter().filter(|argument| pointee(module, argument.ty) != argument.ty);
+    let types = returned.into_iter().chain(written.map(|argument| pointee(module, argument.ty)));
+    types.map(|ty| Shape::of(module, ty).ok_or_else(|| untestable("result"))).collect()
+}
+
+/// The type behind a pointer to a local variable, or the type itself.
+fn pointee(module: &Module, ty: Handle<naga::Type>) -> Handle<naga::Type> {
+    match module.types[ty].inner {
+        TypeInner::Pointer { base, space: naga::AddressSpace::Function } => base,
+        _ => ty,
+    }
+}
+
+fn resource_class(module: &Module, ty: Handle<naga::Type>) -> Option<ResourceClass> {
+    match module.types[ty].inner {
+        TypeInner::Image { dim, arrayed, class } => {
+            Some(ResourceClass::Texture { dim, arrayed, class })
+        }
+        TypeInner::Sampler { comparison } => Some(ResourceClass::Sampler { comparison }),
+        _ => None,
+    }
+}
+
+fn fixture(
+    fixtures: &BTreeMap<String, Arc<Fixture>>,
+    name: &str,
+    class: ResourceClass,
+) -> Result<Arc<Fixture>, Diagnostic> {
+    let Some(found) = fixtures.get(name) else {
+        let error = Diagnostic::error(
+            codes::FIXTURE_MISMATCH,
+            format!("the parameter `{name}` needs a fixture"),
+        );
+        return Err(error.suggest(name, fixtures.keys().map(String::as_str)));
+    };
+    if !found.fits(class) {
+        let message = format!(
+            "the fixture of `{name}` is {}, the shader declares {}",
+            found.describe(),
+            describe(class)
+        );
+        return Err(Diagnostic::error(codes::FIXTURE_MISMATCH, message));
+    }
+    Ok(found.clone())
+}
+
+fn describe(class: ResourceClass) -> String {
+    match class {
+        ResourceClass::Texture { dim, arrayed, class } => {
+            format!("a texture ({dim:?}, arrayed: {arrayed}, {class:?})")
+        }
+        ResourceClass::Sampler { comparison: true } => "a comparison sampler".to_owned(),
+        ResourceClass::Sampler { comparison: false } => "a sampler".to_owned(),
+    }
+}
+
+fn untestable(name: &str) -> Diagnostic {
+    Diagnostic::error(
+        codes::UNTESTABLE_FUNCTION,
+        format!("`{name}` has a type that is not made of 32-bit values"),
+    )
+}
+
+/// One word as a number.
+pub fn number(word: u32, kind: ScalarKind) -> f64 {
+    match kind {
+        ScalarKind::Sint => f64::from(word as i32),
+        ScalarKind::Uint => f64::from(word),
+        ScalarKind::Bool => f64::from(u8::from(word != 0)),
+        _ => f64::from(f32::from_bits(word)),
+    }
+}

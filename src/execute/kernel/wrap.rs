@@ -1,0 +1,386 @@
+//! The fragment entry point around a function, in naga's representation: the same for modules
+//! that came from WESL and from GLSL.
+
+use naga::{
+    AddressSpace, BinaryOperator as Op, Binding, BuiltIn, EntryPoint, Expression, Function,
+    FunctionArgument, FunctionResult, GlobalVariable, Handle, ImageClass, ImageDimension, Literal,
+    LocalVariable, MathFunction, Module, Range, ResourceBinding, Scalar, ScalarKind, ShaderStage,
+    Span, Statement, SwizzleComponent, Type, TypeInner, VectorSize,
+};
+
+use super::{ECHO, ENTRY, INPUT_WIDTH, Kernel, ParameterKind, TARGET_WIDTH, pointee};
+use crate::diagnostic::{Diagnostic, codes};
+
+type Value = Handle<Expression>;
+
+/// The module with its entry points replaced by the kernel's, and the function's handle in it.
+pub fn wrap(module: &Module, kernel: &Kernel) -> Result<(Module, Handle<Function>), Diagnostic> {
+    let mut module = module.clone();
+    module.entry_points.clear();
+    let mut body = Body { module: &mut module, function: Function::default() };
+    body.main(kernel)?;
+    let function = body.function;
+    module.entry_points.push(EntryPoint {
+        name: ENTRY.to_owned(),
+        stage: ShaderStage::Fragment,
+        early_depth_test: None,
+        workgroup_size: [0; 3],
+        workgroup_size_overrides: None,
+        function,
+        mesh_info: None,
+        task_payload: None,
+        incoming_ray_payload: None,
+    });
+    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+    let function = called(&module).ok_or_else(|| lost(&kernel.name))?;
+    Ok((module, function))
+}
+
+/// The function that the entry point calls: compaction renumbers handles.
+fn called(module: &Module) -> Option<Handle<Function>> {
+    module.entry_points[0].function.body.iter().find_map(|statement| match statement {
+        Statement::Call { function, .. } => Some(*function),
+        _ => None,
+    })
+}
+
+fn lost(name: &str) -> Diagnostic {
+    Diagnostic::error(codes::UNTESTABLE_FUNCTION, format!("`{name}` could not be wrapped"))
+}
+
+/// The entry point while it grows.
+struct Body<'a> {
+    module: &'a mut Module,
+    function: Function,
+}
+
+/// What the fragment's position says.
+struct Place {
+    /// Pixel index in the target.
+    index: Value,
+    header: Value,
+    /// First input texel of the invocation.
+    first: Value,
+    /// Which four words of the result this pixel holds.
+    part: Value,
+}
+
+impl Body<'_> {
+    fn main(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
+        let position = self.vector(VectorSize::Quad, ScalarKind::Float);
+        let target = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let built_in = Binding::BuiltIn(BuiltIn::Position { invariant: false });
+        let color = Binding::Location {
+            location: 0,
+            interpolation: None,
+            sampling: None,
+            blend_src: None,
+            per_primitive: false,
+        };
+        self.function.arguments =
+            vec![FunctionArgument { name: None, ty: position, binding: Some(built_in) }];
+        self.function.result = Some(FunctionResult { ty: target, binding: Some(color) });
+
+        let inputs = self.inputs();
+        let place = self.place(inputs, kernel);
+        let words = self.arguments(inputs, &place, kernel);
+        let results = self.call(kernel, &words)?;
+        let chosen = self.choose(&results, place.part);
+        let value = self.echo(&place, chosen);
+        self.function.body.push(Statement::Return { value: Some(value) }, Span::UNDEFINED);
+        Ok(())
+    }
+
+    /// The input texture, binding 0.
+    fn inputs(&mut self) -> Value {
+        let class = ImageClass::Sampled { kind: ScalarKind::Uint, multi: false };
+        let ty = self.ty(TypeInner::Image { dim: ImageDimension::D2, arrayed: false, class });
+        self.global("lamplight_inputs", ty, 0)
+    }
+
+    fn global(&mut self, name: &str, ty: Handle<Type>, binding: u32) -> Value {
+        let variable = GlobalVariable {
+            name: Some(name.to_owned()),
+            space: AddressSpace::Handle,
+            binding: Some(ResourceBinding { group: 0, binding }),
+            ty,
+            init: None,
+            memory_decorations: naga::MemoryDecorations::empty(),
+        };
+        let variable = self.module.global_variables.append(variable, Span::UNDEFINED);
+        self.add(Expression::GlobalVariable(variable))
+    }
+
+    fn place(&mut self, inputs: Value, kernel: &Kernel) -> Place {
+        let position = self.add(Expression::FunctionArgument(0));
+        let x = self.component(position, 0);
+        let y = self.component(position, 1);
+        let x = self.convert(x, ScalarKind::Uint);
+        let y = self.convert(y, ScalarKind::Uint);
+        let width = self.literal(TARGET_WIDTH);
+        let row = self.binary(Op::Multiply, y, width);
+        let index = self.binary(Op::Add, row, x);
+        let zero = self.literal(0);
+        let header = self.load(inputs, zero);
+
+        let one = self.literal(1);
+        let echoed = self.math(MathFunction::Min, index, one);
+        let pixel = self.binary(Op::Subtract, index, echoed);
+        let pixels = self.literal(kernel.result_texels());
+        let wanted = self.binary(Op::Divide, pixel, pixels);
+        let part = self.binary(Op::Modulo, pixel, pixels);
+        let count = self.component(header, 0);
+        let last = self.binary(Op::Subtract, count, one);
+        let invocation = self.math(MathFunction::Min, wanted, last);
+        let texels = self.literal(kernel.input_texels());
+        let skipped = self.binary(Op::Multiply, invocation, texels);
+        let first = self.binary(Op::Add, skipped, one);
+        Place { index, header, first, part }
+    }
+
+    /// One texel of the input texture.
+    fn load(&mut self, inputs: Value, index: Value) -> Value {
+        let width = self.literal(INPUT_WIDTH);
+        let x = self.binary(Op::Modulo, index, width);
+        let y = self.binary(Op::Divide, index, width);
+        let pair = self.vector(VectorSize::Bi, ScalarKind::Uint);
+        let coordinate = self.add(Expression::Compose { ty: pair, components: vec![x, y] });
+        let level = Some(self.add(Expression::Literal(Literal::I32(0))));
+        self.add(Expression::ImageLoad {
+            image: inputs,
+            coordinate,
+            array_index: None,
+            sample: None,
+            level,
+        })
+    }
+
+    /// Every word of the invocation's arguments, as u32.
+    fn arguments(&mut self, inputs: Value, place: &Place, kernel: &Kernel) -> Vec<Value> {
+        let mut words = Vec::new();
+        for texel in 0..kernel.input_texels() {
+            let skipped = self.literal(texel);
+            let index = self.binary(Op::Add, place.first, skipped);
+            let loaded = self.load(inputs, index);
+            words.extend((0..4).map(|component| self.component(loaded, component)));
+        }
+        words
+    }
+
+    /// Calls the function and flattens what it returns and what it leaves behind pointers.
+    fn call(&mut self, kernel: &Kernel, words: &[Value]) -> Result<Vec<Value>, Diagnostic> {
+        let declared = self.module.functions[kernel.function].arguments.clone();
+        let returned =
+            self.module.functions[kernel.function].result.as_ref().map(|result| result.ty);
+        let mut arguments = Vec::new();
+        let mut written = Vec::new();
+        for (parameter, argument) in kernel.parameters.iter().zip(&declared) {
+            let value = match &parameter.kind {
+                ParameterKind::Resource(resource) => {
+                    self.global(&parameter.name, argument.ty, resource.binding)
+                }
+                ParameterKind::Words { offset, .. } => {
+                    let base = pointee(self.module, argument.ty);
+                    let value = self
+                        .unflatten(base, &mut words[*offset as usize..].iter().copied())
+                        .ok_or_else(|| lost(&kernel.name))?;
+                    if base == argument.ty {
+                        value
+                    } else {
+                        self.variable(base, value, &mut written)
+                    }
+                }
+            };
+            arguments.push(value);
+        }
+        let result = returned.map(|_| {
+            self.function
+                .expressions
+                .append(Expression::CallResult(kernel.function), Span::UNDEFINED)
+        });
+        self.function.body.push(
+            Statement::Call { function: kernel.function, arguments, result },
+            Span::UNDEFINED,
+        );
+        let mut flat = Vec::new();
+        if let (Some(result), Some(ty)) = (result, returned) {
+            self.flatten(result, ty, &mut flat);
+        }
+        for (pointer, ty) in written {
+            let value = self.add(Expression::Load { pointer });
+            self.flatten(value, ty, &mut flat);
+        }
+        Ok(flat)
+    }
+
+    /// A local variable that holds the value of a pointer parameter.
+    fn variable(
+        &mut self,
+        ty: Handle<Type>,
+        value: Value,
+        written: &mut Vec<(Value, Handle<Type>)>,
+    ) -> Value {
+        let local = self
+            .function
+            .local_variables
+            .append(LocalVariable { name: None, ty, init: None }, Span::UNDEFINED);
+        let pointer = self.add(Expression::LocalVariable(local));
+        self.function.body.push(Statement::Store { pointer, value }, Span::UNDEFINED);
+        written.push((pointer, ty));
+        pointer
+    }
+
+    /// A value of the type from words; `None` when the type is not made of words.
+    fn unflatten(
+        &mut self,
+        ty: Handle<Type>,
+        words: &mut dyn Iterator<Item = Value>,
+    ) -> Option<Value> {
+        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
+            TypeInner::Scalar(scalar) => {
+                return words.next().map(|word| self.word_as(word, scalar.kind));
+            }
+            TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
+            TypeInner::Matrix { columns, rows, scalar } => {
+                vec![self.vector(rows, scalar.kind); columns as usize]
+            }
+            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
+                vec![base; count.get() as usize]
+            }
+            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
+            _ => return None,
+        };
+        let components =
+            parts.into_iter().map(|part| self.unflatten(part, words)).collect::<Option<_>>()?;
+        Some(self.add(Expression::Compose { ty, components }))
+    }
+
+    fn word_as(&mut self, word: Value, kind: ScalarKind) -> Value {
+        match kind {
+            ScalarKind::Uint => word,
+            ScalarKind::Bool => {
+                let zero = self.literal(0);
+                self.binary(Op::NotEqual, word, zero)
+            }
+            _ => self.add(Expression::As { expr: word, kind, convert: None }),
+        }
+    }
+
+    /// Appends the words of a value.
+    fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
+        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
+            TypeInner::Scalar(scalar) => {
+                let word = self.as_word(value, scalar.kind);
+                return words.push(word);
+            }
+            TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
+            TypeInner::Matrix { columns, rows, scalar } => {
+                vec![self.vector(rows, scalar.kind); columns as usize]
+            }
+            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
+                vec![base; count.get() as usize]
+            }
+            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
+            _ => Vec::new(),
+        };
+        for (index, part) in parts.into_iter().enumerate() {
+            let component = self.component(value, index as u32);
+            self.flatten(component, part, words);
+        }
+    }
+
+    fn as_word(&mut self, value: Value, kind: ScalarKind) -> Value {
+        match kind {
+            ScalarKind::Uint => value,
+            ScalarKind::Bool => {
+                let (accept, reject) = (self.literal(1), self.literal(0));
+                self.add(Expression::Select { condition: value, accept, reject })
+            }
+            _ => self.add(Expression::As { expr: value, kind: ScalarKind::Uint, convert: None }),
+        }
+    }
+
+    /// The four words of this pixel: part 0, unless `part` says another.
+    fn choose(&mut self, words: &[Value], part: Value) -> Value {
+        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let zero = self.literal(0);
+        let mut chosen = self.add(Expression::Compose {
+            ty,
+            components: padded(words.get(..4).unwrap_or(words), zero),
+        });
+        for (index, four) in words.chunks(4).enumerate().skip(1) {
+            let accept = self.add(Expression::Compose { ty, components: padded(four, zero) });
+            let index = self.literal(index as u32);
+            let condition = self.binary(Op::Equal, part, index);
+            chosen = self.add(Expression::Select { condition, accept, reject: chosen });
+        }
+        chosen
+    }
+
+    /// The echo in the first and the last pixel, the value everywhere else.
+    fn echo(&mut self, place: &Place, value: Value) -> Value {
+        let magic = self.literal(ECHO);
+        let mark = self.binary(Op::ExclusiveOr, place.index, magic);
+        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let size = VectorSize::Tri;
+        let pattern =
+            [SwizzleComponent::X, SwizzleComponent::Y, SwizzleComponent::Z, SwizzleComponent::W];
+        let header = self.add(Expression::Swizzle { size, vector: place.header, pattern });
+        let accept = self.add(Expression::Compose { ty, components: vec![header, mark] });
+        let (zero, one) = (self.literal(0), self.literal(1));
+        let pixels = self.component(place.header, 1);
+        let last = self.binary(Op::Subtract, pixels, one);
+        let is_first = self.binary(Op::Equal, place.index, zero);
+        let is_last = self.binary(Op::Equal, place.index, last);
+        let condition = self.binary(Op::LogicalOr, is_first, is_last);
+        self.add(Expression::Select { condition, accept, reject: value })
+    }
+
+    fn add(&mut self, expression: Expression) -> Value {
+        let emitted = !expression.needs_pre_emit();
+        let value = self.function.expressions.append(expression, Span::UNDEFINED);
+        if emitted {
+            self.function
+                .body
+                .push(Statement::Emit(Range::new_from_bounds(value, value)), Span::UNDEFINED);
+        }
+        value
+    }
+
+    fn ty(&mut self, inner: TypeInner) -> Handle<Type> {
+        self.module.types.insert(Type { name: None, inner }, Span::UNDEFINED)
+    }
+
+    fn scalar(&mut self, scalar: Scalar) -> Handle<Type> {
+        self.ty(TypeInner::Scalar(scalar))
+    }
+
+    fn vector(&mut self, size: VectorSize, kind: ScalarKind) -> Handle<Type> {
+        let width = if kind == ScalarKind::Bool { naga::BOOL_WIDTH } else { 4 };
+        self.ty(TypeInner::Vector { size, scalar: Scalar { kind, width } })
+    }
+
+    fn literal(&mut self, value: u32) -> Value {
+        self.add(Expression::Literal(Literal::U32(value)))
+    }
+
+    fn component(&mut self, base: Value, index: u32) -> Value {
+        self.add(Expression::AccessIndex { base, index })
+    }
+
+    fn binary(&mut self, op: Op, left: Value, right: Value) -> Value {
+        self.add(Expression::Binary { op, left, right })
+    }
+
+    fn math(&mut self, fun: MathFunction, left: Value, right: Value) -> Value {
+        self.add(Expression::Math { fun, arg: left, arg1: Some(right), arg2: None, arg3: None })
+    }
+
+    fn convert(&mut self, expr: Value, kind: ScalarKind) -> Value {
+        self.add(Expression::As { expr, kind, convert: Some(4) })
+    }
+}
+
+fn padded(words: &[Value], zero: Value) -> Vec<Value> {
+    words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
+}

@@ -1,0 +1,184 @@
+//! The emitted MSL on the CPU, compiled by clang: kernels in batches, frames by our own rasterizer.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use super::Session;
+use super::fixture::Fixture;
+use super::frame::{Drawing, EntryPoint, Frame};
+use super::gpu::{batched, emitted, input_texels, unpack};
+use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH};
+use super::raster::{Compiled, Shipped};
+use crate::bundle::{Native, Target};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::emit::{self, Emitted};
+use crate::eval::{Sampler, Shape, Texture};
+use crate::metal::request::{Bound, Format, Fragment, Image, ImageLevel};
+use crate::metal::{Missing, Program, version};
+
+/// A session: programs, each of many kernels.
+pub struct Metal {
+    compiler: String,
+    programs: Vec<Program>,
+    /// The program and the text of each kernel, and where it binds what; or why there is none.
+    kept: HashMap<u64, Result<Kept, Diagnostic>>,
+    runs: u32,
+}
+
+/// Where a kernel is.
+struct Kept {
+    program: usize,
+    text: usize,
+    native: Native,
+}
+
+impl Metal {
+    /// Looks for clang.
+    ///
+    /// # Errors
+    /// It is missing.
+    pub fn open() -> Result<Self, Missing> {
+        let compiler = version()?;
+        Ok(Self { compiler, programs: Vec::new(), kept: HashMap::new(), runs: 0 })
+    }
+
+    /// Compiles those of the kernels that are new, all at once.
+    fn compile(&mut self, kernels: &[&Kernel]) {
+        let new: Vec<&Kernel> =
+            kernels.iter().copied().filter(|kernel| !self.kept.contains_key(&kernel.id)).collect();
+        if new.is_empty() {
+            return;
+        }
+        let outputs: Vec<Result<(String, Native), Diagnostic>> = new
+            .par_iter()
+            .map(|kernel| emitted::emit(kernel, Target::MSL).and_then(text))
+            .collect();
+        let texts: Vec<&str> = outputs.iter().flatten().map(|(text, _)| text.as_str()).collect();
+        let program = Program::build(&texts).map_err(|missing| failed(missing.reason));
+        let (index, mut next) = (self.programs.len(), 0);
+        for (kernel, output) in new.iter().zip(&outputs) {
+            let kept = match (output, &program) {
+                (Ok((_, native)), Ok(_)) => {
+                    next += 1;
+                    Ok(Kept { program: index, text: next - 1, native: native.clone() })
+                }
+                (Err(error), _) | (_, Err(error)) => Err(error.clone()),
+            };
+            self.kept.insert(kernel.id, kept);
+        }
+        self.programs.extend(program);
+    }
+
+    /// One draw: the result words of `count` invocations.
+    fn draw(
+        &mut self,
+        kernel: &Kernel,
+        inputs: &[u32],
+        count: u32,
+    ) -> Result<Vec<u32>, Diagnostic> {
+        self.runs = self.runs.wrapping_add(1);
+        let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
+        let header = [count, rows * TARGET_WIDTH, self.runs, 0];
+        let kept = match self.kept.get(&kernel.id) {
+            Some(Ok(kept)) => kept,
+            Some(Err(error)) => return Err(error.clone()),
+            None => return Err(failed("the kernel was not prepared")),
+        };
+        let Some(program) = self.programs.get_mut(kept.program) else {
+            return Err(failed("the program was lost"));
+        };
+        let bound = bound(kernel, &kept.native, input_texels(kernel, inputs, header));
+        let quads: Vec<[Fragment; 4]> = (0..rows.div_ceil(2))
+            .flat_map(|y| (0..TARGET_WIDTH / 2).map(move |x| quad(2 * x, 2 * y)))
+            .collect();
+        let shaded = program.quads(kept.text, &bound, &quads).map_err(failed)?;
+        let mut pixels = vec![0; (rows * TARGET_WIDTH) as usize * 4];
+        for (fragment, shaded) in quads.iter().flatten().zip(shaded.iter().flatten()) {
+            let [x, y, ..] = fragment.position.map(|place| place as usize);
+            let first = (y * TARGET_WIDTH as usize + x) * 4;
+            if let (Some(pixel), Some(words)) =
+                (pixels.get_mut(first..first + 4), shaded.targets.first())
+            {
+                pixel.copy_from_slice(words);
+            }
+        }
+        unpack(kernel, &pixels, header)
+    }
+}
+
+impl Session for Metal {
+    fn adapter(&self) -> String {
+        self.compiler.clone()
+    }
+
+    fn prepare(&mut self, kernels: &[&Kernel]) {
+        self.compile(kernels);
+    }
+
+    fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        self.compile(&[kernel]);
+        batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+    }
+
+    fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        let mut stages = vec![shipped(drawing.vertex)?];
+        stages.extend(drawing.fragment.map(shipped).transpose()?);
+        let fragment = stages.len().checked_sub(2).map(|_| 1);
+        let compiled = Compiled::new(stages).map_err(|missing| failed(missing.reason))?;
+        compiled.draw(0, fragment, drawing)
+    }
+}
+
+fn failed(message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, message)
+}
+
+fn text(emitted: Emitted) -> Result<(String, Native), Diagnostic> {
+    let text = String::from_utf8(emitted.bytes).map_err(|error| failed(error.to_string()))?;
+    Ok((text, emitted.native))
+}
+
+/// An entry point as it would be shipped.
+fn shipped(stage: EntryPoint<'_>) -> Result<Shipped, Diagnostic> {
+    let (emitted, validated) = emitted::of_module(stage.module, stage.entry, Target::MSL)?;
+    let reflection = emit::reflect(&validated, stage.entry)?;
+    let (text, native) = text(emitted)?;
+    Ok(Shipped { text, native, reflection })
+}
+
+/// The fragments at four places.
+fn quad(x: u32, y: u32) -> [Fragment; 4] {
+    [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| Fragment {
+        position: [x as f32 + 0.5, y as f32 + 0.5, 0.0, 1.0],
+        front: true,
+        locations: Vec::new(),
+    })
+}
+
+/// The inputs and the fixtures of a kernel, where its text has them.
+fn bound(kernel: &Kernel, native: &Native, texels: Vec<u32>) -> Bound {
+    let mut bound = Bound::default();
+    let fixture = |binding: u32| kernel.resources().find(|resource| resource.binding == binding);
+    for slot in &native.slots {
+        let Some(index) = slot.index else { continue };
+        match fixture(slot.binding).map(|resource| &*resource.fixture) {
+            Some(Fixture::Texture(texture)) => {
+                let image = Image::new(&Texture::from(texture), Format::Float);
+                bound.textures.insert(index, image);
+            }
+            Some(Fixture::Sampler(sampler)) => {
+                bound.samplers.insert(index, Sampler::from(*sampler));
+            }
+            None => drop(bound.textures.insert(index, inputs(&texels))),
+        }
+    }
+    bound
+}
+
+/// The input texture, binding 0.
+fn inputs(texels: &[u32]) -> Image {
+    let height = texels.len() as u32 / 4 / INPUT_WIDTH;
+    let level = ImageLevel { width: INPUT_WIDTH, height, layers: 1, words: texels.to_vec() };
+    Image { shape: Shape::D2, format: Format::Unsigned, levels: vec![level] }
+}

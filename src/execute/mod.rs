@@ -1,0 +1,63 @@
+//! Where shaders run: kernels and fixtures, and the executors that take them.
+//!
+//! `function -> kernel + fixtures -> session of an executor -> result words`
+//!
+//! [`kernel`] wraps a function into a fragment shader, an executor of [`executors`] runs it over
+//! rows of arguments; [`fixture`] is what textures and samplers hold. Devices of wgpu are in
+//! `gpu`; the evaluator runs kernels in `interpreter`, compiled MSL in `metal`, and both draw
+//! [`frame`]s in [`raster`].
+
+pub mod executors;
+pub mod fixture;
+pub mod frame;
+pub(crate) mod gpu;
+pub(crate) mod interpreter;
+pub mod kernel;
+mod metal;
+pub mod raster;
+pub(crate) mod sampling;
+
+use crate::diagnostic::{Diagnostic, codes};
+use frame::{Drawing, Frame};
+use kernel::Kernel;
+
+/// Stack of a thread that compiles shaders: naga recurses along expressions.
+pub(crate) const STACK: usize = 64 << 20;
+
+/// Runs a closure on a thread of its own and waits until that thread is gone.
+///
+/// Open, use and drop sessions inside: the stack is large enough for naga, and the drivers'
+/// thread-local state is torn down before the process ends, which Mesa crashes without.
+/// `None` if the closure panicked or no thread could be started.
+pub fn on_thread<T: Send>(run: impl FnOnce() -> T + Send) -> Option<T> {
+    std::thread::scope(|scope| {
+        std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run).ok()?.join().ok()
+    })
+}
+
+/// An open executor: runs kernels and draws frames until it is dropped.
+pub trait Session: Send {
+    /// The device's name, driver and version: what a golden value carries.
+    fn adapter(&self) -> String;
+
+    /// Told of all kernels before the first of them runs: whoever compiles many at once does it here.
+    fn prepare(&mut self, _: &[&Kernel]) {}
+
+    /// The result words of every invocation whose argument words are given one after another.
+    ///
+    /// Errors are the executor's, never the function's: rejected shaders, lost devices, targets
+    /// that were not written as laid out.
+    fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic>;
+
+    /// Draws a frame for each view. Executors whose entry says so draw; the others refuse.
+    ///
+    /// # Errors
+    /// The device's, and those of shaders it refuses.
+    fn draw_frames(&self, _: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        Err(draws_none())
+    }
+}
+
+fn draws_none() -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, "this executor draws no frames")
+}

@@ -1,0 +1,60 @@
+//! Vertices: what they take, and what becomes of them.
+
+use naga::{Binding, BuiltIn};
+
+use crate::execute::frame::Mesh;
+
+/// What the vertex stage made of a vertex, or clipping of an edge.
+#[derive(Debug, Clone)]
+pub struct Corner {
+    pub clip: [f64; 4],
+    /// Every scalar that the stage returns.
+    pub slots: Vec<f32>,
+}
+
+/// Where a scalar that a stage takes comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// A component of what is at a location.
+    Location(u32, usize),
+    BuiltIn(BuiltIn, usize),
+    None,
+}
+
+/// The source of each scalar, from the bindings of all.
+pub fn sources(bindings: &[Option<Binding>]) -> Vec<Source> {
+    let mut sources: Vec<Source> = Vec::with_capacity(bindings.len());
+    for binding in bindings {
+        let source = |component| match binding {
+            Some(Binding::Location { location, .. }) => Source::Location(*location, component),
+            Some(Binding::BuiltIn(built_in)) => Source::BuiltIn(*built_in, component),
+            None => Source::None,
+        };
+        let first = source(0);
+        // Scalars of one vector follow each other.
+        let component = sources.iter().rev().take_while(|earlier| same(**earlier, first)).count();
+        sources.push(source(component));
+    }
+    sources
+}
+
+fn same(a: Source, b: Source) -> bool {
+    match (a, b) {
+        (Source::Location(a, _), Source::Location(b, _)) => a == b,
+        (Source::BuiltIn(a, _), Source::BuiltIn(b, _)) => a == b,
+        _ => false,
+    }
+}
+
+/// A component of an attribute of a vertex; 0 where the mesh has none.
+pub fn attribute(mesh: &Mesh, vertex: u32, location: u32, component: usize) -> u32 {
+    let sizes = mesh.attributes.iter().map(|attribute| attribute.format.size() as usize / 4);
+    let mut first = vertex as usize * sizes.clone().sum::<usize>();
+    for (attribute, size) in mesh.attributes.iter().zip(sizes) {
+        if attribute.location == location && component < size {
+            return mesh.words.get(first + component).copied().unwrap_or(0);
+        }
+        first += size;
+    }
+    0
+}

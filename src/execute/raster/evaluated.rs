@@ -1,0 +1,166 @@
+//! Stages in our own interpreter, in f32 rounded to nearest, on all cores.
+
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{Binding, BuiltIn};
+use rayon::prelude::*;
+
+use super::corners::{Corner, Source, attribute, sources};
+use super::{Quad, Shaded, Shading};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::eval::{Function, FunctionId, Kind, Machine, Number, Program, Resources};
+use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
+use crate::execute::interpreter::failed;
+
+/// Quads that are worth a thread.
+const CHUNK: usize = 64;
+
+/// The stages of a program, lowered.
+pub struct Evaluated {
+    vertex: Lowered,
+    fragment: Option<Lowered>,
+}
+
+impl Evaluated {
+    /// Lowers the stages of a drawing.
+    pub fn new(drawing: &Drawing<'_>) -> Result<Self, Diagnostic> {
+        Ok(Self {
+            vertex: Lowered::new(drawing.vertex)?,
+            fragment: drawing.fragment.map(Lowered::new).transpose()?,
+        })
+    }
+}
+
+/// A stage, ready to run.
+struct Lowered {
+    program: Program,
+    function: FunctionId,
+    signature: Function,
+}
+
+impl Lowered {
+    fn new(stage: EntryPoint<'_>) -> Result<Self, Diagnostic> {
+        let info: ModuleInfo = Validator::new(ValidationFlags::all(), Capabilities::all())
+            .validate(stage.module)
+            .map_err(|error| unusable(format!("the program is not valid: {error}")))?;
+        let program = Program::new(stage.module, &info).map_err(failed)?;
+        // GLSL has a plain function of that name too; entry points come after functions.
+        let found = program.functions().filter(|(_, function)| function.name == stage.entry).last();
+        let missing = || unusable(format!("the program has no entry point `{}`", stage.entry));
+        let (function, signature) =
+            found.map(|(id, function)| (id, function.clone())).ok_or_else(missing)?;
+        Ok(Self { program, function, signature })
+    }
+}
+
+fn unusable(message: String) -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, message)
+}
+
+impl Shading for Evaluated {
+    fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic> {
+        let Lowered { program, function, signature } = &self.vertex;
+        let mut machine = Machine::<f32>::new(program).map_err(failed)?;
+        machine.bind(resources).map_err(failed)?;
+        let inputs = sources(&signature.inputs);
+        let outputs = sources(&signature.outputs);
+        let mut corners = Vec::new();
+        for index in 0..mesh.vertices() {
+            let argument = |(source, kind): (&Source, &Kind)| match source {
+                Source::Location(location, component) => {
+                    slot(*kind, attribute(mesh, index, *location, *component))
+                }
+                Source::BuiltIn(BuiltIn::VertexIndex, _) => f32::from_word(index),
+                _ => f32::from_word(0),
+            };
+            let arguments: Vec<f32> =
+                inputs.iter().zip(&signature.arguments).map(argument).collect();
+            let slots = machine.call(*function, &arguments).map_err(failed)?.to_vec();
+            corners.push(Corner { clip: position(&outputs, &slots), slots });
+        }
+        Ok(corners)
+    }
+
+    fn given(&self) -> Vec<(Source, bool)> {
+        let Function { outputs, result, .. } = &self.vertex.signature;
+        let is_flat = |slot: usize| {
+            let flat = Some(naga::Interpolation::Flat);
+            let says_so = matches!(
+                &outputs[slot],
+                Some(Binding::Location { interpolation, .. }) if *interpolation == flat
+            );
+            says_so || result.get(slot) != Some(&Kind::Float)
+        };
+        let sources = sources(outputs).into_iter().enumerate();
+        sources.map(|(slot, source)| (source, is_flat(slot))).collect()
+    }
+
+    fn taken(&self) -> Option<Vec<Source>> {
+        Some(sources(&self.fragment.as_ref()?.signature.inputs))
+    }
+
+    fn shade(
+        &self,
+        buffers: Buffers,
+        textures: &Resources,
+        quads: &[Quad],
+    ) -> Result<Vec<Shaded>, Diagnostic> {
+        let Some(Lowered { program, function, signature }) = &self.fragment else {
+            return Ok(Vec::new());
+        };
+        let outputs = sources(&signature.outputs);
+        let threads = rayon::current_num_threads().max(1);
+        let shaded: Vec<Vec<Shaded>> = quads
+            .par_chunks(quads.len().div_ceil(threads).max(CHUNK))
+            .map(|quads| {
+                let mut machine = Machine::<f32>::new(program).map_err(failed)?;
+                machine
+                    .bind(Resources { buffers: buffers.clone(), ..textures.clone() })
+                    .map_err(failed)?;
+                quads
+                    .iter()
+                    .map(|quad| {
+                        let arguments = quad.arguments.each_ref().map(Vec::as_slice);
+                        let results = machine.quad(*function, arguments).map_err(failed)?;
+                        let discarded = machine.quad_discarded();
+                        Ok([0, 1, 2, 3].map(|lane| {
+                            let targets = || targets(&outputs, &signature.result, &results[lane]);
+                            (!discarded[lane]).then(targets)
+                        }))
+                    })
+                    .collect::<Result<_, Diagnostic>>()
+            })
+            .collect::<Result<_, Diagnostic>>()?;
+        Ok(shaded.into_iter().flatten().collect())
+    }
+}
+
+/// A word as a scalar of the machine.
+fn slot(kind: Kind, word: u32) -> f32 {
+    if kind == Kind::Float { f32::from_bits(word) } else { f32::from_word(word) }
+}
+
+fn position(outputs: &[Source], slots: &[f32]) -> [f64; 4] {
+    let mut clip = [0.0; 4];
+    for (source, slot) in outputs.iter().zip(slots) {
+        if let Source::BuiltIn(BuiltIn::Position { .. }, component) = source
+            && let Some(place) = clip.get_mut(*component)
+        {
+            *place = f64::from(*slot);
+        }
+    }
+    clip
+}
+
+/// What is returned at each location, as words.
+fn targets(outputs: &[Source], kinds: &[Kind], slots: &[f32]) -> Vec<[u32; 4]> {
+    let mut targets: Vec<[u32; 4]> = Vec::new();
+    for ((source, kind), slot) in outputs.iter().zip(kinds).zip(slots) {
+        let Source::Location(location, component) = *source else { continue };
+        if targets.len() <= location as usize {
+            targets.resize(location as usize + 1, [0; 4]);
+        }
+        targets[location as usize][component & 3] =
+            if *kind == Kind::Float { slot.bits() } else { slot.word() };
+    }
+    targets
+}

@@ -1,0 +1,213 @@
+//! Stages as compiled MSL, from the very bytes that are shipped.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use naga::BuiltIn;
+
+use super::corners::{Corner, Source, attribute};
+use super::{Quad, Shaded, Shading};
+use crate::bundle::{Native, Reflection};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::eval::{Number, Resources};
+use crate::execute::frame::{Buffers, Drawing, Frame, Mesh};
+use crate::metal::interface::{Interface, Part, Role};
+use crate::metal::request::{Bound, Fragment, Vertex};
+use crate::metal::{Missing, Program};
+
+/// One stage as it is shipped: its text, and what is said of it.
+#[derive(Debug, Clone)]
+pub struct Shipped {
+    pub text: String,
+    pub native: Native,
+    pub reflection: Reflection,
+}
+
+/// Stages of any number of programs, compiled together.
+pub struct Compiled {
+    stages: Vec<Shipped>,
+    program: Mutex<Program>,
+}
+
+impl Compiled {
+    /// Compiles stages; what clang refuses fails when it is drawn.
+    ///
+    /// # Errors
+    /// clang is missing or cannot be run.
+    pub fn new(stages: Vec<Shipped>) -> Result<Self, Missing> {
+        let texts: Vec<&str> = stages.iter().map(|stage| stage.text.as_str()).collect();
+        let program = Mutex::new(Program::build(&texts)?);
+        Ok(Self { stages, program })
+    }
+
+    /// Draws with two of the stages, by their index, in the place of those that the drawing names.
+    ///
+    /// # Errors
+    /// What is wrong with the texts, or how they failed.
+    pub fn draw(
+        &self,
+        vertex: usize,
+        fragment: Option<usize>,
+        drawing: &Drawing<'_>,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        self.draw_pair(vertex, fragment, drawing, false)
+    }
+
+    /// As [`Self::draw`], with targets that tell what each fragment was given behind those of the
+    /// drawing: one for each location that the stage takes, one for its position, and one whose
+    /// first word says whether it is of a front face.
+    ///
+    /// # Errors
+    /// Those of [`Self::draw`].
+    pub fn draw_watched(
+        &self,
+        vertex: usize,
+        fragment: usize,
+        drawing: &Drawing<'_>,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        self.draw_pair(vertex, Some(fragment), drawing, true)
+    }
+
+    fn draw_pair(
+        &self,
+        vertex: usize,
+        fragment: Option<usize>,
+        drawing: &Drawing<'_>,
+        is_watched: bool,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        let stage = |index: usize| {
+            let interface = self.program().interface(index).cloned().map_err(failed)?;
+            Ok::<_, Diagnostic>(Stage { index, interface })
+        };
+        let (vertex, fragment) = (stage(vertex)?, fragment.map(stage).transpose()?);
+        let mut targets = drawing.targets;
+        if let Some(fragment) = fragment.as_ref().filter(|_| is_watched) {
+            targets += fragment.interface.locations().0 + 2;
+        }
+        let drawn = drawing.targets as usize;
+        let pair = Pair { compiled: self, vertex, fragment, watched: is_watched.then_some(drawn) };
+        super::draw_frames(&Drawing { targets, ..*drawing }, &pair)
+    }
+
+    fn program(&self) -> MutexGuard<'_, Program> {
+        self.program.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn bound(&self, stage: &Stage, resources: &Resources) -> Bound {
+        let shipped = &self.stages[stage.index];
+        Bound::new(resources, &shipped.native, &shipped.reflection)
+    }
+}
+
+fn failed(message: String) -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, message)
+}
+
+/// A stage of a program, by its index.
+struct Stage {
+    index: usize,
+    interface: Interface,
+}
+
+/// Two stages that are drawn with.
+struct Pair<'c> {
+    compiled: &'c Compiled,
+    vertex: Stage,
+    fragment: Option<Stage>,
+    /// Where fragments tell what they were given: how many targets they have.
+    watched: Option<usize>,
+}
+
+/// Scalars of so many locations.
+fn located(locations: u32) -> impl Iterator<Item = Source> {
+    (0..locations).flat_map(|location| (0..4).map(move |i| Source::Location(location, i)))
+}
+
+impl Shading for Pair<'_> {
+    fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic> {
+        let taken = self.vertex.interface.locations().0;
+        let vertex = |index: u32| {
+            let location = |location: u32| {
+                std::array::from_fn(|component| attribute(mesh, index, location, component))
+            };
+            Vertex { index, instance: 0, locations: (0..taken).map(location).collect() }
+        };
+        let vertices: Vec<Vertex> = (0..mesh.vertices()).map(vertex).collect();
+        let bound = self.compiled.bound(&self.vertex, &resources);
+        let transformed = self.compiled.program().vertices(self.vertex.index, &bound, &vertices);
+        let corner = |vertex: crate::metal::request::Transformed| Corner {
+            clip: vertex.position.map(f64::from),
+            slots: vertex.locations.into_iter().flatten().map(f32::from_bits).collect(),
+        };
+        Ok(transformed.map_err(failed)?.into_iter().map(corner).collect())
+    }
+
+    fn given(&self) -> Vec<(Source, bool)> {
+        let Interface { output, .. } = &self.vertex.interface;
+        let is_flat = |location: u32| {
+            let is_it = |part: &&Part| part.role == Role::Location(location);
+            output.iter().find(is_it).is_some_and(|part| part.is_flat)
+        };
+        located(self.vertex.interface.locations().1)
+            .map(|source| match source {
+                Source::Location(location, _) => (source, is_flat(location)),
+                other => (other, false),
+            })
+            .collect()
+    }
+
+    fn taken(&self) -> Option<Vec<Source>> {
+        let locations = self.fragment.as_ref()?.interface.locations().0;
+        let position = BuiltIn::Position { invariant: false };
+        let built_in = (0..4).map(|i| Source::BuiltIn(position, i));
+        let front = Source::BuiltIn(BuiltIn::FrontFacing, 0);
+        Some(located(locations).chain(built_in).chain([front]).collect())
+    }
+
+    fn shade(
+        &self,
+        buffers: Buffers,
+        textures: &Resources,
+        quads: &[Quad],
+    ) -> Result<Vec<Shaded>, Diagnostic> {
+        let Some(stage) = &self.fragment else { return Ok(Vec::new()) };
+        let resources = Resources { buffers, ..textures.clone() };
+        let bound = self.compiled.bound(stage, &resources);
+        let fragments: Vec<[Fragment; 4]> = quads
+            .iter()
+            .map(|quad| quad.arguments.each_ref().map(|slots| fragment(slots)))
+            .collect();
+        let shaded = self.compiled.program().quads(stage.index, &bound, &fragments);
+        let mut results: Vec<Shaded> = Vec::new();
+        for (given, shaded) in fragments.iter().zip(shaded.map_err(failed)?) {
+            results.push(std::array::from_fn(|lane| {
+                let mut targets = shaded[lane].targets.clone();
+                if let Some(drawn) = self.watched {
+                    targets.resize(drawn, [0; 4]);
+                    targets.extend(told(&given[lane]));
+                }
+                (!shaded[lane].is_discarded).then_some(targets)
+            }));
+        }
+        Ok(results)
+    }
+}
+
+/// A fragment from the scalars of [`Shading::taken`]: four of each location, four of the position,
+/// and one that says whether it is of a front face.
+fn fragment(slots: &[f32]) -> Fragment {
+    let (four, rest) = slots.as_chunks::<4>();
+    let (position, locations) =
+        four.split_last().map_or(([0.0; 4], &[][..]), |(last, all)| (*last, all));
+    Fragment {
+        position,
+        front: rest.first().is_some_and(|front| front.word() != 0),
+        locations: locations.iter().map(|slots| slots.map(f32::to_bits)).collect(),
+    }
+}
+
+/// What a fragment was given, as targets.
+fn told(fragment: &Fragment) -> impl Iterator<Item = [u32; 4]> + '_ {
+    let position = fragment.position.map(f32::to_bits);
+    let front = [u32::from(fragment.front), 0, 0, 0];
+    fragment.locations.iter().copied().chain([position, front])
+}

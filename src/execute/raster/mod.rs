@@ -1,0 +1,146 @@
+//! Frames without a device: something on the CPU runs the stages, and this draws the triangles.
+//!
+//! `corners (vertex stage) -> triangles (clipped) -> what each pixel shows -> quads (fragment stage)`
+//!
+//! The stages run in our own interpreter ([`evaluated`]) or as compiled MSL ([`metal`]). The
+//! fragment stage runs for what is visible alone, in quads of 2 x 2 in step, their hidden
+//! fragments as helpers: programs that discard or write depth are not what it is for.
+
+mod corners;
+mod evaluated;
+mod metal;
+mod shade;
+mod triangles;
+
+use std::collections::BTreeMap;
+
+use crate::diagnostic::Diagnostic;
+use crate::eval::{self, Filter, Level, Resources};
+use crate::execute::fixture::{Fixture, Texture};
+use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh};
+use crate::execute::kernel::SENTINEL;
+use corners::{Corner, Source};
+pub use evaluated::Evaluated;
+pub use metal::{Compiled, Shipped};
+use triangles::{Seen, Triangle};
+
+/// What runs the two stages of a program.
+pub trait Shading {
+    /// Runs the vertex stage for every vertex of a mesh.
+    fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic>;
+
+    /// What each scalar of a corner is, and whether it holds for a whole triangle.
+    fn given(&self) -> Vec<(Source, bool)>;
+
+    /// What each scalar is that the fragment stage takes; `None` without one.
+    fn taken(&self) -> Option<Vec<Source>>;
+
+    /// Runs the fragment stage. Buffers are the first resources, textures and samplers the second.
+    fn shade(
+        &self,
+        buffers: Buffers,
+        textures: &Resources,
+        quads: &[Quad],
+    ) -> Result<Vec<Shaded>, Diagnostic>;
+}
+
+/// Four fragments of a triangle.
+pub struct Quad {
+    pub pixels: [(u32, u32); 4],
+    /// Which of them show the triangle; the others help.
+    pub covered: [bool; 4],
+    /// The scalars that the stage takes.
+    pub arguments: [Vec<f32>; 4],
+}
+
+/// Four words for each target; `None` where the fragment was discarded.
+pub type Shaded = [Option<Vec<[u32; 4]>>; 4];
+
+/// Draws a frame for each view.
+pub fn draw_frames(drawing: &Drawing<'_>, shading: &dyn Shading) -> Result<Vec<Frame>, Diagnostic> {
+    let textures = textures(drawing);
+    drawing.views.iter().map(|view| frame(drawing, view, shading, &textures)).collect()
+}
+
+/// What was drawn of a view, before it is shaded.
+struct Drawn {
+    /// Of each item.
+    corners: Vec<Vec<Corner>>,
+    triangles: Vec<Triangle>,
+    seen: Seen,
+}
+
+fn frame(
+    drawing: &Drawing<'_>,
+    view: &Buffers,
+    shading: &dyn Shading,
+    textures: &Resources,
+) -> Result<Frame, Diagnostic> {
+    let resources =
+        |item: &Item<'_>| Resources { buffers: buffers(drawing, view, item), ..textures.clone() };
+    let mut drawn =
+        Drawn { corners: Vec::new(), triangles: Vec::new(), seen: Seen::new(drawing.size) };
+    for (index, item) in drawing.items.iter().enumerate() {
+        let mut corners = shading.corners(item.mesh, resources(item))?;
+        triangles::assemble(
+            item.mesh,
+            index,
+            &mut corners,
+            drawing.state,
+            drawing.size,
+            &mut drawn.triangles,
+        );
+        drawn.corners.push(corners);
+    }
+    drawn.seen.draw(&drawn.triangles, drawing.state);
+    let targets = shade::run(drawing, view, shading, &drawn, textures)?;
+    let depth = if drawing.state.keep_depth { drawn.seen.depth } else { Vec::new() };
+    Ok(Frame { targets, depth, detour: None })
+}
+
+/// The uniform buffers of one item in one view.
+fn buffers(
+    drawing: &Drawing<'_>,
+    view: &Buffers,
+    item: &Item<'_>,
+) -> BTreeMap<(u32, u32), Vec<u8>> {
+    let all = drawing.buffers.iter().chain(item.buffers).chain(view);
+    all.map(|(place, bytes)| (*place, bytes.clone())).collect()
+}
+
+fn textures(drawing: &Drawing<'_>) -> Resources {
+    let mut resources = Resources::default();
+    for (place, fixture) in drawing.fixtures {
+        match &**fixture {
+            Fixture::Texture(texture) => {
+                let mut texture = eval::Texture::from(texture);
+                let smaller = drawing.levels.get(place).map_or(&[][..], Vec::as_slice);
+                texture.levels.extend(smaller.iter().flat_map(levels));
+                resources.textures.insert(*place, texture);
+            }
+            Fixture::Sampler(sampler) => {
+                resources.samplers.insert(*place, mipped(eval::Sampler::from(*sampler)));
+            }
+        }
+    }
+    resources
+}
+
+fn levels(texture: &Texture) -> Vec<Level> {
+    eval::Texture::from(texture).levels
+}
+
+/// Between levels, where a texture has them.
+fn mipped(sampler: eval::Sampler) -> eval::Sampler {
+    let linear = sampler.min == Filter::Linear && sampler.compare.is_none();
+    eval::Sampler {
+        mipmap: if linear { Filter::Linear } else { Filter::Nearest },
+        levels: (0.0, 32.0),
+        ..sampler
+    }
+}
+
+/// A target that nothing has been drawn to.
+fn cleared([width, height]: [u32; 2]) -> Vec<u32> {
+    vec![SENTINEL; 4 * width as usize * height as usize]
+}

@@ -1,0 +1,219 @@
+//! What a whole run read and what came of it: if nothing of it changed, nothing is to do.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use serde::{Deserialize, Serialize};
+
+use super::{Request, Summary};
+use crate::cache::{BUILD, Cache, hash, hex, short};
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::render::{Form, render};
+use crate::input;
+use crate::resolve::Packages;
+use crate::source::{Files, Package, ReadError, SourceSet};
+
+/// A package and a question to its files.
+type Question = (String, String);
+
+/// Packages that remember what they were asked.
+#[derive(Debug, Clone, Default)]
+pub struct Recorder(Arc<Mutex<BTreeMap<Question, String>>>);
+
+impl Recorder {
+    /// The same packages, observed.
+    pub fn observe(&self, packages: Packages) -> Packages {
+        let observed = |package: Package| Package {
+            files: Box::new(Observed {
+                package: package.name.clone(),
+                files: package.files,
+                recorder: self.clone(),
+            }),
+            name: package.name,
+        };
+        Packages {
+            root: observed(packages.root),
+            dependencies: packages.dependencies.into_iter().map(observed).collect(),
+        }
+    }
+
+    /// Whether files answer now as they did; asks each file once.
+    pub fn is_current(&self, packages: &Packages) -> bool {
+        is_current(&self.answers(), packages)
+    }
+
+    fn answers(&self) -> BTreeMap<Question, String> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn note(&self, package: &str, question: String, answer: String) {
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert((package.to_owned(), question), answer);
+    }
+}
+
+/// A run that succeeded.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Trace {
+    /// Package, question, answer.
+    reads: Vec<(String, String, String)>,
+    /// Of the bundle that was written.
+    output: String,
+    pub summary: Summary,
+    pub told: Told,
+}
+
+/// What a run said of the author's texts, which are not read when nothing is to do.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Told {
+    /// As the manifest was named: files are named in the same way.
+    manifest: String,
+    /// In each of [`FORMS`].
+    texts: Vec<String>,
+}
+
+const FORMS: [Form; 3] = [Form::Human, Form::Short, Form::Json];
+
+impl Told {
+    pub fn new(manifest: &Path, sources: &SourceSet, warnings: &[Diagnostic]) -> Self {
+        let texts = FORMS.map(|form| {
+            if warnings.is_empty() { String::new() } else { render(sources, warnings, form) }
+        });
+        Self { manifest: manifest.to_string_lossy().into_owned(), texts: texts.into() }
+    }
+
+    /// In one form.
+    pub fn text(&self, form: Form) -> &str {
+        FORMS
+            .iter()
+            .zip(&self.texts)
+            .find(|(known, _)| **known == form)
+            .map_or("", |(_, text)| text)
+    }
+
+    /// Whether it is what the run said that named the manifest so.
+    fn is_of(&self, manifest: &Path) -> bool {
+        self.texts.iter().all(String::is_empty) || Path::new(&self.manifest) == manifest
+    }
+}
+
+/// A run that may already have been made.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    pub manifest: &'a Path,
+    /// What was read before the packages were: the manifest and what declares them.
+    pub declared: &'a SourceSet,
+    pub request: &'a Request,
+    pub packages: &'a Packages,
+    /// The bundle.
+    pub out: &'a Path,
+}
+
+impl Trace {
+    /// The trace of what was recorded; `None` where no bundle is.
+    pub fn new(recorder: &Recorder, out: &Path, summary: Summary, told: Told) -> Option<Self> {
+        let reads = recorder
+            .answers()
+            .into_iter()
+            .map(|((package, question), answer)| (package, question, answer));
+        Some(Self { reads: reads.collect(), output: output(out)?, summary, told })
+    }
+
+    /// Finds the trace of an equal run if all that it read is the same, and the bundle is what
+    /// came of it.
+    pub fn find(cache: &Cache, run: Run<'_>) -> Option<Self> {
+        let trace: Self =
+            serde_json::from_slice(&cache.get("runs", key(run.declared, run.request))?).ok()?;
+        let reads = trace.reads.iter().map(|(package, question, answer)| {
+            ((package.clone(), question.clone()), answer.clone())
+        });
+        let is_same = trace.told.is_of(run.manifest) && is_current(&reads.collect(), run.packages);
+        (is_same && output(run.out).as_ref() == Some(&trace.output)).then_some(trace)
+    }
+
+    /// Keeps the trace for [`Self::find`].
+    pub fn keep(&self, cache: &Cache, run: Run<'_>) {
+        cache.put("runs", key(run.declared, run.request), serde_json::to_vec(self).ok());
+    }
+}
+
+fn key(sources: &SourceSet, request: &Request) -> crate::bundle::Hash {
+    let only = request.only.as_ref().map(|only| &only.text);
+    let asked = format!("{:?} {only:?} {:?} {:?}", request.program, request.targets, request.shard);
+    let texts = sources.iter().map(|(_, source)| &*source.text);
+    hash(&["run", BUILD, &asked].into_iter().chain(texts).collect::<Vec<_>>())
+}
+
+fn is_current(reads: &BTreeMap<Question, String>, packages: &Packages) -> bool {
+    let find = |name: &str| {
+        packages.dependencies.iter().chain([&packages.root]).find(|package| package.name == name)
+    };
+    reads.iter().all(|((package, question), answer)| {
+        find(package).is_some_and(|package| ask(&*package.files, question) == *answer)
+    })
+}
+
+/// Asks again what was asked: a list of files starts with `*.`, anything else is a path.
+fn ask(files: &dyn Files, question: &str) -> String {
+    match question.strip_prefix("*.") {
+        Some(extensions) => listed(&files.list(&extensions.split(',').collect::<Vec<_>>())),
+        None => read(&files.read(question)),
+    }
+}
+
+fn read(answer: &Result<Option<String>, ReadError>) -> String {
+    match answer {
+        Ok(Some(text)) => hex(&hash(&[text])),
+        Ok(None) => "none".to_owned(),
+        Err(error) => format!("{error:?}"),
+    }
+}
+
+fn listed(paths: &[String]) -> String {
+    hex(&hash(&paths.iter().map(String::as_str).collect::<Vec<_>>()))
+}
+
+struct Observed {
+    package: String,
+    files: Box<dyn Files>,
+    recorder: Recorder,
+}
+
+impl Files for Observed {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        let answer = self.files.read(path);
+        self.recorder.note(&self.package, path.to_owned(), read(&answer));
+        answer
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        let answer = self.files.list(extensions);
+        self.recorder.note(&self.package, format!("*.{}", extensions.join(",")), listed(&answer));
+        answer
+    }
+
+    fn display(&self, path: &str) -> String {
+        self.files.display(path)
+    }
+}
+
+/// Bytes of an output that is compared with an earlier one.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// What a bundle is: the hash of its file, or of its manifest and the names of its blobs. That
+/// blobs are what they are named after, and whole, is what writing them by renaming is for.
+fn output(out: &Path) -> Option<String> {
+    if !out.is_dir() {
+        return Some(hex(&short(&blake3::hash(&input::read(out, MOST_BYTES).ok()?))));
+    }
+    let manifest = blake3::hash(&input::read(&out.join("manifest.json"), MOST_BYTES).ok()?);
+    let names = std::fs::read_dir(out.join("blobs"))
+        .ok()?
+        .map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names = names.collect::<Option<Vec<_>>>()?;
+    names.sort_unstable();
+    Some(format!("{} {}", hex(&short(&manifest)), listed(&names)))
+}

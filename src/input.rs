@@ -1,0 +1,44 @@
+//! The one way from the disk: files and nothing else, and no more of them than was agreed.
+//!
+//! A pipe would make its reader wait for ever, and a device such as `/dev/zero` has no end.
+
+use std::fs::{self, File};
+use std::io::{Error, ErrorKind, Read, Result};
+use std::path::Path;
+
+/// Opens what is a file, links followed.
+pub fn open(path: &Path) -> Result<File> {
+    // Looked at before it is opened, since opening a pipe waits.
+    check(&fs::metadata(path)?)?;
+    let file = File::open(path)?;
+    check(&file.metadata()?)?;
+    Ok(file)
+}
+
+/// The bytes of a file that has at most `most`.
+pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
+    let file = open(path)?;
+    let length = file.metadata()?.len();
+    if length > most {
+        return Err(too_large(length, most));
+    }
+    let mut bytes = Vec::with_capacity(length as usize);
+    // A file that grows while it is read ends all the same.
+    match file.take(most.saturating_add(1)).read_to_end(&mut bytes)? as u64 {
+        read if read > most => Err(too_large(read, most)),
+        _ => Ok(bytes),
+    }
+}
+
+fn check(found: &fs::Metadata) -> Result<()> {
+    if found.is_file() {
+        return Ok(());
+    }
+    let what = if found.is_dir() { "is a folder, not a file" } else { "is a pipe or a device" };
+    Err(Error::new(ErrorKind::InvalidInput, what))
+}
+
+fn too_large(length: u64, most: u64) -> Error {
+    let words = format!("has {length} bytes, more than the {most} that are allowed");
+    Error::new(ErrorKind::FileTooLarge, words)
+}

@@ -1,0 +1,98 @@
+//! One text in every target: linked where it can be, as a whole where not.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::{Linker, Reason};
+use crate::bundle::{Artifact, Target, Unit};
+use crate::compose::Composed;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::emit::{self, targets};
+use crate::validate::{self, Validated, validate};
+
+/// A text as its author reads it, for errors, and without comments and layout, to compile.
+#[derive(Debug, Clone, Copy)]
+pub struct Text<'a> {
+    pub composed: &'a Composed,
+    pub lean: &'a Composed,
+}
+
+/// What comes of a text: a unit, and what its author can mend.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Made {
+    pub unit: Unit,
+    pub warnings: Diagnostics,
+    /// Why targets were compiled as a whole instead of from separate functions.
+    pub whole: Vec<(Target, Reason)>,
+}
+
+/// A text in every target. This is the one way to the bytes that ship, for every command.
+///
+/// # Errors
+/// What naga finds wrong with the text, in its author's places.
+pub fn compile(
+    text: &Text<'_>,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<Made, Diagnostics> {
+    let linked = match linker.link(text.lean, entry) {
+        Ok(linked) => linked,
+        Err(reason) => {
+            let (unit, warnings) = compile_whole(text, entry, targets)?;
+            let whole = targets.iter().map(|target| (*target, reason)).collect();
+            return Ok(Made { unit, warnings, whole });
+        }
+    };
+    let mut unit = Unit { reflection: linked.reflection, targets: BTreeMap::new() };
+    let mut whole = Vec::new();
+    for (target, made) in targets.iter().zip(linked.targets) {
+        match made {
+            Ok(artifact) => {
+                unit.targets.insert(target.name().to_owned(), artifact);
+            }
+            Err(reason) => whole.push((*target, reason)),
+        }
+    }
+    if !whole.is_empty() {
+        let left: Vec<Target> = whole.iter().map(|(target, _)| *target).collect();
+        unit.targets.extend(compile_whole(text, entry, &left)?.0.targets);
+    }
+    let warnings = if linked.suspect { lint(text)? } else { Vec::new() };
+    Ok(Made { unit, warnings, whole })
+}
+
+fn lint(text: &Text<'_>) -> Result<Diagnostics, Diagnostics> {
+    Ok(validate::lint(text.composed, &validate(text.composed)?))
+}
+
+/// Validates a text, reflects its entry point and writes it for some targets.
+fn compile_whole(
+    text: &Text<'_>,
+    entry: &str,
+    targets: &[Target],
+) -> Result<(Unit, Diagnostics), Diagnostics> {
+    let whole = || validate(text.composed);
+    // The lean text is quick to read; the whole one knows where its mistakes are.
+    let validated = validate(text.lean).or_else(|_| whole())?;
+    emit::check(text.lean, &validated).or_else(|_| emit::check(text.composed, &whole()?))?;
+    let unit = unit(&validated, entry, targets).map_err(|error| vec![error])?;
+    // The lean text has no places to tell of.
+    let warnings = if validate::has_lints(&validated) { lint(text)? } else { Vec::new() };
+    Ok((unit, warnings))
+}
+
+fn unit(validated: &Validated, entry: &str, targets: &[Target]) -> Result<Unit, Diagnostic> {
+    let reflection = Arc::new(emit::reflect(validated, entry)?);
+    let artifacts = targets
+        .iter()
+        .map(|&target| Ok((target.name().to_owned(), artifact(validated, entry, target)?)));
+    let targets = artifacts.collect::<Result<BTreeMap<_, _>, Diagnostic>>()?;
+    Ok(Unit { reflection, targets })
+}
+
+fn artifact(validated: &Validated, entry: &str, target: Target) -> Result<Artifact, Diagnostic> {
+    let emitted = emit::emit(validated, entry, target)?;
+    let extension = targets::find(target).map_or("", |entry| entry.extension).to_owned();
+    Ok(Artifact { bytes: emitted.bytes.into(), extension, native: Arc::new(emitted.native) })
+}

@@ -1,0 +1,41 @@
+//! A module that was made and not written, such as a kernel around a function: it becomes a text,
+//! and goes the way of every text.
+
+use std::collections::BTreeMap;
+
+use super::{Linker, Text, compile};
+use crate::bundle::{Artifact, Language, Target};
+use crate::compose::{Keep, Options, compose, lean};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::emit::emit;
+use crate::permute::Settings;
+use crate::resolve::{Packages, load};
+use crate::source::{Memory, Package, SourceSet};
+use crate::validate::Validated;
+
+const FILE: &str = "module.wgsl";
+
+/// The output of a module's entry point as it would ship.
+///
+/// # Errors
+/// As of [`compile()`]; places are those of the text that the module became.
+pub fn compile_module(
+    validated: &Validated,
+    entry: &str,
+    target: Target,
+) -> Result<Artifact, Diagnostics> {
+    let wgsl = emit(validated, entry, Target::WGSL).map_err(|error| vec![error])?;
+    let wgsl = String::from_utf8_lossy(&wgsl.bytes).into_owned();
+    let files = Memory(BTreeMap::from([(FILE.to_owned(), wgsl)]));
+    let root = Package { name: "package".to_owned(), files: Box::new(files) };
+    let packages = Packages { root, dependencies: Vec::new() };
+    let graph = load(&mut SourceSet::default(), &packages, FILE, Language::Wesl)?;
+    let keep = Keep::Items(vec![entry.to_owned()]);
+    let options = Options { keep, ..Options::default() };
+    let composed = compose(&graph, &Settings::default(), &options)?;
+    let text = Text { composed: &composed, lean: &lean(&composed) };
+    let targets = [target];
+    let made = compile(&text, entry, &targets, &Linker::new(&targets))?;
+    let missing = || vec![Diagnostic::error(codes::EMIT_FAILED, format!("no output for {target}"))];
+    made.unit.targets.into_values().next().ok_or_else(missing)
+}

@@ -1,0 +1,70 @@
+//! Why a text, or one target of it, is compiled as a whole.
+
+use serde::{Deserialize, Serialize};
+
+/// A closed set: each is told in the summary of a run with an example.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reason {
+    /// The text was not written by the composer, which tells its declarations.
+    NoParts,
+    /// Not one entry point, or a compute shader.
+    EntryPoint,
+    Override,
+    /// A storage buffer: writers pass lengths along with it.
+    StorageBuffer,
+    /// An array of bindings: writers ask whether its index is uniform.
+    BindingArray,
+    /// GLSL: a prototype, or two functions of one name.
+    Overload,
+    /// A declaration that is not understood, such as a `precision` statement.
+    Declaration,
+    /// GLSL: a variable whose initial value names another variable.
+    Initialiser,
+    /// An identifier looks like the marks that references are written as.
+    MarkedName,
+    /// Functions call each other in a circle, or are nested too deeply.
+    Recursion,
+    /// naga refused a function by itself: the whole text tells what is wrong.
+    Refused,
+    /// A stub does not show its callers what the function does.
+    Stub,
+    /// A texture is sampled in a way that no stub can repeat.
+    Sampling,
+    /// The stage has no such operation: the whole text tells what is wrong.
+    Stage,
+    /// An output has a shape that is not understood.
+    Shape,
+    /// Outputs begin with lines that cannot be put together.
+    Header,
+    /// Two functions need different declarations of one name.
+    Clash,
+    /// A SPIR-V module has instructions that are not understood.
+    Spirv,
+}
+
+impl Reason {
+    /// One line for the summary.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::NoParts => "the text does not come from the composer",
+            Self::EntryPoint => "not one vertex or fragment entry point",
+            Self::Override => "the text has overrides",
+            Self::StorageBuffer => "the text has storage buffers",
+            Self::BindingArray => "the text has binding arrays",
+            Self::Overload => "the text has prototypes or overloaded functions",
+            Self::Declaration => "the text has a declaration that cannot be separated",
+            Self::Initialiser => "a variable is initialised from another variable",
+            Self::MarkedName => "an identifier looks like a mark of the linker",
+            Self::Recursion => "functions call each other in a circle or nest too deeply",
+            Self::Refused => "naga refuses a function by itself",
+            Self::Stub => "a stub cannot stand for a function",
+            Self::Sampling => "a texture is sampled in a way that a stub cannot repeat",
+            Self::Stage => "a function is not for this stage",
+            Self::Shape => "an output cannot be divided into declarations",
+            Self::Header => "first lines of outputs differ",
+            Self::Clash => "two functions need different declarations of one name",
+            Self::Spirv => "a SPIR-V module cannot be divided into functions",
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! What the callers of a function can notice of it, beside its signature.
+
+use std::collections::BTreeSet;
+
+use naga::valid::FunctionInfo;
+use naga::{
+    Block, Expression, Function, GlobalVariable, Handle, ImageClass, ImageDimension, Module,
+    SampleLevel, ShaderStage, Statement, TypeInner,
+};
+
+/// Facts that writers, the reflection and the lints take from a callee.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// Names of the module's variables that it uses, itself or through its callees: Metal passes
+    /// them along.
+    pub globals: BTreeSet<String>,
+    /// Textures and samplers that it uses together: GLSL combines them.
+    pub pairs: BTreeSet<Pair>,
+    /// It takes derivatives, or samples with a level that depends on them.
+    pub derives: bool,
+    /// It does so where fragments may have taken different branches.
+    pub parted: bool,
+    /// It cannot be called in a vertex stage.
+    pub only_fragments: bool,
+}
+
+/// A texture and a sampler that are used together.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Pair {
+    pub texture: Place,
+    pub sampler: Place,
+    pub shape: Shape,
+}
+
+/// Where a texture or a sampler comes from.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    Global(String),
+    /// The argument of that number.
+    Argument(u32),
+}
+
+/// What kind of texture it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Shape {
+    /// Components of a coordinate.
+    pub coordinates: u8,
+    pub cube: bool,
+    pub arrayed: bool,
+    /// A depth texture, and whether its sampler compares.
+    pub depth: bool,
+    pub compares: bool,
+}
+
+/// The name by which a variable's declaration is found: a GLSL block without an instance name is
+/// found by its first member.
+pub fn name_of(module: &Module, variable: &GlobalVariable) -> Option<String> {
+    match (&variable.name, &module.types[variable.ty].inner) {
+        (Some(name), _) => Some(name.clone()),
+        (None, TypeInner::Struct { members, .. }) => members.first()?.name.clone(),
+        _ => None,
+    }
+}
+
+/// Names of the variables that a function uses.
+pub fn globals(module: &Module, info: &FunctionInfo) -> Option<BTreeSet<String>> {
+    let used = module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());
+    used.map(|(_, variable)| name_of(module, variable)).collect()
+}
+
+/// Summarises a function. `callee` knows the summaries of those that it calls. `None` where a
+/// texture or a sampler comes from somewhere else than a variable or an argument.
+pub fn summarise<'s>(
+    module: &Module,
+    info: &FunctionInfo,
+    function: &Function,
+    callee: &dyn Fn(Handle<Function>) -> Option<&'s Summary>,
+) -> Option<Summary> {
+    let mut summary = Summary { globals: globals(module, info)?, ..Summary::default() };
+    for (_, expression) in function.expressions.iter() {
+        summary.derives |= derives(expression);
+        summary.only_fragments |= derives(expression);
+        if let Expression::ImageSample { image, sampler, .. } = expression {
+            let shape = shape(module, info, *image, *sampler)?;
+            let (texture, sampler) =
+                (place(module, function, *image)?, place(module, function, *sampler)?);
+            summary.pairs.insert(Pair { texture, sampler, shape });
+        }
+    }
+    let mut walk = Walk { module, function, callee, summary, parted: false };
+    walk.block(&function.body, false)?;
+    Some(walk.summary)
+}
+
+fn derives(expression: &Expression) -> bool {
+    matches!(
+        expression,
+        Expression::Derivative { .. }
+            | Expression::ImageSample { level: SampleLevel::Auto | SampleLevel::Bias(_), .. }
+    )
+}
+
+fn place(module: &Module, function: &Function, handle: Handle<Expression>) -> Option<Place> {
+    match function.expressions[handle] {
+        Expression::GlobalVariable(variable) => {
+            name_of(module, &module.global_variables[variable]).map(Place::Global)
+        }
+        Expression::FunctionArgument(number) => Some(Place::Argument(number)),
+        _ => None,
+    }
+}
+
+fn shape(
+    module: &Module,
+    info: &FunctionInfo,
+    image: Handle<Expression>,
+    sampler: Handle<Expression>,
+) -> Option<Shape> {
+    let TypeInner::Image { dim, arrayed, class } = *info[image].ty.inner_with(&module.types) else {
+        return None;
+    };
+    let compares = matches!(
+        info[sampler].ty.inner_with(&module.types),
+        TypeInner::Sampler { comparison: true }
+    );
+    let depth = match class {
+        ImageClass::Depth { multi: false } => true,
+        ImageClass::Sampled { kind: naga::ScalarKind::Float, multi: false } => false,
+        _ => return None,
+    };
+    let coordinates = match dim {
+        ImageDimension::D1 => 1,
+        ImageDimension::D2 => 2,
+        ImageDimension::D3 | ImageDimension::Cube => 3,
+    };
+    Some(Shape { coordinates, cube: dim == ImageDimension::Cube, arrayed, depth, compares })
+}
+
+/// Follows a function's statements.
+struct Walk<'w, 's> {
+    module: &'w Module,
+    function: &'w Function,
+    callee: &'w dyn Fn(Handle<Function>) -> Option<&'s Summary>,
+    summary: Summary,
+    /// Some fragments may have left the function or a loop.
+    parted: bool,
+}
+
+impl Walk<'_, '_> {
+    fn block(&mut self, block: &Block, inside: bool) -> Option<()> {
+        block.iter().try_for_each(|statement| self.statement(statement, inside))
+    }
+
+    fn statement(&mut self, statement: &Statement, inside: bool) -> Option<()> {
+        let parted = inside || self.parted;
+        match statement {
+            Statement::Emit(range) => {
+                let mut emitted = range.clone();
+                let is_derived = |handle| derives(&self.function.expressions[handle]);
+                self.summary.parted |= parted && emitted.any(is_derived);
+            }
+            Statement::Block(block) => self.block(block, inside)?,
+            Statement::If { accept, reject, .. } => {
+                self.block(accept, true)?;
+                self.block(reject, true)?;
+            }
+            Statement::Switch { cases, .. } => {
+                cases.iter().try_for_each(|case| self.block(&case.body, true))?;
+            }
+            Statement::Loop { body, continuing, .. } => {
+                self.block(body, true)?;
+                self.block(continuing, true)?;
+            }
+            Statement::Kill => {
+                self.summary.only_fragments = true;
+                self.parted = true;
+            }
+            Statement::Return { .. } | Statement::Break | Statement::Continue => {
+                self.parted |= inside;
+            }
+            Statement::Call { function, arguments, .. } => {
+                self.call(*function, arguments, parted)?;
+            }
+            _ => {}
+        }
+        Some(())
+    }
+
+    fn call(
+        &mut self,
+        function: Handle<Function>,
+        arguments: &[Handle<Expression>],
+        parted: bool,
+    ) -> Option<()> {
+        let callee = (self.callee)(function)?;
+        self.summary.derives |= callee.derives;
+        self.summary.parted |= callee.parted || parted && callee.derives;
+        self.summary.only_fragments |= callee.only_fragments;
+        for pair in &callee.pairs {
+            let at_call = |place: &Place| match place {
+                Place::Global(_) => Some(place.clone()),
+                Place::Argument(number) => {
+                    let argument = *arguments.get(*number as usize)?;
+                    self::place(self.module, self.function, argument)
+                }
+            };
+            let (texture, sampler) = (at_call(&pair.texture)?, at_call(&pair.sampler)?);
+            self.summary.pairs.insert(Pair { texture, sampler, shape: pair.shape });
+        }
+        Some(())
+    }
+}
+
+impl Summary {
+    /// Whether an entry point of the stage may reach the function.
+    pub fn is_for(&self, stage: ShaderStage) -> bool {
+        stage == ShaderStage::Fragment || !self.only_fragments
+    }
+}

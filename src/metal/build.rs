@@ -1,0 +1,236 @@
+//! Texts as one program: units of many texts, compiled on all cores, and linked.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::Output;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::adapt::adapt;
+use super::clang::{Clang, Missing};
+use super::interface::{Interface, Part, Role};
+
+/// Bytes of texts in a unit: the headers cost nothing then, and all cores have work.
+const UNIT: usize = 1 << 17;
+
+/// How shaders are compiled: without contraction, so that results are those of single operations,
+/// and with no undefined behaviour where Metal has none.
+const FLAGS: &[&str] = &[
+    "-c",
+    "-O1",
+    "-ffp-contract=off",
+    "-fno-exceptions",
+    "-fno-math-errno",
+    "-fno-rtti",
+    "-fno-strict-aliasing",
+    "-fwrapv",
+];
+
+/// A linked program.
+#[derive(Debug)]
+pub struct Built {
+    pub clang: Clang,
+    /// For each text its interface, or why it cannot be run.
+    pub entries: Vec<Result<Interface, String>>,
+}
+
+impl Built {
+    pub fn program(&self) -> PathBuf {
+        self.clang.path("program")
+    }
+}
+
+/// Compiles and links.
+pub fn build(texts: &[&str]) -> Result<Built, Missing> {
+    let clang = Clang::open()?;
+    let mut entries: Vec<_> = texts.iter().map(|text| Interface::read(text)).collect();
+    let units = units(texts, &entries);
+    let (next, objects) = (AtomicUsize::new(0), Mutex::new(Ok(Vec::new())));
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                loop {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let compiled = match (index, units.get(index.wrapping_sub(1))) {
+                        (0, _) => runtime(&clang),
+                        (_, Some(unit)) => compile(&clang, texts, unit),
+                        (_, None) => break,
+                    };
+                    add(&objects, compiled);
+                }
+            });
+        }
+    });
+    let objects = objects.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+    let mut names = Vec::new();
+    for object in objects {
+        match object {
+            Object::Compiled(name) => names.push(name),
+            Object::Refused(text, errors) => entries[text] = Err(errors),
+        }
+    }
+    names.sort();
+    link(&clang, &entries, &names)?;
+    Ok(Built { clang, entries })
+}
+
+/// What became of a unit, or of a text of it.
+enum Object {
+    /// The file's name.
+    Compiled(String),
+    Refused(usize, String),
+}
+
+type Objects = Result<Vec<Object>, Missing>;
+
+fn add(all: &Mutex<Objects>, found: Objects) {
+    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+    match (all.as_mut(), found) {
+        (Ok(objects), Ok(found)) => objects.extend(found),
+        (Ok(_), Err(missing)) => *all = Err(missing),
+        (Err(_), _) => {}
+    }
+}
+
+/// A text that is compiled: its index, and its interface.
+type Text<'t> = (usize, &'t Interface);
+
+fn units<'t>(texts: &[&str], entries: &'t [Result<Interface, String>]) -> Vec<Vec<Text<'t>>> {
+    let (mut units, mut bytes) = (Vec::new(), UNIT);
+    for (index, entry) in entries.iter().enumerate() {
+        let Ok(interface) = entry else { continue };
+        if bytes >= UNIT {
+            units.push(Vec::new());
+            bytes = 0;
+        }
+        bytes += texts[index].len();
+        if let Some(unit) = units.last_mut() {
+            unit.push((index, interface));
+        }
+    }
+    units
+}
+
+/// A unit that is refused is compiled in halves, down to the texts that are at fault.
+fn compile(clang: &Clang, texts: &[&str], unit: &[Text<'_>]) -> Objects {
+    let Some((first, _)) = unit.first() else { return Ok(Vec::new()) };
+    let name = format!("unit{first}-{}.o", unit.len());
+    let arguments: Vec<&str> = FLAGS.iter().copied().chain(["-o", &name]).collect();
+    let output = clang.compile(&source(texts, unit), &arguments)?;
+    if output.status.success() {
+        return Ok(vec![Object::Compiled(name)]);
+    }
+    if unit.len() == 1 {
+        return Ok(vec![Object::Refused(*first, told(&output))]);
+    }
+    let (first, second) = unit.split_at(unit.len() / 2);
+    let mut objects = compile(clang, texts, first)?;
+    objects.extend(compile(clang, texts, second)?);
+    Ok(objects)
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).trim().to_owned()
+}
+
+/// The program around the shaders.
+fn runtime(clang: &Clang) -> Objects {
+    let name = "runtime.o";
+    done(clang.call(&["-std=c++17", "-O1", "-c", "runtime.cpp", "-o", name])?)?;
+    Ok(vec![Object::Compiled(name.to_owned())])
+}
+
+fn done(output: Output) -> Result<(), Missing> {
+    if output.status.success() { Ok(()) } else { Err(Missing { reason: told(&output) }) }
+}
+
+/// Links all, with the table of entry points.
+fn link(
+    clang: &Clang,
+    entries: &[Result<Interface, String>],
+    objects: &[String],
+) -> Result<(), Missing> {
+    let mut table = "#include \"runtime.h\"\nusing namespace __lamplight;\n".to_owned();
+    for (index, _) in entries.iter().enumerate().filter(|(_, entry)| entry.is_ok()) {
+        let _ = writeln!(table, "void run{index}(const bindings&, const given&, result&);");
+    }
+    table += "const entry __lamplight::entries[] = {\n";
+    for (index, entry) in entries.iter().enumerate() {
+        let function = if entry.is_ok() { format!("run{index}") } else { "nullptr".to_owned() };
+        let _ = writeln!(table, "  {{{function}}},");
+    }
+    // C++ has no empty array.
+    table += "  {nullptr}};\n";
+    done(clang.compile(&table, &["-c", "-o", "table.o"])?)?;
+    let mut arguments = vec!["-o", "program", "table.o"];
+    arguments.extend(objects.iter().map(String::as_str));
+    arguments.push("-lm");
+    done(clang.call(&arguments)?)
+}
+
+/// Texts side by side, each in a namespace of its own and followed by the function that runs it.
+fn source(texts: &[&str], unit: &[Text<'_>]) -> String {
+    let mut source = "#include \"glue.h\"\n".to_owned();
+    for (index, interface) in unit {
+        let text = adapt(texts[*index]);
+        let _ = write!(
+            source,
+            "namespace {{ namespace text{index} {{\n#line 1 \"text\"\n{text}\n}} }}\n"
+        );
+        let _ = writeln!(source, "#line 1 \"glue\"");
+        glue(&mut source, *index, interface);
+    }
+    source
+}
+
+/// The function that fills parameters, and takes results, by their attributes.
+fn glue(to: &mut String, index: usize, interface: &Interface) {
+    let _ = writeln!(
+        to,
+        "void run{index}(const __lamplight::bindings& bound, const __lamplight::given& given,\n    \
+         __lamplight::result& result) {{"
+    );
+    if let Some((name, members)) = &interface.input {
+        let _ = writeln!(to, "  text{index}::{name} input = {{}};");
+        members.iter().for_each(|member| taken(to, member));
+    }
+    let arguments: Vec<String> = interface.parameters.iter().map(argument).collect();
+    let returned = if interface.output.is_empty() { "" } else { "const auto output = " };
+    let (name, list) = (&interface.name, arguments.join(", "));
+    let _ = writeln!(to, "  {returned}text{index}::{name}({list});");
+    interface.output.iter().for_each(|member| given(to, member));
+    *to += "}\n";
+}
+
+fn argument(part: &Part) -> String {
+    match part.role {
+        Role::StageIn => "input".to_owned(),
+        Role::Buffer(slot) => format!("__lamplight::buffer(bound, {slot})"),
+        Role::Texture(slot) => format!("__lamplight::texture_of(bound, {slot})"),
+        Role::Sampler(slot) => format!("__lamplight::sampler_of(bound, {slot})"),
+        Role::Position => "__lamplight::position(given)".to_owned(),
+        Role::FrontFacing => "given.front != 0".to_owned(),
+        Role::VertexIndex => "given.vertex_index".to_owned(),
+        Role::InstanceIndex => "given.instance_index".to_owned(),
+        Role::Location(_) | Role::Depth => "{}".to_owned(),
+    }
+}
+
+fn taken(to: &mut String, member: &Part) {
+    if let Role::Location(location) = member.role {
+        let name = &member.name;
+        let _ = writeln!(to, "  __lamplight::take(input.{name}, given.locations[{location}]);");
+    }
+}
+
+fn given(to: &mut String, member: &Part) {
+    let name = &member.name;
+    let _ = match member.role {
+        Role::Location(location) => {
+            writeln!(to, "  __lamplight::give(output.{name}, result.locations[{location}]);")
+        }
+        Role::Position => writeln!(to, "  __lamplight::give_position(output.{name}, result);"),
+        Role::Depth => writeln!(to, "  result.depth = output.{name};"),
+        _ => Ok(()),
+    };
+}

@@ -1,0 +1,146 @@
+//! clang, and the folder it reads the headers from.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{env, fs, io};
+
+use crate::tools::CLANG;
+
+/// The headers, and the program around shaders.
+const SHIM: &[(&str, &str)] = &[
+    ("compute.h", include_str!("shim/compute.h")),
+    ("convert.h", include_str!("shim/convert.h")),
+    ("glue.h", include_str!("shim/glue.h")),
+    ("math.h", include_str!("shim/math.h")),
+    ("matrix.h", include_str!("shim/matrix.h")),
+    ("metal_stdlib", include_str!("shim/metal_stdlib")),
+    ("runtime.cpp", include_str!("shim/runtime.cpp")),
+    ("runtime.h", include_str!("shim/runtime.h")),
+    ("simd/simd.h", include_str!("shim/simd/simd.h")),
+    ("texture.h", include_str!("shim/texture.h")),
+    ("types.h", include_str!("shim/types.h")),
+];
+
+/// How shaders are read: strictly C++17, one type of vector for one of components and elements,
+/// literals without a suffix of type `float`. Warnings about what naga writes help nobody.
+const FLAGS: &[&str] = &[
+    "-x",
+    "c++",
+    "-std=c++17",
+    "-fdeclspec",
+    "-flax-vector-conversions=none",
+    "-Xclang",
+    "-cl-single-precision-constant",
+    "-w",
+    "-fno-caret-diagnostics",
+    "-fno-color-diagnostics",
+    "-ferror-limit=5",
+];
+
+/// Why clang cannot be used, or failed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Missing {
+    pub reason: String,
+}
+
+/// An installed clang, with the headers in a folder of its own for as long as this lives.
+#[derive(Debug)]
+pub struct Clang {
+    folder: PathBuf,
+}
+
+/// What the installed clang says of itself.
+///
+/// # Errors
+/// There is none.
+pub fn version() -> Result<String, Missing> {
+    let output = Command::new(CLANG.program).arg("--version").output().map_err(reason)?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let version = text.lines().next().unwrap_or_default().trim().to_owned();
+    if output.status.success() && version.contains("clang") {
+        Ok(version)
+    } else {
+        Err(Missing { reason: format!("{} does not tell its version", CLANG.program) })
+    }
+}
+
+fn reason(error: io::Error) -> Missing {
+    Missing { reason: format!("{}: {error}", CLANG.program) }
+}
+
+impl Clang {
+    /// Looks for clang, and writes the headers.
+    pub fn open() -> Result<Self, Missing> {
+        version()?;
+        let clang = Self { folder: own_folder().map_err(reason)? };
+        for (name, text) in SHIM {
+            clang.write(name, text.as_bytes()).map_err(reason)?;
+        }
+        Ok(clang)
+    }
+
+    /// A file in the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// Writes a file of the folder.
+    fn write(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        let path = self.path(name);
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        fs::write(path, bytes)
+    }
+
+    /// Reads a source as shaders are read, and does what the arguments say.
+    pub fn compile(&self, source: &str, arguments: &[&str]) -> Result<Output, Missing> {
+        let mut command = Command::new(CLANG.program);
+        command.args(FLAGS).arg("-isystem").arg(&self.folder).args(arguments).arg("-");
+        self.run(command, source.as_bytes())
+    }
+
+    /// Any other call, in the folder.
+    pub fn call(&self, arguments: &[&str]) -> Result<Output, Missing> {
+        let mut command = Command::new(CLANG.program);
+        command.args(arguments);
+        self.run(command, &[])
+    }
+
+    fn run(&self, mut command: Command, input: &[u8]) -> Result<Output, Missing> {
+        command.current_dir(&self.folder).stdin(Stdio::piped());
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().map_err(reason)?;
+        if let Some(mut stdin) = child.stdin.take() {
+            // It stops reading at a mistake it cannot go on from; what it said of it follows.
+            match stdin.write_all(input) {
+                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                    return Err(reason(error));
+                }
+                _ => drop(stdin),
+            }
+        }
+        child.wait_with_output().map_err(reason)
+    }
+}
+
+impl Drop for Clang {
+    fn drop(&mut self) {
+        // What is left of it is in the folder for temporary files.
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// A new folder for temporary files.
+fn own_folder() -> io::Result<PathBuf> {
+    static NEXT: AtomicUsize = AtomicUsize::new(0);
+    loop {
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("lamplight-metal-{}-{number}", std::process::id());
+        let folder = Path::new(&env::temp_dir()).join(name);
+        match fs::create_dir(&folder) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            outcome => return outcome.map(|()| folder),
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! What an entry point takes and gives, read from its own text.
+
+use super::attributes::{Attribute, list};
+use super::token::{Token, tokens};
+use crate::bundle::Stage;
+
+/// Where a parameter or a member comes from, or goes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// The struct of locations.
+    StageIn,
+    Buffer(u32),
+    Texture(u32),
+    Sampler(u32),
+    /// An attribute of a vertex, what goes from one stage to the next, a colour.
+    Location(u32),
+    Position,
+    Depth,
+    FrontFacing,
+    VertexIndex,
+    InstanceIndex,
+}
+
+/// A parameter or a member with its attributes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Part {
+    pub name: String,
+    pub role: Role,
+    /// Whether it is the same for a whole triangle.
+    pub is_flat: bool,
+}
+
+/// One entry point.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Interface {
+    pub stage: Stage,
+    pub name: String,
+    pub parameters: Vec<Part>,
+    /// The struct of locations it takes: its name and members.
+    pub input: Option<(String, Vec<Part>)>,
+    /// Members of what it returns.
+    pub output: Vec<Part>,
+}
+
+impl Interface {
+    /// Reads the only entry point of a text. The error says what is not understood.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let tokens = tokens(text);
+        let stages = [("vertex", Stage::Vertex), ("fragment", Stage::Fragment)];
+        let found = tokens.iter().enumerate().find_map(|(at, token)| {
+            let (_, stage) = stages.iter().find(|(name, _)| *name == token.text)?;
+            Some((at, *stage))
+        });
+        let (at, stage) = found.ok_or("there is no vertex or fragment entry point")?;
+        let [returned, name, "("] = texts(&tokens, at + 1)? else {
+            return Err(format!("`{}` is not followed by a function", tokens[at].text));
+        };
+        let mut parameters = Vec::new();
+        let mut input = None;
+        for parameter in parts(&tokens, at + 4, (",", ")"))? {
+            let part = part(&parameter)?;
+            if part.role == Role::StageIn {
+                let name = parameter.first().map_or("", |token| token.text);
+                input = Some((name.to_owned(), members(&tokens, name)?));
+            }
+            parameters.push(part);
+        }
+        let output = if returned == "void" { Vec::new() } else { members(&tokens, returned)? };
+        Ok(Self { stage, name: name.to_owned(), parameters, input, output })
+    }
+
+    /// How many locations it takes, and gives.
+    pub fn locations(&self) -> (u32, u32) {
+        let count = |parts: &[Part]| {
+            let locations = parts.iter().filter_map(|part| match part.role {
+                Role::Location(location) => Some(location + 1),
+                _ => None,
+            });
+            locations.max().unwrap_or(0)
+        };
+        (self.input.as_ref().map_or(0, |(_, members)| count(members)), count(&self.output))
+    }
+}
+
+fn texts<'t, const N: usize>(tokens: &[Token<'t>], at: usize) -> Result<[&'t str; N], String> {
+    let found = tokens.get(at..at + N).ok_or("the text ends too early")?;
+    Ok(std::array::from_fn(|index| found[index].text))
+}
+
+/// The members of a struct.
+fn members(tokens: &[Token<'_>], name: &str) -> Result<Vec<Part>, String> {
+    let declared =
+        |at: &usize| texts(tokens, *at).is_ok_and(|found| found == ["struct", name, "{"]);
+    let at = (0..tokens.len()).find(declared).ok_or_else(|| format!("there is no `{name}`"))?;
+    parts(tokens, at + 3, (";", "}"))?.iter().map(|part| self::part(part)).collect()
+}
+
+/// What lies between separators, up to the end.
+fn parts<'t>(
+    tokens: &[Token<'t>],
+    start: usize,
+    (separator, end): (&str, &str),
+) -> Result<Vec<Vec<Token<'t>>>, String> {
+    let (mut parts, mut part, mut depth) = (Vec::new(), Vec::new(), 0u32);
+    for token in tokens.iter().skip(start) {
+        let is_outside = depth == 0 && (token.text == separator || token.text == end);
+        if is_outside && !part.is_empty() {
+            parts.push(std::mem::take(&mut part));
+        } else if !is_outside {
+            part.push(*token);
+        }
+        match token.text {
+            text if depth == 0 && text == end => return Ok(parts),
+            "<" | "(" | "[" => depth += 1,
+            ">" | ")" | "]" => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    Err("the text ends too early".to_owned())
+}
+
+/// A parameter or a member: its last word before the attributes is its name.
+fn part(tokens: &[Token<'_>]) -> Result<Part, String> {
+    let at = (0..tokens.len()).find(|at| list(tokens, *at).is_some());
+    let Some((at, (attributes, _))) = at.and_then(|at| Some((at, list(tokens, at)?))) else {
+        let words: Vec<&str> = tokens.iter().map(|token| token.text).collect();
+        return Err(format!("`{}` has no attribute", words.join(" ")));
+    };
+    let name = tokens[..at].last().map_or("", |token| token.text).to_owned();
+    let role = attributes.iter().find_map(role).ok_or_else(|| {
+        let names: Vec<&str> = attributes.iter().map(|attribute| attribute.name).collect();
+        format!("`{name}` is `{}`, which nothing stands for on the CPU", names.join(", "))
+    })?;
+    let is_flat = attributes.iter().any(|attribute| attribute.name == "flat");
+    Ok(Part { name, role, is_flat })
+}
+
+fn role(attribute: &Attribute<'_>) -> Option<Role> {
+    let user = || attribute.given?.strip_prefix("loc")?.parse().ok();
+    match attribute.name {
+        "stage_in" => Some(Role::StageIn),
+        "buffer" => attribute.number().map(Role::Buffer),
+        "texture" => attribute.number().map(Role::Texture),
+        "sampler" => attribute.number().map(Role::Sampler),
+        "attribute" | "color" => attribute.number().map(Role::Location),
+        "user" => user().map(Role::Location),
+        "position" => Some(Role::Position),
+        "depth" => Some(Role::Depth),
+        "front_facing" => Some(Role::FrontFacing),
+        "vertex_id" => Some(Role::VertexIndex),
+        "instance_id" => Some(Role::InstanceIndex),
+        _ => None,
+    }
+}

@@ -1,0 +1,160 @@
+//! Whether texts in MSL are well formed: attributes by a table, everything else by clang.
+
+use std::fmt::Write as _;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::adapt::adapt;
+use super::attributes;
+use super::clang::{Clang, Missing};
+use super::token::tokens;
+
+/// Bytes of texts that one run of clang takes: enough that the headers cost nothing, few enough
+/// that finding the one that is refused is quick.
+const BATCH: usize = 1 << 20;
+
+/// A text that is not well formed.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Refusal {
+    /// Index of the text.
+    pub index: usize,
+    /// What is wrong with it, as `line:column: error: ...`, a line for each.
+    pub errors: String,
+}
+
+/// Judges texts on all cores; `progress` is told how many are done.
+///
+/// # Errors
+/// clang is missing or cannot be run.
+pub fn judge(texts: &[&str], progress: &(dyn Fn(usize) + Sync)) -> Refusals {
+    let clang = Clang::open()?;
+    let texts: Vec<Text<'_>> = texts.iter().copied().enumerate().collect();
+    let batches = batches(&texts);
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let outcome = Mutex::new(Ok(Vec::new()));
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    add(&outcome, judge_all(&clang, batch));
+                    progress(done.fetch_add(batch.len(), Ordering::Relaxed) + batch.len());
+                }
+            });
+        }
+    });
+    let mut refusals = outcome.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+    refusals.sort();
+    Ok(refusals)
+}
+
+type Refusals = Result<Vec<Refusal>, Missing>;
+
+fn add(outcome: &Mutex<Refusals>, found: Refusals) {
+    let mut outcome = outcome.lock().unwrap_or_else(PoisonError::into_inner);
+    match (outcome.as_mut(), found) {
+        (Ok(refusals), Ok(found)) => refusals.extend(found),
+        (Ok(_), Err(missing)) => *outcome = Err(missing),
+        (Err(_), _) => {}
+    }
+}
+
+fn judge_all(clang: &Clang, batch: &[Text<'_>]) -> Refusals {
+    let (mut refusals, mut sound) = (Vec::new(), Vec::new());
+    for (index, text) in batch {
+        match before_clang(text) {
+            Some(errors) => refusals.push(Refusal { index: *index, errors }),
+            None => sound.push((*index, *text)),
+        }
+    }
+    judge_batch(clang, &sound, &mut refusals)?;
+    Ok(refusals)
+}
+
+/// What is checked without clang: a header that the batch has already, an entry point, attributes.
+fn before_clang(text: &str) -> Option<String> {
+    if !text.lines().any(|line| line.trim() == "#include <metal_stdlib>") {
+        return Some("1:1: error: `metal_stdlib` is not included".to_owned());
+    }
+    let is_stage = |word: &str| ["vertex", "fragment", "kernel"].contains(&word);
+    if !tokens(text).iter().any(|token| is_stage(token.text)) {
+        return Some("1:1: error: there is no entry point".to_owned());
+    }
+    attributes::mistake(text)
+}
+
+type Text<'t> = (usize, &'t str);
+
+fn batches<'b, 't>(texts: &'b [Text<'t>]) -> Vec<&'b [Text<'t>]> {
+    let (mut batches, mut start, mut bytes) = (Vec::new(), 0, 0);
+    for (index, (_, text)) in texts.iter().enumerate() {
+        bytes += text.len();
+        if bytes >= BATCH || index + 1 == texts.len() {
+            batches.push(&texts[start..=index]);
+            (start, bytes) = (index + 1, 0);
+        }
+    }
+    batches
+}
+
+/// A batch that is refused is judged in halves, down to the texts that are at fault: a mistake in
+/// one of them may make others look wrong.
+fn judge_batch(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Result<(), Missing> {
+    if batch.is_empty() {
+        return Ok(());
+    }
+    let output = clang.compile(&unit(batch), &["-fsyntax-only"])?;
+    if output.status.success() {
+        return Ok(());
+    }
+    if let [(index, _)] = batch {
+        to.push(Refusal { index: *index, errors: errors(&output.stderr) });
+        return Ok(());
+    }
+    let (first, second) = batch.split_at(batch.len() / 2);
+    judge_batch(clang, first, to)?;
+    judge_batch(clang, second, to)
+}
+
+/// Texts side by side, each in a namespace of its own.
+fn unit(texts: &[Text<'_>]) -> String {
+    let mut unit = "#include <metal_stdlib>\n".to_owned();
+    for (number, (_, text)) in texts.iter().enumerate() {
+        let _ = write!(unit, "namespace text{number} {{\n#line 1 \"text\"\n{}\n}}\n", adapt(text));
+    }
+    unit
+}
+
+/// What clang says of a text, a line for each error, with the types that Metal knows.
+fn errors(stderr: &[u8]) -> String {
+    let text = String::from_utf8_lossy(stderr);
+    let lines: Vec<&str> = text.lines().collect();
+    let errors: Vec<String> = (0..lines.len()).filter_map(|at| error(&lines[at..])).collect();
+    let errors = if errors.is_empty() { text.trim().to_owned() } else { errors.join("\n") };
+    TYPES.iter().fold(errors, |errors, (clang, metal)| errors.replace(clang, metal))
+}
+
+/// An error with its place. Where that is in the headers, a note says what in the text led there.
+fn error(lines: &[&str]) -> Option<String> {
+    let (place, message) = lines.first()?.split_once(": error: ")?;
+    let here = |line: &str| line.strip_prefix("text:").map(str::to_owned);
+    let notes = lines[1..].iter().take_while(|line| !line.contains(": error: "));
+    let noted = || {
+        let mut places = notes.filter_map(|line| here(line.split_once(": note: ")?.0));
+        places.next()
+    };
+    let place = here(place).or_else(noted).unwrap_or_else(|| place.to_owned());
+    Some(format!("{place}: error: {message}"))
+}
+
+/// What the headers call types, and what Metal does.
+const TYPES: &[(&str, &str)] = &[
+    // A comparison of vectors is the only vector of clang's own `int`.
+    ("'int' values", "'bool' values"),
+    ("int __attribute__((ext_vector_type(2)))", "metal::bool2"),
+    ("int __attribute__((ext_vector_type(3)))", "metal::bool3"),
+    ("int __attribute__((ext_vector_type(4)))", "metal::bool4"),
+    ("'wchar_t' values", "'int' values"),
+    ("wchar_t", "int"),
+    ("__lamplight_", ""),
+    ("__lamplight::", "metal::"),
+];

@@ -1,0 +1,22 @@
+//! Metal's language without a Mac: clang, with headers of our own in the place of Apple's, judges
+//! the MSL that the crate emits and runs it on the CPU.
+//!
+//! `texts -> judge (attributes, then clang) -> refusals`
+//! `texts -> interface (what entry points take) -> program (clang, linked) -> words`
+//!
+//! The headers are in `shim/`. What they leave open, since C++ has no word for it, `adapt` writes
+//! in another way, and [`attributes`] checks what clang skips.
+
+mod adapt;
+pub mod attributes;
+mod build;
+mod clang;
+pub mod interface;
+pub mod judge;
+pub mod program;
+pub mod request;
+mod token;
+
+pub use clang::{Missing, version};
+pub use judge::{Refusal, judge};
+pub use program::Program;

@@ -1,0 +1,54 @@
+//! Words and signs of a text in MSL, without comments and directives.
+
+/// A word, a number or one sign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Token<'t> {
+    pub text: &'t str,
+    /// First byte in the text.
+    pub at: usize,
+}
+
+impl Token<'_> {
+    /// First byte behind it.
+    pub fn end(&self) -> usize {
+        self.at + self.text.len()
+    }
+}
+
+/// The tokens in order.
+pub fn tokens(text: &str) -> Vec<Token<'_>> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while let Some(first) = text[at..].chars().next() {
+        let rest = &text[at..];
+        let length = if rest.starts_with("//") || first == '#' {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if rest.starts_with("/*") {
+            rest.find("*/").map_or(rest.len(), |end| end + 2)
+        } else if first.is_whitespace() {
+            first.len_utf8()
+        } else {
+            let length = word(rest).max(first.len_utf8());
+            found.push(Token { text: &rest[..length], at });
+            length
+        };
+        at += length;
+    }
+    found
+}
+
+/// Bytes of the word or the number that the text starts with.
+fn word(text: &str) -> usize {
+    let is_number = text.starts_with(|first: char| first.is_ascii_digit());
+    let part =
+        |letter: char| letter.is_alphanumeric() || letter == '_' || is_number && letter == '.';
+    text.find(|letter: char| !part(letter)).unwrap_or(text.len())
+}
+
+/// Line and column of a byte, both from 1.
+pub fn place(text: &str, at: usize) -> (usize, usize) {
+    let before = text.get(..at).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    (line, before[start..].chars().count() + 1)
+}

@@ -1,0 +1,147 @@
+//! A file that the user names.
+
+use std::fs::{self, File, FileType, OpenOptions};
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+use super::scratch::sync_folder;
+use super::{Error, Foreign, Replace, Scratch, make_folder};
+
+/// How much of a file is looked at to see whether it is ours.
+pub const HEAD_BYTES: usize = 4096;
+
+/// Writes a file whatever it was: for files whose content the caller has read and understood, or
+/// that lie in a folder of ours.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    write_file(path, bytes, |_| true, Replace::Any)
+}
+
+/// Writes a file, or the stream that the path names.
+///
+/// `is_ours` looks at the first [`HEAD_BYTES`] bytes of a file that is there and not empty.
+///
+/// # Errors
+/// [`Error::Foreign`] where something else is there.
+pub fn write_file(
+    path: &Path,
+    bytes: &[u8],
+    is_ours: impl Fn(&[u8]) -> bool,
+    replace: Replace,
+) -> Result<(), Error> {
+    if is_descriptor(path) {
+        return append(path, bytes);
+    }
+    let Some(found) = there(path)? else { return put(path, bytes, None) };
+    if is_stream(found.file_type()) {
+        return append(path, bytes);
+    }
+    if !found.is_file() {
+        return Err(Foreign::never(path, what(found.file_type())).into());
+    }
+    let real = path.canonicalize().map_err(|error| Error::io(path, &error))?;
+    if has_bytes(&real, found.len(), bytes) {
+        return Ok(());
+    }
+    let head = head(&real).map_err(|error| Error::io(path, &error))?;
+    if replace == Replace::Ours && !head.is_empty() && !is_ours(&head) {
+        return Err(Foreign::file(path, "is a file that Lamplight did not write").into());
+    }
+    put(&real, bytes, Some(found.permissions()))
+}
+
+/// What is at a path, links followed; `None` where nothing is.
+fn there(path: &Path) -> Result<Option<fs::Metadata>, Error> {
+    match fs::metadata(path) {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.kind() == ErrorKind::NotFound => match fs::symlink_metadata(path) {
+            Ok(_) => Err(Foreign::never(path, "is a link that leads nowhere").into()),
+            Err(_) => Ok(None),
+        },
+        // A file where a folder would have to be is told when the folder is made.
+        Err(error) if error.kind() == ErrorKind::NotADirectory => Ok(None),
+        Err(error) => Err(Error::io(path, &error)),
+    }
+}
+
+/// Writes beside, and renames.
+fn put(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> Result<(), Error> {
+    let folder = parent(path);
+    make_folder(&folder)?;
+    let scratch = Scratch::new(&folder)?;
+    let written = scratch.write("file", bytes)?;
+    if let Some(permissions) = permissions {
+        fs::set_permissions(&written, permissions).map_err(|error| Error::io(path, &error))?;
+    }
+    fs::rename(written, path).map_err(|error| Error::io(path, &error))?;
+    sync_folder(&folder);
+    Ok(())
+}
+
+fn parent(path: &Path) -> PathBuf {
+    let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    parent.unwrap_or(Path::new(".")).to_owned()
+}
+
+/// Writes to a stream, or to the end of a file that somebody opened for us.
+fn append(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let all = |stream: &mut dyn Write| stream.write_all(bytes).and_then(|()| stream.flush());
+    let written = match path.to_str() {
+        // A socket cannot be opened by its path.
+        Some("/dev/stdout") => all(&mut io::stdout()),
+        _ => OpenOptions::new().append(true).open(path).and_then(|mut stream| all(&mut stream)),
+    };
+    written.map_err(|error| Error::io(path, &error))
+}
+
+/// Whether the path names an open file of a process, such as `/dev/stdout`: the file that such a
+/// path leads to is held open by somebody, and replacing it would write past its holder.
+fn is_descriptor(path: &Path) -> bool {
+    const MOST_LINKS: usize = 16;
+    let mut at = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    for _ in 0..MOST_LINKS {
+        if ["/proc", "/dev/fd", "/dev/stdin", "/dev/stdout", "/dev/stderr"]
+            .iter()
+            .any(|known| at.starts_with(known))
+        {
+            return true;
+        }
+        let Ok(next) = fs::read_link(&at) else { return false };
+        at = parent(&at).join(next);
+    }
+    false
+}
+
+#[cfg(unix)]
+pub(super) fn is_stream(kind: FileType) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    kind.is_char_device() || kind.is_fifo()
+}
+
+#[cfg(not(unix))]
+pub(super) fn is_stream(_: FileType) -> bool {
+    false
+}
+
+/// What something that is no file is.
+pub(super) fn what(kind: FileType) -> &'static str {
+    if kind.is_dir() {
+        "is a folder"
+    } else if kind.is_symlink() {
+        "is a link"
+    } else if is_stream(kind) {
+        "is a pipe or a device"
+    } else {
+        "is neither a file nor a folder"
+    }
+}
+
+/// Whether a file has these bytes.
+pub(super) fn has_bytes(path: &Path, length: u64, bytes: &[u8]) -> bool {
+    length == bytes.len() as u64 && fs::read(path).is_ok_and(|found| found == bytes)
+}
+
+fn head(path: &Path) -> io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    File::open(path)?.take(HEAD_BYTES as u64).read_to_end(&mut head)?;
+    Ok(head)
+}

@@ -1,0 +1,68 @@
+//! The one way to the disk. Every file that a command or the loader writes goes through here.
+//!
+//! What holds for all of it:
+//!
+//! - A file is written in a [`Scratch`] folder beside its place, synced, and renamed into it. A run
+//!   that is killed leaves the older file whole, and the next run removes what it left.
+//! - Only what is absent, empty or ours is replaced. Ours is decided by content: a mark that the
+//!   file carries, or the hash that [`write_folder`] recorded. [`Replace::Any`] stands for a user
+//!   who said `--force`.
+//! - Nothing is deleted here but scratch folders that carry our mark and that no run holds.
+//! - Inside an output folder no link is followed. A file that the user names may be a link, whose
+//!   target is written, or a stream (a pipe, a terminal, `/dev/null`), which is written to.
+
+mod error;
+mod file;
+mod folder;
+mod scratch;
+
+pub use error::{Error, Foreign};
+pub use file::{HEAD_BYTES, write, write_file};
+pub use folder::{Folder, write_folder};
+pub use scratch::{Scratch, sync_folder};
+
+use std::fs::{self, File, TryLockError};
+use std::path::Path;
+
+/// Which of the files that are there may be replaced.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Replace {
+    /// Only those that we wrote.
+    #[default]
+    Ours,
+    /// Any regular file: the user asked for it with `--force`.
+    Any,
+}
+
+/// Waits until no other run writes into a folder; calls `waiting` once if it has to wait.
+///
+/// The system ends a turn with its process. Where folders cannot be locked there are no turns.
+pub fn turn(folder: &Path, waiting: &dyn Fn()) -> Option<File> {
+    let folder = File::open(folder).ok()?;
+    match folder.try_lock() {
+        Ok(()) => Some(folder),
+        Err(TryLockError::WouldBlock) => {
+            waiting();
+            folder.lock().ok()?;
+            Some(folder)
+        }
+        Err(TryLockError::Error(_)) => None,
+    }
+}
+
+/// Makes a folder and those above it.
+pub fn make_folder(path: &Path) -> Result<(), Error> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => Ok(()),
+        Ok(_) => Err(Foreign::never(path, "is no folder").into()),
+        Err(_) => fs::create_dir_all(path).map_err(|error| match obstacle(path) {
+            Some(file) => Foreign::never(file, "is no folder").into(),
+            None => Error::io(path, &error),
+        }),
+    }
+}
+
+/// What lies where a folder would have to be.
+fn obstacle(path: &Path) -> Option<&Path> {
+    path.ancestors().find(|above| fs::symlink_metadata(above).is_ok_and(|found| !found.is_dir()))
+}

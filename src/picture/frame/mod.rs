@@ -1,0 +1,15 @@
+//! Whole programs, made ready to be drawn: uniforms packed by reflection, stages composed, and
+//! fragment stages that tell what each fragment was given.
+//!
+//! `reflection + values -> buffers`, `permutation -> stages`
+//!
+//! A frame's targets hold words, four a pixel, so that results are exact to the bit on every
+//! executor: [`probe`] rewrites a fragment entry point to give the bits of its colour and of its
+//! own inputs.
+
+mod pack;
+pub mod probe;
+mod programs;
+
+pub use pack::pack;
+pub use programs::{Composed, Programs, Stages};

@@ -1,0 +1,193 @@
+//! Fragment entry points rewritten to give words: the bits of the colour they return, and of what
+//! they are given.
+
+use naga::{
+    Binding, EntryPoint, Expression, Function, FunctionResult, Handle, Literal, Module, Range,
+    Scalar, ScalarKind, Span, Statement, StructMember, Type, TypeInner, VectorSize,
+};
+
+/// A rewritten module.
+#[derive(Debug)]
+pub struct Watched {
+    /// The fragment entry point has the same name. It returns four words at each location: the
+    /// bits of the colour at 0, then its inputs, flattened; 0 behind the last one.
+    pub module: Module,
+    /// Locations.
+    pub targets: u32,
+}
+
+/// The module with a fragment entry point that tells what it was given. `None` without such an
+/// entry point, or where it returns no four numbers at location 0.
+pub fn watched(module: &Module, entry: &str) -> Option<Watched> {
+    let (mut module, index) = (module.clone(), find(module, entry)?);
+    let inner = inner(&mut module, index)?;
+    let mut body = Body::new(&mut module, index);
+    let colour = body.colour(inner)?;
+    let types: Vec<_> = body.function.arguments.iter().map(|argument| argument.ty).collect();
+    let mut words = Vec::new();
+    for (value, ty) in body.arguments().into_iter().zip(types) {
+        body.flatten(value, ty, &mut words);
+    }
+    let zero = body.literal(0);
+    words.resize(words.len().next_multiple_of(4), zero);
+    let ty = body.words();
+    let mut components = vec![colour];
+    components.extend(
+        words.chunks(4).map(|four| body.add(Expression::Compose { ty, components: four.to_vec() })),
+    );
+    let targets = components.len() as u32;
+    body.finish(components, index);
+    Some(Watched { module, targets })
+}
+
+/// The module with a fragment entry point that returns the bits of its colour as four words.
+/// `None` as for [`watched`].
+pub fn bits(module: &Module, entry: &str) -> Option<Module> {
+    let (mut module, index) = (module.clone(), find(module, entry)?);
+    let inner = inner(&mut module, index)?;
+    let mut body = Body::new(&mut module, index);
+    let colour = body.colour(inner)?;
+    body.finish(vec![colour], index);
+    Some(module)
+}
+
+fn find(module: &Module, entry: &str) -> Option<usize> {
+    module
+        .entry_points
+        .iter()
+        .position(|point| point.name == entry && point.stage == naga::ShaderStage::Fragment)
+}
+
+/// The entry point as a plain function.
+fn inner(module: &mut Module, index: usize) -> Option<Handle<Function>> {
+    let mut function = module.entry_points[index].function.clone();
+    function.result.as_mut()?.binding = None;
+    function.arguments.iter_mut().for_each(|argument| argument.binding = None);
+    function.name = Some("lamplight_inner".to_owned());
+    Some(module.functions.append(function, Span::UNDEFINED))
+}
+
+/// A new body for an entry point.
+struct Body<'a> {
+    module: &'a mut Module,
+    function: Function,
+}
+
+type Value = Handle<Expression>;
+
+impl<'a> Body<'a> {
+    fn new(module: &'a mut Module, index: usize) -> Self {
+        let arguments = module.entry_points[index].function.arguments.clone();
+        Self { module, function: Function { arguments, ..Function::default() } }
+    }
+
+    fn arguments(&mut self) -> Vec<Value> {
+        (0..self.function.arguments.len() as u32)
+            .map(|index| self.add(Expression::FunctionArgument(index)))
+            .collect()
+    }
+
+    /// The bits of what the function returns at location 0.
+    fn colour(&mut self, inner: Handle<Function>) -> Option<Value> {
+        let arguments = self.arguments();
+        let ty = self.module.functions[inner].result.as_ref()?.ty;
+        let member = match &self.module.types[ty].inner {
+            TypeInner::Vector { size: VectorSize::Quad, .. } => None,
+            TypeInner::Struct { members, .. } => {
+                Some(members.iter().position(|member| is_colour(self.module, member))?)
+            }
+            _ => return None,
+        };
+        let result =
+            self.function.expressions.append(Expression::CallResult(inner), Span::UNDEFINED);
+        self.function.body.push(
+            Statement::Call { function: inner, arguments, result: Some(result) },
+            Span::UNDEFINED,
+        );
+        let index = |index: usize| Expression::AccessIndex { base: result, index: index as u32 };
+        let colour = member.map_or(result, |member| self.add(index(member)));
+        Some(self.add(Expression::As { expr: colour, kind: ScalarKind::Uint, convert: None }))
+    }
+
+    /// Returns one value of four words at each location.
+    fn finish(mut self, components: Vec<Value>, index: usize) {
+        let four = self.words();
+        let location = |location: usize| Binding::Location {
+            location: location as u32,
+            interpolation: None,
+            sampling: None,
+            blend_src: None,
+            per_primitive: false,
+        };
+        let member = |index: usize| StructMember {
+            name: Some(format!("target_{index}")),
+            ty: four,
+            binding: Some(location(index)),
+            offset: 16 * index as u32,
+        };
+        let members: Vec<_> = (0..components.len()).map(member).collect();
+        let ty = self.ty(TypeInner::Struct { span: 16 * members.len() as u32, members });
+        let value = self.add(Expression::Compose { ty, components });
+        self.function.result = Some(FunctionResult { ty, binding: None });
+        self.function.body.push(Statement::Return { value: Some(value) }, Span::UNDEFINED);
+        let entry: &mut EntryPoint = &mut self.module.entry_points[index];
+        entry.function = self.function;
+    }
+
+    fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
+        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
+            TypeInner::Scalar(scalar) => {
+                let word = self.word(value, scalar.kind);
+                return words.push(word);
+            }
+            TypeInner::Vector { size, scalar } => {
+                vec![self.ty(TypeInner::Scalar(scalar)); size as usize]
+            }
+            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
+            _ => Vec::new(),
+        };
+        for (index, part) in parts.into_iter().enumerate() {
+            let component = self.add(Expression::AccessIndex { base: value, index: index as u32 });
+            self.flatten(component, part, words);
+        }
+    }
+
+    fn word(&mut self, value: Value, kind: ScalarKind) -> Value {
+        match kind {
+            ScalarKind::Uint => value,
+            ScalarKind::Bool => {
+                let (accept, reject) = (self.literal(1), self.literal(0));
+                self.add(Expression::Select { condition: value, accept, reject })
+            }
+            _ => self.add(Expression::As { expr: value, kind: ScalarKind::Uint, convert: None }),
+        }
+    }
+
+    fn words(&mut self) -> Handle<Type> {
+        self.ty(TypeInner::Vector { size: VectorSize::Quad, scalar: Scalar::U32 })
+    }
+
+    fn ty(&mut self, inner: TypeInner) -> Handle<Type> {
+        self.module.types.insert(Type { name: None, inner }, Span::UNDEFINED)
+    }
+
+    fn literal(&mut self, value: u32) -> Value {
+        self.add(Expression::Literal(Literal::U32(value)))
+    }
+
+    fn add(&mut self, expression: Expression) -> Value {
+        let emitted = !expression.needs_pre_emit();
+        let value = self.function.expressions.append(expression, Span::UNDEFINED);
+        if emitted {
+            self.function
+                .body
+                .push(Statement::Emit(Range::new_from_bounds(value, value)), Span::UNDEFINED);
+        }
+        value
+    }
+}
+
+fn is_colour(module: &Module, member: &StructMember) -> bool {
+    matches!(member.binding, Some(Binding::Location { location: 0, .. }))
+        && matches!(module.types[member.ty].inner, TypeInner::Vector { size: VectorSize::Quad, .. })
+}

@@ -1,0 +1,112 @@
+//! The light that casts the shadow, as a viewer.
+
+use glam::{DMat4, DVec3};
+
+use super::plan::Pass;
+use crate::scene::sets::{Lamp, LampKind, Scene};
+use crate::scene::{
+    Bounds, Clip, Depth, corners, cube_projection, cube_view, depth_range, fit, look_along,
+    orthographic, perspective,
+};
+
+/// What a shadow map is drawn with.
+#[derive(Debug, Clone)]
+pub struct LightView {
+    /// World to clip space: one, or one for each face of a cube.
+    pub clip_from_world: Vec<DMat4>,
+    pub near: f64,
+    pub far: f64,
+    /// Texels along an edge.
+    pub size: u32,
+    /// Size of a texel: everywhere for directional lights, at distance 1 for others.
+    pub texel: f64,
+}
+
+/// A box for a scene without points.
+const UNIT: Bounds =
+    Bounds { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: -1.0, far: 1.0 };
+
+/// Planes nearer than this share of the far one waste what precision there is.
+const NEAREST: f64 = 0.02;
+
+impl LightView {
+    /// The view of the scene's first lamp as the last pass takes it.
+    pub fn new(scene: &Scene, lamp: &Lamp, last: &Pass, size: u32) -> Self {
+        let points = scene.points();
+        match last.needs.caster.unwrap_or(LampKind::Spot) {
+            LampKind::Spot => Self::spot(lamp, &points, size, last.needs.near),
+            LampKind::Directional => Self::directional(lamp, &points, size),
+            LampKind::Point => Self::point(lamp, &points, size / 2),
+        }
+    }
+
+    fn spot(lamp: &Lamp, points: &[DVec3], size: u32, near: Option<f64>) -> Self {
+        let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
+        let (nearest, farthest) = depth_range(view, points).unwrap_or((0.1, 10.0));
+        let far = farthest.max(0.1) * 1.01;
+        let near = near.unwrap_or_else(|| (0.98 * nearest).clamp(NEAREST * far, 0.9 * far));
+        // Two texels more than the cone, so that its rim is inside.
+        let angle = (2.0 * lamp.half_angle * (1.0 + 4.0 / f64::from(size))).min(2.8);
+        let projection = perspective(angle, 1.0, near, far, Clip::Wgpu, Depth::Normal);
+        let texel = 2.0 * (0.5 * angle).tan() / f64::from(size);
+        Self { clip_from_world: vec![projection * view], near, far, size, texel }
+    }
+
+    fn directional(lamp: &Lamp, points: &[DVec3], size: u32) -> Self {
+        let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
+        Self::around(view, fit(view, points).unwrap_or(UNIT), size)
+    }
+
+    /// The view of a directional light on what lies in a part of the viewer's depth, which may be
+    /// shaded by all that is before it.
+    pub fn cascade(scene: &Scene, lamp: &Lamp, clip_from_world: DMat4, size: u32) -> Self {
+        let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
+        let whole = fit(view, &scene.points()).unwrap_or(UNIT);
+        let part = fit(view, &corners(clip_from_world, Clip::Wgpu, Depth::Normal)).unwrap_or(whole);
+        let bounds = Bounds {
+            left: part.left.max(whole.left),
+            right: part.right.min(whole.right),
+            bottom: part.bottom.max(whole.bottom),
+            top: part.top.min(whole.top),
+            ..whole
+        };
+        // A part with nothing of the scene in it is drawn with any map.
+        let is_seen = bounds.left < bounds.right && bounds.bottom < bounds.top;
+        Self::around(view, if is_seen { bounds } else { whole }, size)
+    }
+
+    fn around(view: DMat4, tight: Bounds, size: u32) -> Self {
+        // A margin on all sides: of the map for filters, of the depth against rounding.
+        let margin = 0.02 * (tight.right - tight.left).max(tight.top - tight.bottom) + 1e-3;
+        let bounds = Bounds {
+            left: tight.left - margin,
+            right: tight.right + margin,
+            bottom: tight.bottom - margin,
+            top: tight.top + margin,
+            near: tight.near - margin,
+            far: tight.far + margin,
+        };
+        let texel = (bounds.right - bounds.left).max(bounds.top - bounds.bottom) / f64::from(size);
+        let projection = orthographic(&bounds, Clip::Wgpu, Depth::Normal);
+        Self {
+            clip_from_world: vec![projection * view],
+            near: bounds.near,
+            far: bounds.far,
+            size,
+            texel,
+        }
+    }
+
+    fn point(lamp: &Lamp, points: &[DVec3], size: u32) -> Self {
+        let farthest = points.iter().map(|point| point.distance(lamp.position)).fold(1.0, f64::max);
+        let (near, far) = (NEAREST * farthest, 1.01 * farthest);
+        let projection = cube_projection(near, far, Clip::Wgpu, Depth::Normal);
+        let faces = (0..6).map(|face| projection * cube_view(lamp.position, face)).collect();
+        Self { clip_from_world: faces, near, far, size, texel: 2.0 / f64::from(size) }
+    }
+
+    /// Whether it has a face to each side.
+    pub fn is_cube(&self) -> bool {
+        self.clip_from_world.len() == 6
+    }
+}

@@ -1,0 +1,57 @@
+//! Shapes as the vertex stage of a program takes them.
+
+use crate::bundle::{Reflection, Varying};
+use crate::execute::frame::{Attribute, Mesh};
+use crate::scene::sets::Object;
+use crate::scene::{Shape, Vertex};
+
+/// The mesh of an object for a vertex stage; with `faceted`, each triangle has its own corners and
+/// the normal of its face.
+pub fn mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh {
+    let attributes = attributes(vertex);
+    let own = faceted.then(|| object.shape.faceted());
+    let shape: &Shape = own.as_ref().unwrap_or(&object.shape);
+    let words = |corner: &Vertex| {
+        let one = |attribute: &Attribute| {
+            numbers(corner, attribute.location, object.material_index, components(*attribute))
+        };
+        attributes.iter().flat_map(one).collect::<Vec<u32>>()
+    };
+    let words = shape.vertices.iter().flat_map(words).collect();
+    Mesh { attributes, words, indices: shape.indices.clone() }
+}
+
+/// The attributes that the stage reads, in its order.
+pub fn attributes(vertex: &Reflection) -> Vec<Attribute> {
+    let attribute =
+        |input: &Varying| Some(Attribute { location: input.location?, format: format(&input.ty) });
+    vertex.inputs.iter().filter_map(attribute).collect()
+}
+
+fn format(ty: &str) -> wgpu::VertexFormat {
+    match ty {
+        "u32" => wgpu::VertexFormat::Uint32,
+        "f32" => wgpu::VertexFormat::Float32,
+        ty if ty.starts_with("vec2") => wgpu::VertexFormat::Float32x2,
+        ty if ty.starts_with("vec3") => wgpu::VertexFormat::Float32x3,
+        _ => wgpu::VertexFormat::Float32x4,
+    }
+}
+
+fn components(attribute: Attribute) -> usize {
+    attribute.format.size() as usize / 4
+}
+
+/// What `forward` has at a location: tabulated in `programs/forward.wesl`.
+fn numbers(corner: &Vertex, location: u32, material: u32, count: usize) -> Vec<u32> {
+    let numbers = match location {
+        0 => corner.position.extend(1.0).to_array(),
+        1 => corner.normal.extend(0.0).to_array(),
+        2 => corner.color.extend(1.0).to_array(),
+        3 => corner.uv.extend(0.0).extend(0.0).to_array(),
+        4 => corner.light_uv.extend(0.0).extend(0.0).to_array(),
+        5 => corner.tangent.to_array(),
+        _ => return vec![material; count],
+    };
+    numbers.iter().take(count).map(|number| (*number as f32).to_bits()).collect()
+}

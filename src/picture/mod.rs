@@ -1,0 +1,87 @@
+//! Pictures: a scene drawn with permutations of the library's programs, in as many passes as the
+//! last one needs.
+//!
+//! `preset or point -> plan -> passes (shadow map, blur, ...) -> prepared -> frames -> picture`
+//!
+//! Every pass is drawn by an executor, which may be a device or the evaluator. What a pass drew
+//! comes back as numbers, exact to the bit, and goes into the next as a texture, so that all
+//! executors share everything but the drawing itself.
+
+pub mod frame;
+pub mod gallery;
+mod light;
+mod mesh;
+pub mod needs;
+mod passes;
+mod pixels;
+mod plan;
+mod textures;
+mod values;
+
+pub use needs::Needs;
+pub use passes::{Prepared, prepare};
+pub use pixels::{Linear, Picture, is_own_png};
+pub use plan::{Pass, Plan};
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::bundle::Language;
+use crate::diagnostic::Diagnostics;
+use crate::execute::Session;
+use crate::scene::{Equirect, Sky};
+use frame::Programs;
+
+/// How a plan is photographed.
+#[derive(Clone)]
+pub struct Shot {
+    /// Pixels from left to right, and from top to bottom.
+    pub size: [u32; 2],
+    /// Places in each pixel that are averaged, at least 1.
+    pub samples: u32,
+    /// Factor on all light, as a power of two.
+    pub exposure: f64,
+    /// Shadow maps of a directional light, one for each part of the viewer's depth; 1 for one map
+    /// of the whole scene.
+    pub cascades: u32,
+    pub language: Language,
+    /// What is around the scene.
+    pub surroundings: Surroundings,
+}
+
+/// Radiance from every direction.
+#[derive(Clone)]
+pub enum Surroundings {
+    Formula(fn(DVec3) -> DVec3),
+    Image(Arc<Equirect>),
+}
+
+impl Surroundings {
+    /// Radiance from a unit direction.
+    pub fn radiance(&self, direction: DVec3) -> DVec3 {
+        match self {
+            Self::Formula(sky) => sky(direction),
+            Self::Image(image) => image.radiance(direction),
+        }
+    }
+
+    /// For functions that take a sky.
+    pub fn with_sky<T>(&self, run: impl FnOnce(&Sky<'_>) -> T) -> T {
+        run(&|direction| self.radiance(direction))
+    }
+}
+
+/// Draws a plan.
+///
+/// # Errors
+/// Those of compositions and of the painter.
+pub fn render(
+    painter: &dyn Session,
+    programs: &Programs,
+    plan: &Plan,
+    shot: &Shot,
+) -> Result<Picture, Diagnostics> {
+    let prepared = prepare(painter, programs, plan, shot)?;
+    Ok(prepared.photograph(painter, shot)?.develop())
+}

@@ -1,0 +1,297 @@
+//! What pictures take from programs and the values of their axes: `pictures.toml` of the library,
+//! which explains its own form.
+//!
+//! Rust knows what a row may say; which value of which axis says it is data. So a new value of an
+//! axis is one line, and one that was forgotten is an error that names it.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::catalogue::preset::Number;
+use crate::catalogue::reader;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::{Axis, Manifest, Program, Settings};
+use crate::scene::sets::LampKind;
+use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
+
+/// Path below the library.
+const PATH: &str = "pictures.toml";
+
+/// Numbers of uniforms, by block and field.
+type Uniforms = BTreeMap<String, BTreeMap<String, Number>>;
+
+/// The table of the library.
+#[derive(Debug)]
+pub struct Table {
+    uniforms: Uniforms,
+    programs: BTreeMap<String, ProgramNeeds>,
+}
+
+/// What pictures take from one program.
+#[derive(Debug)]
+struct ProgramNeeds {
+    scene: Option<String>,
+    before: Vec<String>,
+    /// By axis and value.
+    axes: BTreeMap<String, BTreeMap<String, Row>>,
+}
+
+/// What a picture takes from a permutation: the rows of the values of its axes together.
+#[derive(Debug, Clone, Default)]
+pub struct Needs {
+    /// Passes before: programs, and keys where those are not the default.
+    pub before: Vec<(String, String)>,
+    /// Texels to each side that the lookup of the shadow reads.
+    pub reach: f64,
+    /// The kind of all lamps; `None` leaves them as the scene has them.
+    pub lamps: Option<LampKind>,
+    /// The kind of the lamp that casts the shadow.
+    pub caster: Option<LampKind>,
+    pub falloff: Falloff,
+    /// No lamp shines.
+    pub unlit: bool,
+    /// Each triangle has the normal of its face.
+    pub faceted: bool,
+    /// One block holds the materials of all objects.
+    pub material_array: bool,
+    /// That array has a material for each side.
+    pub sides: bool,
+    pub background: Background,
+    /// Moments of depth 1 are those of exponentials.
+    pub exponential: bool,
+    /// Near plane of the shadow map of a spot.
+    pub near: Option<f64>,
+    uniforms: Uniforms,
+}
+
+/// How lamps fade with distance.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Falloff {
+    #[default]
+    None,
+    Polynomial,
+    LinearRadius,
+    InverseSquareWindow,
+}
+
+/// What is seen where nothing was drawn. Where several values of axes say so, the last one wins.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Background {
+    /// Dark, darker towards the edges.
+    #[default]
+    Backdrop,
+    Hemisphere,
+    /// The light probe, if no lamp shines.
+    Probe,
+    Surroundings,
+    Haze,
+}
+
+/// How the materials of objects are bound.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Materials {
+    Array,
+}
+
+/// What an empty texel of a map of moments holds.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Cleared {
+    Exponential,
+}
+
+/// As the file has it, and as [`Needs`] explains it.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Row {
+    before: Vec<String>,
+    reach: Option<f64>,
+    lamps: Option<LampKind>,
+    caster: Option<LampKind>,
+    falloff: Option<Falloff>,
+    unlit: bool,
+    faceted: bool,
+    materials: Option<Materials>,
+    sides: bool,
+    background: Background,
+    cleared: Option<Cleared>,
+    near: Option<f64>,
+    uniforms: Uniforms,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileEntry {
+    uniforms: Uniforms,
+    program: BTreeMap<Spanned<String>, ProgramEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProgramEntry {
+    scene: Option<String>,
+    #[serde(default)]
+    before: Vec<String>,
+    #[serde(default)]
+    axis: BTreeMap<Spanned<String>, BTreeMap<Spanned<String>, Row>>,
+}
+
+impl Table {
+    /// The library's table, in which each value of an axis that is listed has its row.
+    ///
+    /// # Errors
+    /// Those of the file: values without a row, and rows that no axis has.
+    pub fn load(sources: &mut SourceSet, manifest: &Manifest) -> Result<Self, Diagnostics> {
+        let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
+        let id = source::read(sources, &package, PATH).map_err(|error| vec![error.into()])?;
+        let missing =
+            || vec![Diagnostic::error(codes::UNREADABLE, format!("there is no `{PATH}`"))];
+        Self::parse(sources, id.ok_or_else(missing)?, manifest)
+    }
+
+    /// The table that a file holds.
+    ///
+    /// # Errors
+    /// As of [`Table::load`].
+    pub fn parse(
+        sources: &SourceSet,
+        id: SourceId,
+        manifest: &Manifest,
+    ) -> Result<Self, Diagnostics> {
+        let entry: FileEntry = reader::data(sources, id)?;
+        let problems: Diagnostics = entry
+            .program
+            .iter()
+            .flat_map(|(name, entry)| check(id, manifest, name, entry))
+            .collect();
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let programs = entry.program.into_iter();
+        Ok(Self {
+            uniforms: entry.uniforms,
+            programs: programs.map(|(name, entry)| (name.into_inner(), entry.into())).collect(),
+        })
+    }
+
+    /// The scene that a program shows where none is asked for; `None` if it draws no picture by
+    /// itself.
+    pub fn scene(&self, program: &str) -> Option<&str> {
+        self.programs.get(program)?.scene.as_deref()
+    }
+
+    /// Programs that draw pictures by themselves.
+    pub fn pictures(&self) -> Vec<&str> {
+        let shown = self.programs.iter().filter(|(_, needs)| needs.scene.is_some());
+        shown.map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// What a permutation needs.
+    pub fn needs(&self, program: &str, settings: &Settings) -> Needs {
+        let mut needs = Needs { reach: 1.0, uniforms: self.uniforms.clone(), ..Needs::default() };
+        let Some(found) = self.programs.get(program) else { return needs };
+        needs.draw_before(&found.before);
+        for (axis, rows) in &found.axes {
+            let value = settings.values.get(axis).map(ToString::to_string);
+            if let Some(row) = value.and_then(|value| rows.get(&value)) {
+                needs.add(row);
+            }
+        }
+        needs
+    }
+}
+
+impl Needs {
+    /// The numbers of a field that nothing else has.
+    pub fn uniform(&self, block: &str, field: &str) -> Option<Vec<f64>> {
+        self.uniforms.get(block)?.get(field).map(Number::to_vec)
+    }
+
+    /// Whether something casts a shadow.
+    pub fn has_shadow(&self) -> bool {
+        !self.before.is_empty()
+    }
+
+    fn draw_before(&mut self, passes: &[String]) {
+        let split = |pass: &String| {
+            let (program, key) = pass.split_once(' ').unwrap_or((pass, ""));
+            (program.to_owned(), key.trim().to_owned())
+        };
+        self.before.extend(passes.iter().map(split));
+    }
+
+    fn add(&mut self, row: &Row) {
+        self.draw_before(&row.before);
+        self.reach = row.reach.unwrap_or(self.reach);
+        self.lamps = row.lamps.or(self.lamps);
+        self.caster = row.caster.or(self.caster);
+        self.falloff = row.falloff.unwrap_or(self.falloff);
+        self.unlit |= row.unlit;
+        self.faceted |= row.faceted;
+        self.material_array |= row.materials.is_some();
+        self.sides |= row.sides;
+        self.background = self.background.max(row.background);
+        self.exponential |= row.cleared.is_some();
+        self.near = row.near.or(self.near);
+        for (block, fields) in &row.uniforms {
+            let all = self.uniforms.entry(block.clone()).or_default();
+            all.extend(fields.iter().map(|(field, number)| (field.clone(), number.clone())));
+        }
+    }
+}
+
+impl From<ProgramEntry> for ProgramNeeds {
+    fn from(entry: ProgramEntry) -> Self {
+        let rows = |rows: BTreeMap<Spanned<String>, Row>| {
+            rows.into_iter().map(|(value, row)| (value.into_inner(), row)).collect()
+        };
+        let axes = entry.axis.into_iter().map(|(axis, table)| (axis.into_inner(), rows(table)));
+        Self { scene: entry.scene, before: entry.before, axes: axes.collect() }
+    }
+}
+
+/// What is wrong with a program's tables.
+fn check(
+    id: SourceId,
+    manifest: &Manifest,
+    name: &Spanned<String>,
+    entry: &ProgramEntry,
+) -> Diagnostics {
+    let Some(program) = manifest.program(name.get_ref()) else {
+        let message = format!("there is no program `{}`", name.get_ref());
+        return vec![reader::invalid(Span::new(id, name.span()), message)];
+    };
+    entry.axis.iter().flat_map(|(axis, rows)| check_axis(id, program, axis, rows)).collect()
+}
+
+fn check_axis(
+    id: SourceId,
+    program: &Program,
+    name: &Spanned<String>,
+    rows: &BTreeMap<Spanned<String>, Row>,
+) -> Diagnostics {
+    let span = Span::new(id, name.span());
+    let Some(axis) = program.space.axis(name.get_ref()) else {
+        let message = format!("`{}` has no axis `{}`", program.name, name.get_ref());
+        return vec![reader::invalid(span, message)];
+    };
+    let values = axis.value_names();
+    let unknown = rows.keys().filter(|value| !values.contains(value.get_ref())).map(|value| {
+        let message = format!("axis `{}` has no value `{}`", axis.name, value.get_ref());
+        reader::invalid(Span::new(id, value.span()), message)
+    });
+    let is_listed = |value: &String| rows.keys().any(|row| row.get_ref() == value);
+    let missing = values.iter().filter(|value| !is_listed(value));
+    unknown.chain(missing.map(|value| without_row(axis, value, span))).collect()
+}
+
+fn without_row(axis: &Axis, value: &str, span: Span) -> Diagnostic {
+    reader::invalid(span, format!("no row for `{}={value}`", axis.name))
+        .at(axis.span, "the axis has the value")
+        .note(format!("help: write `{value} = {{}}` if pictures need nothing for it"))
+}

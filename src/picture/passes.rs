@@ -1,0 +1,439 @@
+//! The passes of a plan, one after another.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+
+use super::Shot;
+use super::light::LightView;
+use super::mesh::{self, attributes};
+use super::pixels::{Background, Linear};
+use super::plan::{Pass, Plan};
+use super::textures::{Left, Library, sampler};
+use super::values::{Camera, Values};
+use crate::bundle::{Binding, Kind};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::execute::Session;
+use crate::execute::fixture::{Fixture, Texture, TextureKind};
+use crate::execute::frame::{Buffers, Drawing, EntryPoint, Frame, Item, Mesh, Side, State};
+use crate::execute::kernel::SENTINEL;
+use crate::picture::frame::{Composed, Programs, Stages, pack, probe};
+use crate::scene::sets::{self, Eye, LampKind, Scene};
+use crate::scene::{Clip, Depth, cascade_splits, depth_range, perspective};
+
+/// A pass with everything it is drawn with.
+pub struct Prepared {
+    pub stages: Stages,
+    pub items: Vec<(Mesh, Buffers)>,
+    pub buffers: Buffers,
+    pub fixtures: BTreeMap<(u32, u32), Arc<Fixture>>,
+    pub levels: BTreeMap<(u32, u32), Vec<Texture>>,
+    pub state: State,
+    plain: Vec<(u32, u32)>,
+    /// The binding of the camera, which each view fills; screens have none.
+    camera: Option<Binding>,
+    eye: Camera,
+    background: Background,
+    /// The same for the farther parts of the viewer's depth, nearest first: seen where nothing
+    /// nearer was drawn.
+    pub farther: Vec<Self>,
+}
+
+/// What the passes share.
+struct Studio<'a> {
+    painter: &'a dyn Session,
+    programs: &'a Programs,
+    values: Values<'a>,
+}
+
+/// Smallest and largest shadow map, texels along an edge; between, twice the picture. Moments are
+/// blurred, and half as fine.
+const MAP_SIZES: (u32, u32) = (256, 1024);
+
+/// Draws all passes of a plan but the last, and prepares that one.
+///
+/// # Errors
+/// Those of compositions and of the painter.
+pub fn prepare(
+    painter: &dyn Session,
+    programs: &Programs,
+    plan: &Plan,
+    shot: &Shot,
+) -> Result<Prepared, Diagnostics> {
+    let (Some(last), Some(mut scene)) = (plan.last(), sets::scene(&plan.scene)) else {
+        return Err(vec![Diagnostic::error(
+            codes::EXECUTOR_FAILED,
+            format!("there is no scene `{}`", plan.scene),
+        )]);
+    };
+    let no_lamp = || vec![Diagnostic::error(codes::EXECUTOR_FAILED, "the scene has no lamp")];
+    let key = scene.lamps.first_mut().ok_or_else(no_lamp)?;
+    plan.place(key);
+    let key = *key;
+    let size =
+        (2 * shot.size[0].max(shot.size[1])).next_power_of_two().clamp(MAP_SIZES.0, MAP_SIZES.1);
+    let slice = |scene: &Scene, light: LightView| {
+        let values = Values { plan, scene, last, light: &light, shot };
+        let studio = Studio { painter, programs, values };
+        let mut left = Left::Nothing;
+        for pass in &plan.passes[..plan.passes.len() - 1] {
+            left = studio.draw(pass, &left)?;
+        }
+        studio.ready(last, &left)
+    };
+    if shot.cascades <= 1 {
+        let light = LightView::new(&scene, &key, last, size);
+        return slice(&scene, light);
+    }
+    if last.needs.caster != Some(LampKind::Directional) || !last.needs.has_shadow() {
+        let message = format!(
+            "`{}` has no cascades: they are of the shadow of a directional light",
+            last.key
+        );
+        return Err(vec![
+            Diagnostic::error(codes::PICTURE_INVALID, message)
+                .note("choose `shadow_light=directional` and a `shadow`"),
+        ]);
+    }
+    // Each part of the viewer's depth is a frame of its own, clipped by its planes.
+    let whole = scene.eye;
+    let mut slices = Vec::new();
+    for (near, far) in slices_of(&scene, shot.cascades) {
+        scene.eye = Eye { near, far, ..whole };
+        let light =
+            LightView::cascade(&scene, &key, viewer(&scene.eye, shot).clip_from_world, size);
+        slices.push(slice(&scene, light)?);
+    }
+    let mut slices = slices.into_iter();
+    let nearest = slices.next().ok_or_else(|| vec![no_frame()])?;
+    Ok(Prepared { farther: slices.collect(), ..nearest })
+}
+
+/// How much of the splits is logarithmic.
+const SPLIT: f64 = 0.7;
+
+/// The viewer's depth in parts that share their planes: splits where the scene is, ends where the
+/// viewer's are.
+fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
+    let eye = &scene.eye;
+    let (nearest, farthest) =
+        depth_range(eye.view(), &scene.points()).unwrap_or((eye.near, eye.far));
+    let (near, far) = (nearest.clamp(eye.near, eye.far), farthest.clamp(eye.near, eye.far));
+    let mut ends = cascade_splits(near, far.max(1.001 * near), count as usize, SPLIT);
+    if let Some(last) = ends.last_mut() {
+        *last = eye.far;
+    }
+    let starts = std::iter::once(eye.near).chain(ends.clone());
+    starts.zip(ends).collect()
+}
+
+/// What the viewer sees through.
+fn viewer(eye: &Eye, shot: &Shot) -> Camera {
+    let [width, height] = shot.size;
+    let aspect = f64::from(width) / f64::from(height.max(1));
+    // What a square shows stays in a picture that is higher than wide.
+    let fov =
+        if aspect < 1.0 { 2.0 * ((0.5 * eye.fov_y).tan() / aspect).atan() } else { eye.fov_y };
+    let view = eye.view();
+    let projection = perspective(fov, aspect, eye.near, eye.far, Clip::Wgpu, Depth::Normal);
+    Camera { clip_from_world: projection * view, world_from_view: view.inverse() }
+}
+
+impl Studio<'_> {
+    /// Draws an earlier pass.
+    fn draw(&self, pass: &Pass, left: &Left) -> Result<Left, Diagnostics> {
+        let prepared = self.ready(pass, left)?;
+        let light = self.values.light;
+        let views: Vec<Buffers> = match prepared.camera {
+            Some(_) => light
+                .clip_from_world
+                .iter()
+                .map(|matrix| prepared.view(&self.light_camera(*matrix)))
+                .collect::<Result<_, _>>()
+                .map_err(|problem| vec![problem])?,
+            None => vec![Buffers::new()],
+        };
+        let side = if pass.program == "depth" { light.size } else { (light.size / 2).max(1) };
+        let size = [side; 2];
+        if prepared.stages.fragment.is_none() {
+            let frames = prepared.draw(self.painter, &views, size, None)?;
+            return Ok(Left::Depth(frames.into_iter().map(|frame| frame.depth).collect(), side));
+        }
+        let frames = prepared.draw_colors(self.painter, &views, size)?;
+        let cleared = self.values.cleared_moments();
+        let frame = frames.into_iter().next().ok_or_else(|| vec![no_frame()])?;
+        let texels = frame.targets.iter().flatten().copied().collect::<Vec<u32>>();
+        let texels = texels.chunks(4).flat_map(|pixel| colour(pixel).unwrap_or(cleared)).collect();
+        Ok(Left::Color(Texture { kind: TextureKind::Color2d, width: side, height: side, texels }))
+    }
+
+    fn light_camera(&self, clip_from_world: DMat4) -> Camera {
+        Camera { clip_from_world, world_from_view: DMat4::IDENTITY }
+    }
+
+    /// A pass with its uniforms, textures and meshes.
+    fn ready(&self, pass: &Pass, left: &Left) -> Result<Prepared, Diagnostics> {
+        let unknown = || {
+            vec![Diagnostic::error(
+                codes::UNKNOWN_PROGRAM,
+                format!("there is no program `{}`", pass.program),
+            )]
+        };
+        let program = self.programs.manifest().program(&pass.program).ok_or_else(unknown)?;
+        let stages = self.programs.stages(program, &pass.settings, self.values.shot.language)?;
+        let bindings = bindings(&stages);
+        let camera = bindings.iter().find(|binding| binding.name == "camera").cloned();
+        let (mut buffers, mut fixtures, mut levels) =
+            (Buffers::new(), BTreeMap::new(), BTreeMap::new());
+        let mut library = Library::new(&self.values, left);
+        for binding in bindings.iter().filter(|binding| !is_own(&binding.name)) {
+            let place = (binding.group, binding.binding);
+            match binding.kind {
+                Kind::Uniform => {
+                    let bytes = pack(binding, &|path| self.values.number(path));
+                    buffers.insert(place, bytes.map_err(|problem| vec![problem])?);
+                }
+                Kind::Sampler | Kind::ComparisonSampler => {
+                    fixtures.insert(place, Arc::new(sampler(binding)));
+                }
+                _ => {
+                    let mut chain = library.texture(&binding.name)?;
+                    fixtures.insert(place, Arc::new(Fixture::Texture(chain.remove(0))));
+                    if !chain.is_empty() {
+                        levels.insert(place, chain);
+                    }
+                }
+            }
+        }
+        let plain =
+            PLAIN.iter().filter_map(|name| bindings.iter().find(|binding| binding.name == *name));
+        let plain = plain.map(|binding| (binding.group, binding.binding)).collect();
+        let items = self.items(pass, &stages, &bindings).map_err(|problem| vec![problem])?;
+        let eye = viewer(&self.values.scene.eye, self.values.shot);
+        let background = Background::new(&self.values, eye);
+        let state = self.state(pass, camera.is_some());
+        Ok(Prepared {
+            stages,
+            items,
+            buffers,
+            fixtures,
+            levels,
+            state,
+            plain,
+            camera,
+            eye,
+            background,
+            farther: Vec::new(),
+        })
+    }
+
+    fn state(&self, pass: &Pass, has_camera: bool) -> State {
+        let of_light = !std::ptr::eq(pass, self.values.last) && has_camera;
+        if !of_light {
+            return State { depth_test: has_camera, ..State::default() };
+        }
+        let is_map = pass.program == "depth";
+        State {
+            depth_test: true,
+            keep_depth: is_map,
+            cull: self.values.culls_front().then_some(Side::Front),
+            mirrored: self.values.light.is_cube(),
+            offset: if is_map { self.values.offset() } else { [0.0; 2] },
+        }
+    }
+
+    /// A mesh for each object with the blocks of its own; one triangle where the stage has no
+    /// attributes.
+    fn items(
+        &self,
+        pass: &Pass,
+        stages: &Stages,
+        bindings: &[Binding],
+    ) -> Result<Vec<(Mesh, Buffers)>, Diagnostic> {
+        let vertex = &stages.vertex.reflection;
+        if attributes(vertex).is_empty() {
+            return Ok(vec![(Mesh::default(), Buffers::new())]);
+        }
+        let own: Vec<&Binding> = bindings
+            .iter()
+            .filter(|binding| matches!(binding.name.as_str(), "object" | "materials"))
+            .collect();
+        let faceted = pass.needs.faceted;
+        let item = |object| {
+            let buffer = |binding: &&Binding| {
+                let bytes = pack(binding, &|path| self.values.object(object, path))?;
+                Ok(((binding.group, binding.binding), bytes))
+            };
+            let buffers = own.iter().map(buffer).collect::<Result<_, Diagnostic>>()?;
+            Ok((mesh::mesh(object, vertex, faceted), buffers))
+        };
+        self.values.scene.objects.iter().map(item).collect()
+    }
+}
+
+/// Blocks of `forward` that decide about colours alone.
+const PLAIN: &[&str] = &["materials", "haze", "surroundings"];
+
+/// Blocks that each view or each object fills.
+fn is_own(name: &str) -> bool {
+    matches!(name, "camera" | "object" | "materials")
+}
+
+/// The bindings of both stages, each once, with the members that either knows.
+fn bindings(stages: &Stages) -> Vec<Binding> {
+    let of = |stage: &Composed| stage.reflection.bindings.clone();
+    let all = of(&stages.vertex).into_iter().chain(stages.fragment.iter().flat_map(of));
+    let by_place: BTreeMap<_, _> =
+        all.map(|binding| ((binding.group, binding.binding), binding)).collect();
+    by_place.into_values().collect()
+}
+
+impl Prepared {
+    /// The buffers of a view.
+    fn view(&self, camera: &Camera) -> Result<Buffers, Diagnostic> {
+        let buffer = |binding: &Binding| {
+            let bytes = pack(binding, &|path| camera.number(path))?;
+            Ok(((binding.group, binding.binding), bytes))
+        };
+        self.camera.iter().map(buffer).collect()
+    }
+
+    /// The buffers of the viewer, moved by parts of a pixel.
+    ///
+    /// # Errors
+    /// A field of the camera that has no number.
+    pub fn eye_view(&self, shift: [f64; 2], size: [u32; 2]) -> Result<Buffers, Diagnostic> {
+        let [x, y] = [0, 1].map(|axis| 2.0 * shift[axis] / f64::from(size[axis].max(1)));
+        let moved = DMat4::from_translation(DVec3::new(x, y, 0.0)) * self.eye.clip_from_world;
+        self.view(&Camera { clip_from_world: moved, ..self.eye })
+    }
+
+    fn eye_views(&self, shifts: &[[f64; 2]], size: [u32; 2]) -> Result<Vec<Buffers>, Diagnostics> {
+        let views = shifts.iter().map(|shift| self.eye_view(*shift, size));
+        views.collect::<Result<_, _>>().map_err(|problem| vec![problem])
+    }
+
+    /// Draws a frame for each view with the stages as they are, or with another fragment stage of
+    /// so many targets.
+    ///
+    /// # Errors
+    /// The painter's.
+    pub fn draw(
+        &self,
+        painter: &dyn Session,
+        views: &[Buffers],
+        size: [u32; 2],
+        fragment: Option<(EntryPoint<'_>, u32)>,
+    ) -> Result<Vec<Frame>, Diagnostics> {
+        let items: Vec<Item<'_>> =
+            self.items.iter().map(|(mesh, buffers)| Item { mesh, buffers }).collect();
+        let vertex = EntryPoint {
+            module: &self.stages.vertex.validated.module,
+            entry: self.stages.vertex.entry,
+        };
+        let drawing = Drawing {
+            vertex,
+            fragment: fragment.map(|(stage, _)| stage),
+            targets: fragment.map_or(0, |(_, targets)| targets),
+            items: &items,
+            views,
+            buffers: &self.buffers,
+            plain: &self.plain,
+            fixtures: &self.fixtures,
+            levels: &self.levels,
+            size,
+            state: self.state,
+        };
+        painter.draw_frames(&drawing).map_err(|problem| vec![problem])
+    }
+
+    /// Draws the bits of the colours.
+    fn draw_colors(
+        &self,
+        painter: &dyn Session,
+        views: &[Buffers],
+        size: [u32; 2],
+    ) -> Result<Vec<Frame>, Diagnostics> {
+        let stage = self.stages.fragment.as_ref().ok_or_else(|| vec![no_frame()])?;
+        let module =
+            probe::bits(&stage.validated.module, stage.entry).ok_or_else(|| vec![no_frame()])?;
+        self.draw(
+            painter,
+            views,
+            size,
+            Some((EntryPoint { module: &module, entry: stage.entry }, 1)),
+        )
+    }
+
+    /// The picture's linear colours, averaged over the samples of each pixel.
+    ///
+    /// # Errors
+    /// The painter's.
+    pub fn photograph(&self, painter: &dyn Session, shot: &Shot) -> Result<Linear, Diagnostics> {
+        let shifts: Vec<[f64; 2]> =
+            (0..shot.samples.max(1)).map(|index| shift(index, shot.samples)).collect();
+        let views = self.eye_views(&shifts, shot.size)?;
+        let mut picture = Linear::new(shot.size);
+        let views = if self.camera.is_some() { &views[..] } else { &views[..1] };
+        let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize;
+        let at_once = (AT_ONCE / bytes.max(1)).max(1);
+        for (views, shifts) in views.chunks(at_once).zip(shifts.chunks(at_once)) {
+            let nearest = self.colours(painter, views, shot.size)?;
+            let mut farther = Vec::new();
+            for slice in &self.farther {
+                let views = slice.eye_views(shifts, shot.size)?;
+                farther.push(slice.colours(painter, &views, shot.size)?);
+            }
+            for (index, (colours, shift)) in nearest.iter().zip(shifts).enumerate() {
+                let behind = |pixel: usize| farther.iter().find_map(|slice| slice[index][pixel]);
+                let seen = colours
+                    .iter()
+                    .enumerate()
+                    .map(|(pixel, colour)| colour.or_else(|| behind(pixel)));
+                picture.add(seen, *shift, &self.background, shot.exposure);
+            }
+        }
+        Ok(picture)
+    }
+
+    /// The colours of each view; `None` where nothing was drawn.
+    fn colours(
+        &self,
+        painter: &dyn Session,
+        views: &[Buffers],
+        size: [u32; 2],
+    ) -> Result<Vec<Vec<Option<[f32; 4]>>>, Diagnostics> {
+        let colours = |frame: Frame| {
+            frame.targets.first().map_or(&[][..], Vec::as_slice).chunks(4).map(colour).collect()
+        };
+        Ok(self.draw_colors(painter, views, size)?.into_iter().map(colours).collect())
+    }
+}
+
+/// Bytes of the frames that are drawn at once.
+const AT_ONCE: usize = 64 << 20;
+
+/// Where in the pixel a sample is taken, from its middle: Halton's points, the middle alone for one.
+fn shift(index: u32, samples: u32) -> [f64; 2] {
+    let radical = |base: u32| {
+        let (mut rest, mut place, mut value) = (index + 1, 1.0, 0.0);
+        while rest > 0 {
+            place /= f64::from(base);
+            value += place * f64::from(rest % base);
+            rest /= base;
+        }
+        value - 0.5
+    };
+    if samples <= 1 { [0.0; 2] } else { [radical(2), radical(3)] }
+}
+
+/// The colour of a pixel; `None` where nothing was drawn.
+fn colour(pixel: &[u32]) -> Option<[f32; 4]> {
+    let words: [u32; 4] = pixel.try_into().ok()?;
+    (words != [SENTINEL; 4]).then(|| words.map(f32::from_bits))
+}
+
+fn no_frame() -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, "the pass gives no colour")
+}

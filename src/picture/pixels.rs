@@ -1,0 +1,191 @@
+//! Linear colours, and the pictures made of them.
+
+use glam::{DMat4, DVec3};
+use image::ImageEncoder as _;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+
+use super::Surroundings;
+use super::needs;
+use super::values::{Camera, Values};
+use crate::scene::irradiance_sh9;
+
+/// Sums of linear colours, clamped to [0, 1] sample by sample, so that edges of bright things are
+/// smooth.
+#[derive(Debug, Clone)]
+pub struct Linear {
+    size: [u32; 2],
+    sums: Vec<DVec3>,
+    /// Of the first sample, unclamped; `None` where the background is.
+    first: Vec<Option<DVec3>>,
+    samples: u32,
+}
+
+/// An 8-bit picture, sRGB.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picture {
+    pub width: u32,
+    pub height: u32,
+    /// Red, green, blue of each pixel, row by row from the top.
+    pub pixels: Vec<u8>,
+}
+
+/// What is seen where nothing is drawn.
+#[derive(Clone)]
+pub struct Background {
+    world_from_clip: DMat4,
+    kind: Seen,
+}
+
+#[derive(Clone)]
+enum Seen {
+    /// Dark, darker towards the edges.
+    Backdrop,
+    Around(Surroundings),
+    /// Light of the probe as a surface across the direction would receive it.
+    Probe(Box<[DVec3; 9]>, f64),
+    /// From below, from above.
+    Hemisphere(DVec3, DVec3),
+    Haze(DVec3),
+}
+
+impl Background {
+    /// What fits the light of the last pass.
+    pub fn new(values: &Values<'_>, eye: Camera) -> Self {
+        let needs = &values.last.needs;
+        let kind = match needs.background {
+            needs::Background::Haze => Seen::Haze(values.scene.haze),
+            needs::Background::Surroundings => Seen::Around(values.shot.surroundings.clone()),
+            needs::Background::Probe if needs.unlit => Seen::Probe(
+                Box::new(values.probe().map(DVec3::from_array)),
+                0.5 / std::f64::consts::PI,
+            ),
+            needs::Background::Hemisphere => {
+                Seen::Hemisphere(values.scene.ground, values.scene.sky)
+            }
+            needs::Background::Probe | needs::Background::Backdrop => Seen::Backdrop,
+        };
+        Self { world_from_clip: eye.clip_from_world.inverse(), kind }
+    }
+
+    /// The colour behind a place of the picture, both coordinates in [0, 1] from the upper left.
+    fn colour(&self, u: f64, v: f64) -> DVec3 {
+        let at = |depth: f64| {
+            self.world_from_clip.project_point3(DVec3::new(2.0 * u - 1.0, 1.0 - 2.0 * v, depth))
+        };
+        let direction = || (at(1.0) - at(0.0)).normalize_or(DVec3::NEG_Z);
+        match &self.kind {
+            Seen::Backdrop => {
+                let edge = ((u - 0.5).powi(2) + (v - 0.5).powi(2)) * 1.6;
+                DVec3::new(0.05, 0.056, 0.068).lerp(DVec3::new(0.012, 0.014, 0.018), edge.min(1.0))
+            }
+            Seen::Around(surroundings) => surroundings.radiance(direction()),
+            Seen::Probe(probe, scale) => {
+                (irradiance_sh9(direction(), probe) * *scale).max(DVec3::ZERO)
+            }
+            Seen::Hemisphere(ground, sky) => {
+                ground.lerp(*sky, (0.5 + 0.5 * direction().y * 1.6).clamp(0.0, 1.0))
+            }
+            Seen::Haze(haze) => *haze,
+        }
+    }
+}
+
+impl Linear {
+    pub fn new(size: [u32; 2]) -> Self {
+        let pixels = size[0] as usize * size[1] as usize;
+        Self { size, sums: vec![DVec3::ZERO; pixels], first: vec![None; pixels], samples: 0 }
+    }
+
+    /// Adds one sample of every pixel, taken a shift away from the pixel's middle.
+    pub fn add(
+        &mut self,
+        colours: impl Iterator<Item = Option<[f32; 4]>>,
+        shift: [f64; 2],
+        background: &Background,
+        exposure: f64,
+    ) {
+        let [width, height] = self.size.map(f64::from);
+        let factor = exposure.exp2();
+        for (index, colour) in colours.enumerate().take(self.sums.len()) {
+            let (x, y) =
+                ((index as u32 % self.size[0]) as f64, (index as u32 / self.size[0]) as f64);
+            // What moves to the right shows what was left of it.
+            let behind =
+                || background.colour((x + 0.5 - shift[0]) / width, (y + 0.5 + shift[1]) / height);
+            let drawn = colour.map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
+            let seen = drawn.unwrap_or_else(behind) * factor;
+            let finite = DVec3::from_array(
+                seen.to_array().map(|part| if part.is_nan() { 0.0 } else { part }),
+            );
+            self.sums[index] += finite.clamp(DVec3::ZERO, DVec3::ONE);
+            if self.samples == 0 {
+                self.first[index] = drawn;
+            }
+        }
+        self.samples += 1;
+    }
+
+    /// What was drawn at a pixel, neither clamped nor averaged; `None` for the background.
+    pub fn drawn(&self, x: u32, y: u32) -> Option<DVec3> {
+        self.first.get((y * self.size[0] + x) as usize).copied().flatten()
+    }
+
+    /// The picture, in sRGB.
+    pub fn develop(&self) -> Picture {
+        let scale = 1.0 / f64::from(self.samples.max(1));
+        let byte = |linear: f64| (encoded(linear * scale) * 255.0).round() as u8;
+        let pixels = self.sums.iter().flat_map(|sum| sum.to_array().map(byte)).collect();
+        Picture { width: self.size[0], height: self.size[1], pixels }
+    }
+}
+
+/// The transfer function of sRGB.
+fn encoded(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The signature of a PNG file and its first chunk, which is the header.
+const PNG_HEADER_BYTES: usize = 8 + 25;
+
+/// A chunk that names the program: length, type, keyword and text, checksum. A picture with it
+/// may be drawn anew.
+const PNG_MARK: &[u8] = b"\0\0\0\x12tEXtSoftware\0Lamplight\x4f\xb9\x48\x3e";
+
+/// Whether a file begins as one that [`Picture::png`] wrote.
+pub fn is_own_png(head: &[u8]) -> bool {
+    head.get(PNG_HEADER_BYTES..).is_some_and(|rest| rest.starts_with(PNG_MARK))
+}
+
+impl Picture {
+    /// The picture as a PNG file.
+    ///
+    /// # Errors
+    /// In words: a picture whose pixels do not fit its size.
+    pub fn png(&self) -> Result<Vec<u8>, String> {
+        let mut bytes = Vec::new();
+        let encoder =
+            PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
+        let written = encoder.write_image(
+            &self.pixels,
+            self.width,
+            self.height,
+            image::ExtendedColorType::Rgb8,
+        );
+        written.map_err(|error| error.to_string())?;
+        if bytes.len() > PNG_HEADER_BYTES {
+            bytes.splice(PNG_HEADER_BYTES..PNG_HEADER_BYTES, PNG_MARK.iter().copied());
+        }
+        Ok(bytes)
+    }
+
+    /// The picture of a PNG file.
+    ///
+    /// # Errors
+    /// In words: bytes that are no such file.
+    pub fn from_png(bytes: &[u8]) -> Result<Self, String> {
+        let decoded = image::load_from_memory_with_format(bytes, image::ImageFormat::Png)
+            .map_err(|error| error.to_string())?;
+        let pixels = decoded.to_rgb8();
+        Ok(Self { width: pixels.width(), height: pixels.height(), pixels: pixels.into_raw() })
+    }
+}

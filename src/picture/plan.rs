@@ -1,0 +1,151 @@
+//! Which permutations are drawn, in which order, with which numbers.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::needs::Needs;
+use crate::catalogue::preset::{Number, Preset};
+use crate::catalogue::probe::Probe;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::manifest::Program;
+use crate::permute::{Assignment, Quoted, Setting, Settings, key};
+use crate::picture::frame::Programs;
+use crate::scene::sets::Lamp;
+use crate::source::SourceSet;
+
+/// Everything about a picture but how it is photographed.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Of the scene, one of [`SETS`](crate::scene::sets::SETS).
+    pub scene: String,
+    /// In order; the last one draws the picture.
+    pub passes: Vec<Pass>,
+    /// Published numbers by group, then by field, as of [`Preset`].
+    pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
+    /// Nine coefficients of the light from everywhere.
+    pub probe: Option<[[f64; 3]; 9]>,
+}
+
+/// One permutation.
+#[derive(Debug, Clone)]
+pub struct Pass {
+    pub program: String,
+    pub key: String,
+    pub settings: Settings,
+    /// What a picture takes from it.
+    pub needs: Needs,
+}
+
+impl Plan {
+    /// The passes and numbers of a preset.
+    ///
+    /// # Errors
+    /// Programs and keys that the manifest does not have; the library's presets have none.
+    pub fn of_preset(
+        programs: &Programs,
+        preset: &Preset,
+        probes: &[Probe],
+    ) -> Result<Self, Diagnostics> {
+        let earlier = preset.passes.iter().map(|pass| (pass.program.as_str(), pass.key.as_str()));
+        let all = earlier.chain([(preset.program.as_str(), preset.key.as_str())]);
+        let probe =
+            preset.probe.as_ref().and_then(|name| probes.iter().find(|probe| probe.name == *name));
+        Ok(Self {
+            scene: preset.scene.clone(),
+            passes: all
+                .map(|(program, key)| Pass::new(programs, program, key))
+                .collect::<Result<_, _>>()?,
+            numbers: preset.numbers.clone(),
+            probe: probe.map(|probe| probe.coefficients),
+        })
+    }
+
+    /// A point of a program's space, with the passes that it needs before it.
+    ///
+    /// # Errors
+    /// A program whose last pass is no picture.
+    pub fn of_point(
+        programs: &Programs,
+        program: &Program,
+        point: &Assignment,
+    ) -> Result<Self, Diagnostics> {
+        let Some(scene) = programs.pictures().scene(&program.name) else {
+            let message = format!("the program `{}` draws no picture by itself", program.name);
+            let note = format!("programs that do: {}", programs.pictures().pictures().join(", "));
+            return Err(vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message).note(note)]);
+        };
+        let last = Pass::at(programs, program, point);
+        let earlier = last
+            .needs
+            .before
+            .iter()
+            .map(|(program, key)| Pass::new(programs, program, key))
+            .collect::<Result<Vec<_>, _>>()?;
+        let passes = earlier.into_iter().chain([last]).collect();
+        Ok(Self { scene: scene.to_owned(), passes, numbers: BTreeMap::new(), probe: None })
+    }
+
+    /// The pass that draws the picture.
+    pub fn last(&self) -> Option<&Pass> {
+        self.passes.last()
+    }
+
+    /// Puts a lamp where the source has it, so that its shadow falls from there.
+    pub(super) fn place(&self, lamp: &mut Lamp) {
+        let vector = |field| {
+            self.number("light", field)
+                .and_then(|values| values.try_into().ok())
+                .map(DVec3::from_array)
+        };
+        let (axis, reach) = (lamp.axis(), lamp.reach());
+        lamp.position = vector("position").unwrap_or(lamp.position);
+        if let Some(axis) = vector("axis").or_else(|| vector("position").map(|_| axis)) {
+            lamp.target = lamp.position + axis * reach;
+        }
+        if let Some(cutoff) =
+            self.number("light", "cutoff").and_then(|values| values.first().copied())
+        {
+            lamp.half_angle = cutoff.clamp(-1.0, 1.0).acos();
+        }
+    }
+
+    /// A published number.
+    pub fn number(&self, group: &str, field: &str) -> Option<Vec<f64>> {
+        self.numbers.get(group)?.get(field).map(Number::to_vec)
+    }
+}
+
+impl Pass {
+    fn new(programs: &Programs, program: &str, text: &str) -> Result<Self, Diagnostics> {
+        let unknown = || {
+            vec![Diagnostic::error(
+                codes::UNKNOWN_PROGRAM,
+                format!("there is no program `{program}`"),
+            )]
+        };
+        let found = programs.manifest().program(program).ok_or_else(unknown)?;
+        let mut texts = SourceSet::default();
+        let id = texts.add("key", text.to_owned());
+        let point = key::parse(&found.space, &Quoted::whole(&texts, id))?;
+        Ok(Self::at(programs, found, &point))
+    }
+
+    fn at(programs: &Programs, program: &Program, point: &Assignment) -> Self {
+        let settings = program.space.settings(point);
+        Self {
+            program: program.name.clone(),
+            key: program.space.key(point).to_string(),
+            needs: programs.pictures().needs(&program.name, &settings),
+            settings,
+        }
+    }
+
+    /// The number that an axis is.
+    pub fn integer(&self, axis: &str) -> Option<i64> {
+        match self.settings.values.get(axis) {
+            Some(Setting::Int(value)) => Some(*value),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The textures and samplers of a pass: what earlier passes drew, the scene's, its surroundings'.
+
+use super::values::Values;
+use crate::bundle::{Binding, Kind};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use crate::scene::sets::{Map, Maps};
+use crate::scene::{CubeMap, FACES, prefilter};
+
+/// What a pass left for the next.
+pub enum Left {
+    Nothing,
+    /// Six faces, or one.
+    Depth(Vec<Vec<f32>>, u32),
+    Color(Texture),
+}
+
+/// The sampler of a binding.
+pub fn sampler(binding: &Binding) -> Fixture {
+    let compare = (binding.kind == Kind::ComparisonSampler).then_some(Compare::LessEqual);
+    let address = if binding.name == "map_sampler" { Address::Repeat } else { Address::Clamp };
+    Fixture::Sampler(Sampler { compare, linear: binding.name != "depth_sampler", address })
+}
+
+/// Textures by the name of their binding.
+pub struct Library<'a> {
+    values: &'a Values<'a>,
+    left: &'a Left,
+    maps: Option<Maps>,
+}
+
+/// Edges of the environment's cube maps, and rows of the quadratures that fill them.
+const DIFFUSE: (usize, usize) = (12, 24);
+const SPECULAR: (usize, usize) = (32, 36);
+/// Exponent of the specular map.
+const LOBE: f64 = 60.0;
+
+impl<'a> Library<'a> {
+    pub fn new(values: &'a Values<'a>, left: &'a Left) -> Self {
+        Self { values, left, maps: None }
+    }
+
+    /// The levels of a texture, the largest first; at least one.
+    pub fn texture(&mut self, name: &str) -> Result<Vec<Texture>, Diagnostics> {
+        let surroundings = &self.values.shot.surroundings;
+        let sky = |exponent, (size, rows)| {
+            surroundings.with_sky(|sky| cube(&prefilter(sky, exponent, size, rows)))
+        };
+        match (name, self.left) {
+            ("shadow_map", Left::Depth(faces, size)) => {
+                Ok(vec![flat(TextureKind::Depth2d, faces, *size)])
+            }
+            ("shadow_cube", Left::Depth(faces, size)) => {
+                Ok(vec![flat(TextureKind::DepthCube, faces, *size)])
+            }
+            ("shadow_depth" | "depths", Left::Depth(faces, size)) => {
+                Ok(vec![as_color(faces, *size)])
+            }
+            ("blurred", Left::Color(texture)) => Ok(vec![texture.clone()]),
+            ("shadow_moments", Left::Color(texture)) => Ok(mipped(texture.clone())),
+            ("sky_diffuse", _) => Ok(vec![sky(1.0, DIFFUSE)]),
+            ("sky_specular", _) => Ok(vec![sky(LOBE, SPECULAR)]),
+            ("base_map", _) => Ok(colors(self.maps().base.clone().levels())),
+            ("normal_map", _) => Ok(colors(self.maps().normal.clone().levels())),
+            ("light_map", _) => Ok(colors(vec![self.maps().light.clone()])),
+            _ => Err(vec![Diagnostic::error(
+                codes::EXECUTOR_FAILED,
+                format!("no pass before has drawn what `{name}` reads"),
+            )]),
+        }
+    }
+
+    fn maps(&mut self) -> &Maps {
+        let make = self.values.scene.maps;
+        self.maps.get_or_insert_with(make)
+    }
+}
+
+fn flat(kind: TextureKind, faces: &[Vec<f32>], size: u32) -> Texture {
+    Texture {
+        kind,
+        width: size,
+        height: size,
+        texels: faces.iter().take(kind.layers() as usize).flatten().copied().collect(),
+    }
+}
+
+/// Depths where they are read as colours.
+fn as_color(faces: &[Vec<f32>], size: u32) -> Texture {
+    let texels = faces.iter().take(1).flatten().flat_map(|depth| [*depth, 0.0, 0.0, 1.0]).collect();
+    Texture { kind: TextureKind::Color2d, width: size, height: size, texels }
+}
+
+fn cube(map: &CubeMap) -> Texture {
+    let texels = map
+        .texels
+        .iter()
+        .take(FACES.len() * map.size * map.size)
+        .flat_map(|texel| texel.extend(1.0).as_vec4().to_array())
+        .collect();
+    Texture {
+        kind: TextureKind::ColorCube,
+        width: map.size as u32,
+        height: map.size as u32,
+        texels,
+    }
+}
+
+fn colors(levels: Vec<Map>) -> Vec<Texture> {
+    let color = |map: Map| Texture {
+        kind: TextureKind::Color2d,
+        width: map.width as u32,
+        height: map.height as u32,
+        texels: map.texels.iter().flat_map(|texel| texel.as_vec4().to_array()).collect(),
+    };
+    levels.into_iter().map(color).collect()
+}
+
+/// A texture with all its smaller levels: made after the blur, so that they are blurred too.
+fn mipped(texture: Texture) -> Vec<Texture> {
+    let (pixels, _) = texture.texels.as_chunks::<4>();
+    let texels = pixels.iter().map(|pixel| glam::Vec4::from_array(*pixel).as_dvec4()).collect();
+    let mut levels = colors(
+        Map { width: texture.width as usize, height: texture.height as usize, texels }.levels(),
+    );
+    levels[0] = texture;
+    levels
+}

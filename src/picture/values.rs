@@ -1,0 +1,303 @@
+//! A number for every uniform: what the source published, or else what the scene has.
+
+use std::f64::consts::PI;
+
+use glam::{DMat4, DVec3};
+
+use super::light::LightView;
+use super::needs::Falloff;
+use super::plan::{Pass, Plan};
+use super::{Shot, Surroundings};
+use crate::scene::sets::{Lamp, LampKind, Material, Object, Scene};
+use crate::scene::{directions, normal_matrix, sh9_project};
+
+/// What the uniforms of one pass are filled from.
+pub struct Values<'a> {
+    pub plan: &'a Plan,
+    pub scene: &'a Scene,
+    /// The pass that draws the picture, whichever is being drawn.
+    pub last: &'a Pass,
+    pub light: &'a LightView,
+    pub shot: &'a Shot,
+}
+
+/// The camera of a pass.
+#[derive(Debug, Clone, Copy)]
+pub struct Camera {
+    pub clip_from_world: DMat4,
+    pub world_from_view: DMat4,
+}
+
+/// Blocks of uniforms, with the group of numbers that a preset has for them.
+const GROUPS: &[(&str, &str)] = &[
+    ("lamps", "light"),
+    ("materials", "material"),
+    ("surroundings", "surroundings"),
+    ("haze", "haze"),
+    ("caster", "caster"),
+    ("terms", "caster"),
+];
+
+/// Reach of falloffs that have one, in distances of the target.
+const RANGE: f64 = 2.4;
+
+/// A uniform's place: `lamps.lights[2].color` is the field `color` of the third of `lamps`.
+struct Path<'p> {
+    block: &'p str,
+    index: usize,
+    field: &'p str,
+}
+
+impl<'p> Path<'p> {
+    fn new(path: &'p str) -> Self {
+        let (block, rest) = path.split_once('.').unwrap_or((path, ""));
+        let last = rest.rsplit('.').next().unwrap_or(rest);
+        let index = rest.split(['[', ']']).nth(1).and_then(|index| index.parse().ok()).unwrap_or(0);
+        Self { block, index, field: last.split('[').next().unwrap_or(last) }
+    }
+}
+
+impl Camera {
+    /// The numbers of a field of the block `camera`.
+    pub fn number(&self, path: &str) -> Option<Vec<f64>> {
+        match Path::new(path).field {
+            "clip_from_world" => Some(columns(self.clip_from_world)),
+            "world_from_view" => Some(columns(self.world_from_view)),
+            _ => None,
+        }
+    }
+}
+
+impl Values<'_> {
+    /// The numbers of a uniform of every block but those of the camera and of an object: what the
+    /// source published, what the scene has, what the axes choose. `None` if nothing knows it.
+    pub fn number(&self, path: &str) -> Option<Vec<f64>> {
+        let path = Path::new(path);
+        let of_scene = || match path.block {
+            "lamps" if path.field == "count" => self.lamps().map(|count| vec![count as f64]),
+            "lamps" => self.lamp(path.index, path.field),
+            "materials" => self.materials(path.index, path.field),
+            "surroundings" => self.surroundings(&path),
+            "haze" => self.haze(path.field),
+            "caster" | "planes" => self.caster(path.field),
+            _ => None,
+        };
+        self.published(&path)
+            .or_else(of_scene)
+            .or_else(|| self.last.needs.uniform(path.block, path.field))
+    }
+
+    /// The numbers of an object's own blocks.
+    pub fn object(&self, object: &Object, path: &str) -> Option<Vec<f64>> {
+        let parsed = Path::new(path);
+        match (parsed.block, parsed.field) {
+            ("object", "world_from_object") => Some(columns(object.world_from_object)),
+            ("object", "normal_from_object") => {
+                Some(columns(DMat4::from_mat3(normal_matrix(object.world_from_object))))
+            }
+            ("object", "color") => Some(object.color.extend(1.0).to_array().to_vec()),
+            ("materials", field) if !self.last.needs.material_array => {
+                self.published(&parsed).or_else(|| material(&object.material, field))
+            }
+            _ => self.number(path),
+        }
+    }
+
+    fn published(&self, path: &Path<'_>) -> Option<Vec<f64>> {
+        let (_, group) = GROUPS.iter().find(|(block, _)| *block == path.block)?;
+        // The bias of a lookup is not that of the moments.
+        if path.block == "terms" && path.field == "bias" {
+            return None;
+        }
+        self.plan.number(group, path.field)
+    }
+
+    /// How many lamps shine: those of the scene, as far as the array is long.
+    fn lamps(&self) -> Option<usize> {
+        let most = usize::try_from(self.last.integer("max_lights")?).ok()?;
+        Some(self.scene.lamps.len().min(most))
+    }
+
+    fn kind(&self, index: usize, lamp: &Lamp) -> LampKind {
+        let needs = &self.last.needs;
+        // The first lamp casts the shadow.
+        let caster = if index == 0 && needs.has_shadow() { needs.caster } else { None };
+        needs.lamps.or(caster).unwrap_or(lamp.kind)
+    }
+
+    fn lamp(&self, index: usize, field: &str) -> Option<Vec<f64>> {
+        // An array that is longer than the scene has lamps ends with zeros.
+        let Some(lamp) = self.scene.lamps.get(index) else { return Some(Vec::new()) };
+        let kind = self.kind(index, lamp);
+        Some(match field {
+            "kind" => vec![match kind {
+                LampKind::Directional => 1.0,
+                LampKind::Point => 2.0,
+                LampKind::Spot => 3.0,
+            }],
+            "color" => vector(self.intensity(index, lamp, kind)),
+            "ambient" => vector(lamp.color * 0.06),
+            "range" => vec![RANGE * lamp.reach()],
+            "position" => vector(lamp.position),
+            "axis" => vector(self.axis(index, lamp, kind)),
+            "cutoff" | "outer" => vec![lamp.half_angle.cos()],
+            "inner" => vec![(0.75 * lamp.half_angle).cos()],
+            "shadow_layer" => vec![if index == 0 { 0.0 } else { -1.0 }],
+            _ => return None,
+        })
+    }
+
+    /// Several directional lights shine from where the lamps are, not all straight down.
+    fn axis(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
+        let key = self.scene.lamps.first().map_or(DVec3::ZERO, |key| key.target);
+        if kind == LampKind::Directional && index > 0 {
+            (key - lamp.position).normalize_or(DVec3::NEG_Y)
+        } else {
+            lamp.axis()
+        }
+    }
+
+    /// The colour that arrives at the target as the lamp has it, whatever the falloff.
+    fn intensity(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
+        if kind == LampKind::Directional {
+            // They reach everywhere, so that those beside the first add up.
+            return lamp.color * if index == 0 { 1.0 } else { 0.25 };
+        }
+        let d = lamp.reach();
+        let published = |field| self.plan.number("light", field);
+        let falloff = match self.last.needs.falloff {
+            Falloff::None => 1.0,
+            Falloff::Polynomial => {
+                let coefficients = published("attenuation")
+                    .or_else(|| self.last.needs.uniform("lamps", "attenuation"))
+                    .unwrap_or_else(|| vec![1.0]);
+                1.0 / coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * d + coefficient)
+            }
+            Falloff::LinearRadius => 1.0 - d / self.range(d),
+            Falloff::InverseSquareWindow => (1.0 - (d / self.range(d)).powi(4)).powi(2) / (d * d),
+        };
+        lamp.color / if falloff > 1e-6 { falloff } else { 1.0 }
+    }
+
+    /// Reach of a lamp at a distance from its target.
+    fn range(&self, distance: f64) -> f64 {
+        let published = self.plan.number("light", "range");
+        published.and_then(|range| range.first().copied()).unwrap_or(RANGE * distance)
+    }
+
+    fn materials(&self, index: usize, field: &str) -> Option<Vec<f64>> {
+        let (pair, side) = if self.last.needs.sides { (index / 2, index % 2) } else { (index, 0) };
+        // An array that is longer than the scene has materials ends with zeros.
+        let Some(sides) = self.scene.materials.get(pair) else { return Some(Vec::new()) };
+        material(&sides[side], field)
+    }
+
+    fn surroundings(&self, path: &Path<'_>) -> Option<Vec<f64>> {
+        let lit = !self.last.needs.unlit;
+        let dimmed = if lit { 0.35 } else { 1.0 };
+        Some(match path.field {
+            "color" => vector(if lit { self.scene.ambient } else { DVec3::new(0.44, 0.45, 0.48) }),
+            // Published coefficients are taken as the book takes them.
+            "scale" => vec![dimmed * if self.plan.probe.is_some() { 1.0 } else { 1.0 / PI }],
+            "sky" => vector(self.scene.sky * dimmed),
+            "ground" => vector(self.scene.ground * dimmed),
+            "up" => vector(DVec3::Y),
+            "diffuse_share" => vec![if lit { 0.35 } else { 1.0 }],
+            "specular_share" => vec![if lit { 0.25 } else { 0.4 }],
+            "sh" => self.probe().get(path.index)?.to_vec(),
+            _ => return None,
+        })
+    }
+
+    /// Nine coefficients: published, or of what is around the scene.
+    pub fn probe(&self) -> [[f64; 3]; 9] {
+        self.plan.probe.unwrap_or_else(|| projected(&self.shot.surroundings))
+    }
+
+    fn haze(&self, field: &str) -> Option<Vec<f64>> {
+        let (start, end) = self.scene.haze_range;
+        Some(match field {
+            "color" => vector(self.scene.haze),
+            // Half of the colour is left in the middle.
+            "density" => vec![2.0_f64.ln().sqrt() / (0.5 * (start + end))],
+            "start" => vec![start],
+            "end" => vec![end],
+            _ => return None,
+        })
+    }
+
+    fn caster(&self, field: &str) -> Option<Vec<f64>> {
+        // Numbers of the depth pass are the source's way against acne: then nothing is added.
+        let is_published = self.plan.numbers.contains_key("depth_pass");
+        let offset = if is_published { 0.0 } else { 1.0 + 0.5 * self.last.needs.reach };
+        Some(match field {
+            // Point lights have a matrix for each face, and read none.
+            "clip_from_world" => columns(*self.light.clip_from_world.first()?),
+            "near" => vec![self.light.near],
+            "far" => vec![self.light.far],
+            "texel" => vec![self.light.texel],
+            "normal_offset" => vec![offset],
+            _ => return None,
+        })
+    }
+
+    /// Polygon offset of the depth pass: the source's, or as much as the filter needs.
+    pub fn offset(&self) -> [f32; 2] {
+        if !self.plan.numbers.contains_key("depth_pass") {
+            return [1.0 + self.last.needs.reach as f32, 4.0];
+        }
+        let published = self.plan.number("depth_pass", "polygon_offset").unwrap_or_default();
+        [0, 1].map(|index| published.get(index).map_or(0.0, |value| *value as f32))
+    }
+
+    /// Whether the depth pass has back faces only.
+    pub fn culls_front(&self) -> bool {
+        self.plan
+            .number("depth_pass", "cull_front")
+            .is_some_and(|value| value.first().is_some_and(|value| *value != 0.0))
+    }
+
+    /// What depth 1 is in the moments that the last pass reads.
+    pub fn cleared_moments(&self) -> [f32; 4] {
+        if !self.last.needs.exponential {
+            return [1.0, 1.0, 0.0, 0.0];
+        }
+        let exponents = self
+            .plan
+            .number("caster", "exponents")
+            .or_else(|| self.last.needs.uniform("terms", "exponents"))
+            .unwrap_or_default();
+        let exponent = |index: usize| exponents.get(index).copied().unwrap_or(0.0);
+        let (positive, negative) = (exponent(0).exp(), -(-exponent(1)).exp());
+        [positive, positive * positive, negative, negative * negative].map(|moment| moment as f32)
+    }
+}
+
+fn projected(surroundings: &Surroundings) -> [[f64; 3]; 9] {
+    let samples = directions(24)
+        .into_iter()
+        .map(|(direction, angle)| (direction, angle, surroundings.radiance(direction)));
+    sh9_project(samples).map(|coefficient| coefficient.to_array())
+}
+
+fn material(material: &Material, field: &str) -> Option<Vec<f64>> {
+    Some(match field {
+        "emission" => vector(material.emission),
+        "shininess" => vec![material.shininess],
+        "ambient" => vector(material.ambient),
+        "roughness" => vec![material.roughness],
+        "diffuse" => vector(material.diffuse),
+        "wrap" => vec![material.wrap],
+        "specular" => vector(material.specular),
+        "sigma" => vec![material.sigma],
+        _ => return None,
+    })
+}
+
+fn vector(vector: DVec3) -> Vec<f64> {
+    vector.to_array().to_vec()
+}
+
+fn columns(matrix: DMat4) -> Vec<f64> {
+    matrix.to_cols_array().to_vec()
+}

@@ -1,0 +1,368 @@
+//! What values a parameter takes.
+
+use super::random::Random;
+use super::reader::{Node, Value};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::execute::kernel::Shape;
+use naga::ScalarKind;
+
+/// Most values of one domain.
+const MOST: u32 = 1 << 20;
+
+/// One kind of domain in a case file: its key, the other keys that go with it, how it is read.
+struct Kind {
+    key: &'static str,
+    others: &'static [&'static str],
+    read: fn(&Node, &Node) -> Result<Domain, Diagnostic>,
+}
+
+const KINDS: &[Kind] = &[
+    Kind {
+        key: "values",
+        others: &[],
+        read: |value, _| {
+            Ok(Domain::Values(
+                value.elements()?.iter().map(Node::numbers).collect::<Result<_, _>>()?,
+            ))
+        },
+    },
+    Kind {
+        key: "grid",
+        others: &["count"],
+        read: |value, all| Ok(Domain::Grid { range: value.pair()?, count: count(all)? }),
+    },
+    Kind { key: "log", others: &["count"], read: log },
+    Kind {
+        key: "random",
+        others: &["count", "seed"],
+        read: |value, all| {
+            Ok(Domain::Random { range: value.pair()?, count: count(all)?, seed: seed(all)? })
+        },
+    },
+    Kind {
+        key: "unit",
+        others: &["seed"],
+        read: |value, all| Ok(Domain::Unit { count: value.count(1, MOST)?, seed: seed(all)? }),
+    },
+    Kind {
+        key: "hemisphere",
+        others: &["count", "seed"],
+        read: |value, all| about(value, all, About::Hemisphere),
+    },
+    Kind {
+        key: "grazing",
+        others: &["count", "seed"],
+        read: |value, all| about(value, all, About::Grazing),
+    },
+    Kind {
+        key: "same",
+        others: &[],
+        read: |value, _| {
+            Ok(Domain::About { of: path(value)?, kind: About::Same, count: 1, seed: 0 })
+        },
+    },
+    Kind {
+        key: "around",
+        others: &["ulps"],
+        read: |value, all| {
+            Ok(Domain::Around {
+                value: value.numbers()?,
+                ulps: all.required("ulps")?.count(1, 1000)?,
+            })
+        },
+    },
+    Kind {
+        key: "special",
+        others: &[],
+        read: |value, _| Ok(Domain::Special(value.choice(SPECIALS)?)),
+    },
+];
+
+/// Values that go wrong first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Special {
+    /// Zeros of both signs, one and its neighbours, powers of two.
+    Plain,
+    /// Those, subnormals, the smallest normal, and 1e-18.
+    Small,
+    /// Those, and 1e18 of both signs: squares of which are still finite.
+    All,
+}
+
+const SPECIALS: &[(&str, Special)] =
+    &[("plain", Special::Plain), ("small", Special::Small), ("all", Special::All)];
+
+/// How a vector stands to another parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum About {
+    /// Unit, with a positive dot product.
+    Hemisphere,
+    /// Unit, nearly at right angles, on both sides.
+    Grazing,
+    /// Equal.
+    Same,
+}
+
+/// A set of values, in order.
+#[derive(Debug, Clone)]
+pub enum Domain {
+    Values(Vec<Vec<f64>>),
+    Grid { range: (f64, f64), count: u32 },
+    Log { range: (f64, f64), count: u32 },
+    Random { range: (f64, f64), count: u32, seed: u64 },
+    Unit { count: u32, seed: u64 },
+    About { of: String, kind: About, count: u32, seed: u64 },
+    Around { value: Vec<f64>, ulps: u32 },
+    Special(Special),
+    Union(Vec<Domain>),
+}
+
+/// The domains below a path: one for a plain parameter, one for each field of a struct.
+pub fn read(
+    path: &str,
+    node: &Node,
+    found: &mut Vec<(String, Domain, Node)>,
+) -> Result<(), Diagnostics> {
+    match &node.value {
+        Value::Table(entries) if !is_domain(node) => {
+            for (key, inner) in entries {
+                read(&format!("{path}.{}", key.name), inner, found)?;
+            }
+        }
+        _ => {
+            found.push((path.to_owned(), domain(node).map_err(|error| vec![error])?, node.clone()))
+        }
+    }
+    Ok(())
+}
+
+/// Whether every key belongs to one kind of domain: else the table lists fields of a struct.
+fn is_domain(node: &Node) -> bool {
+    KINDS.iter().any(|kind| node.get(kind.key).is_some() && node.only(&keys(kind)).is_ok())
+}
+
+fn keys(kind: &Kind) -> Vec<&'static str> {
+    std::iter::once(kind.key).chain(kind.others.iter().copied()).collect()
+}
+
+fn domain(node: &Node) -> Result<Domain, Diagnostic> {
+    match &node.value {
+        Value::Array(elements) => {
+            elements.iter().map(part).collect::<Result<_, _>>().map(Domain::Union)
+        }
+        Value::Table(_) => match KINDS.iter().find(|kind| node.get(kind.key).is_some()) {
+            Some(kind) => (kind.read)(node.required(kind.key)?, node),
+            None => Err(node.error("this table is no domain").note(format!(
+                "domains are {}",
+                KINDS.iter().map(|kind| kind.key).collect::<Vec<_>>().join(", ")
+            ))),
+        },
+        _ => node.number().map(|number| Domain::Values(vec![vec![number]])),
+    }
+}
+
+/// An element of a union: an array there lists values, a vector each.
+fn part(node: &Node) -> Result<Domain, Diagnostic> {
+    match &node.value {
+        Value::Array(values) => {
+            values.iter().map(Node::numbers).collect::<Result<_, _>>().map(Domain::Values)
+        }
+        _ => domain(node),
+    }
+}
+
+fn count(all: &Node) -> Result<u32, Diagnostic> {
+    all.required("count")?.count(1, MOST)
+}
+
+fn seed(all: &Node) -> Result<u64, Diagnostic> {
+    all.get("seed").map_or(Ok(1), |node| node.count(0, u32::MAX).map(u64::from))
+}
+
+fn log(value: &Node, all: &Node) -> Result<Domain, Diagnostic> {
+    let range = value.pair()?;
+    if range.0 * range.1 <= 0.0 {
+        return Err(value.error("a logarithmic range may not hold zero"));
+    }
+    Ok(Domain::Log { range, count: count(all)? })
+}
+
+fn about(value: &Node, all: &Node, kind: About) -> Result<Domain, Diagnostic> {
+    Ok(Domain::About { of: path(value)?, kind, count: count(all)?, seed: seed(all)? })
+}
+
+fn path(value: &Node) -> Result<String, Diagnostic> {
+    value.text().map(str::to_owned)
+}
+
+impl Domain {
+    /// The parameters whose values must be chosen before.
+    pub fn needs(&self) -> Vec<&str> {
+        match self {
+            Self::About { of, .. } => vec![of],
+            Self::Union(parts) => parts.iter().flat_map(Self::needs).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether every value is a unit vector.
+    pub fn is_unit(&self) -> bool {
+        match self {
+            Self::Unit { .. } | Self::About { .. } => true,
+            Self::Union(parts) => parts.iter().any(Self::is_unit),
+            _ => false,
+        }
+    }
+
+    /// The values as words of the shape. `other` gives the value of a needed parameter, `salt`
+    /// keeps rows apart.
+    pub fn words(
+        &self,
+        shape: &Shape,
+        other: &dyn Fn(&str) -> Vec<f64>,
+        salt: u64,
+    ) -> Vec<Vec<u32>> {
+        let kinds = shape.kinds();
+        let to_words = |value: Vec<f64>| {
+            let splat = value.len() == 1;
+            kinds
+                .iter()
+                .enumerate()
+                .map(|(index, kind)| {
+                    word(value.get(if splat { 0 } else { index }).copied().unwrap_or(0.0), *kind)
+                })
+                .collect()
+        };
+        self.values(kinds.len(), other, salt).into_iter().map(to_words).collect()
+    }
+
+    fn values(&self, size: usize, other: &dyn Fn(&str) -> Vec<f64>, salt: u64) -> Vec<Vec<f64>> {
+        match self {
+            Self::Values(values) => values.clone(),
+            Self::Grid { range, count } => {
+                grid(size, &steps(*count, |t| range.0 + (range.1 - range.0) * t))
+            }
+            Self::Log { range, count } => {
+                grid(size, &steps(*count, |t| range.0 * (range.1 / range.0).powf(t)))
+            }
+            Self::Random { range, count, seed } => {
+                let mut random = Random::new(seed ^ salt << 20);
+                (0..*count)
+                    .map(|_| (0..size).map(|_| random.range(range.0, range.1)).collect())
+                    .collect()
+            }
+            Self::Unit { count, seed } => units(size, *count, *seed),
+            Self::About { of, kind, count, seed } => {
+                related(&other(of), *kind, *count, seed ^ salt << 20)
+            }
+            Self::Around { value, ulps } => around(value, *ulps),
+            Self::Special(special) => specials(*special, size),
+            Self::Union(parts) => {
+                parts.iter().flat_map(|part| part.values(size, other, salt)).collect()
+            }
+        }
+    }
+}
+
+/// The bits of a value of the kind.
+pub fn word(value: f64, kind: ScalarKind) -> u32 {
+    match kind {
+        ScalarKind::Sint => value as i32 as u32,
+        ScalarKind::Uint => value as u32,
+        ScalarKind::Bool => u32::from(value != 0.0),
+        _ => (value as f32).to_bits(),
+    }
+}
+
+fn steps(count: u32, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    (0..count).map(|i| f(f64::from(i) / f64::from((count - 1).max(1)))).collect()
+}
+
+/// Every combination of the values in `size` components.
+fn grid(size: usize, values: &[f64]) -> Vec<Vec<f64>> {
+    (0..size).fold(vec![Vec::new()], |rows, _| {
+        if rows.len() > MOST as usize {
+            return rows;
+        }
+        rows.iter()
+            .flat_map(|row| values.iter().map(move |value| [row.as_slice(), &[*value]].concat()))
+            .collect()
+    })
+}
+
+/// The axes of both signs, then random directions.
+fn units(size: usize, count: u32, seed: u64) -> Vec<Vec<f64>> {
+    let axes = (0..2 * size).map(|i| {
+        (0..size).map(|c| if c == i / 2 { 1.0 - 2.0 * (i % 2) as f64 } else { 0.0 }).collect()
+    });
+    let mut random = Random::new(seed);
+    let rest = std::iter::from_fn(|| Some(random.unit(size)));
+    axes.chain(rest).take(count as usize).collect()
+}
+
+fn related(base: &[f64], kind: About, count: u32, seed: u64) -> Vec<Vec<f64>> {
+    let mut random = Random::new(seed);
+    (0..count)
+        .map(|i| match kind {
+            About::Same => base.to_vec(),
+            About::Hemisphere => hemisphere(base, &mut random),
+            About::Grazing => grazing(base, i, &mut random),
+        })
+        .collect()
+}
+
+fn hemisphere(base: &[f64], random: &mut Random) -> Vec<f64> {
+    let unit = random.unit(base.len());
+    let side = if dot(&unit, base) < 0.0 { -1.0 } else { 1.0 };
+    unit.iter().map(|x| x * side).collect()
+}
+
+/// A direction at right angles, tilted by 10^-1 to 10^-7 to either side.
+fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
+    let tilt =
+        10f64.powi(-1 - (index / 2 % 7) as i32) * if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let unit = random.unit(base.len());
+    let along = dot(&unit, base) / dot(base, base).max(1e-300);
+    let tilted: Vec<f64> = unit.iter().zip(base).map(|(x, n)| x - along * n + tilt * n).collect();
+    let length = dot(&tilted, &tilted).sqrt().max(1e-300);
+    tilted.iter().map(|x| x / length).collect()
+}
+
+/// The value, and its neighbours in f32 on both sides, by component at once.
+fn around(value: &[f64], ulps: u32) -> Vec<Vec<f64>> {
+    let ulps = ulps as i32;
+    let shift = |x: f64, by: i32| {
+        let (x, mut at) = (x as f32, x as f32);
+        for _ in 0..by.abs() {
+            at = if (by > 0) == (x >= 0.0) { at.next_up() } else { at.next_down() };
+        }
+        f64::from(at)
+    };
+    (-ulps..=ulps).map(|by| value.iter().map(|x| shift(*x, by)).collect()).collect()
+}
+
+fn specials(special: Special, size: usize) -> Vec<Vec<f64>> {
+    let one = f64::from(1f32.next_down());
+    let plain = [0.0, -0.0, 1.0, -1.0, one, f64::from(1f32.next_up()), 0.5, 2.0];
+    let small = [1e-45, -1e-45, 1e-39, f64::from(f32::MIN_POSITIVE), 1e-18, -1e-18];
+    let large = [1e18, -1e18];
+    let mut values = plain.to_vec();
+    if special != Special::Plain {
+        values.extend(small);
+    }
+    if special == Special::All {
+        values.extend(large);
+    }
+    if size == 1 {
+        return values.iter().map(|value| vec![*value]).collect();
+    }
+    let splats = values.iter().map(|value| vec![*value; size]);
+    let singles = values.iter().flat_map(|value| {
+        (0..size).map(move |c| (0..size).map(|i| if i == c { *value } else { 0.0 }).collect())
+    });
+    splats.chain(singles).collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

@@ -1,0 +1,130 @@
+//! Laws as a case file has them.
+
+use super::Text;
+use super::reader::{Node, Value};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::proof::laws::{self, Albedo, Integral, Inverse, Law, Over, Takes, Wanted};
+
+/// Reads one law.
+pub fn read(node: &Node) -> Result<Law, Diagnostic> {
+    let entries = node.entries()?;
+    let found =
+        entries.iter().find_map(|(key, value)| laws::find(&key.name).map(|kind| (kind, value)));
+    let Some((kind, value)) = found else {
+        let known: Vec<_> = laws::KINDS.iter().map(|kind| kind.name).collect();
+        return Err(node
+            .error("this table is no law")
+            .note(format!("laws are {}", known.join(", "))));
+    };
+    let options = kind.takes.options();
+    let unknown = entries
+        .iter()
+        .find(|(key, _)| key.name != kind.name && !options.contains(&key.name.as_str()));
+    if let Some((key, _)) = unknown {
+        let message = format!("the law `{}` has no `{}`", kind.name, key.name);
+        return Err(Diagnostic::error(codes::CASE_INVALID, message)
+            .at(key.span, "here")
+            .suggest(&key.name, options.iter().copied()));
+    }
+    filled(Law::new(kind, node.span), node, value)
+}
+
+/// The law with what its kind takes.
+fn filled(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> {
+    match law.kind.takes {
+        Takes::Numbers => law.numbers = value.numbers()?,
+        Takes::Names => law.names = texts(value)?,
+        Takes::Slope => {
+            law.names = texts(value)?;
+            law.numbers = vec![node.required("slope")?.number()?];
+        }
+        Takes::Integral => {
+            law.names = texts(value)?;
+            law.numbers =
+                node.get("at_most").map_or_else(|| node.required("gives"), Ok)?.numbers()?;
+            law.integral = Some(integral(node)?);
+        }
+        Takes::Point => {
+            law.at = super::values_by_path("", value, &[])?;
+            law.numbers = node.required("gives")?.numbers()?;
+        }
+        Takes::Albedo => {
+            law.partners = texts(value)?;
+            law.albedo = Some(albedo(node)?);
+        }
+        Takes::Inverse => {
+            law.partners = vec![value.text()?.to_owned()];
+            law.inverse = Some(inverse(node)?);
+        }
+    }
+    Ok(law)
+}
+
+fn texts(node: &Node) -> Result<Vec<String>, Diagnostic> {
+    node.one_or_more().iter().map(|one| one.text().map(str::to_owned)).collect()
+}
+
+fn integral(node: &Node) -> Result<Integral, Diagnostic> {
+    let about = node.get("about").map(|about| about.text().map(str::to_owned)).transpose()?;
+    let cosine = node.get("cosine").is_some_and(|cosine| matches!(cosine.value, Value::Bool(true)));
+    if cosine && about.is_none() {
+        return Err(node.error("`cosine` is that to `about`, which is missing"));
+    }
+    Ok(Integral {
+        about,
+        cosine,
+        steps: steps(node)?,
+        within: node.required("within")?.number()?,
+        at_most: node.get("at_most").is_some(),
+    })
+}
+
+fn steps(node: &Node) -> Result<usize, Diagnostic> {
+    Ok(node.get("steps").map_or(Ok(16), |steps| steps.count(2, 128))? as usize)
+}
+
+fn albedo(node: &Node) -> Result<Albedo, Diagnostic> {
+    let text = |name: &str| node.get(name).map(|node| node.text().map(str::to_owned)).transpose();
+    let over =
+        [("l", Over::Light), ("h", Over::Half), ("below", Over::Below), ("sphere", Over::Sphere)];
+    let wanted = match (node.get("gives"), node.get("at_most")) {
+        (Some(gives), _) => Wanted::Exactly(formula(gives)?),
+        (None, Some(most)) => Wanted::AtMost(formula(most)?),
+        (None, None) => Wanted::Own,
+    };
+    Ok(Albedo {
+        over: node.get("over").map_or(Ok(Over::Light), |node| node.choice(&over))?,
+        view: text("view")?.unwrap_or_else(|| "nv".to_owned()),
+        azimuth: node.get("azimuth").map_or(Ok(0.0), Node::number)?,
+        peak: node.get("peak").map(Text::read).transpose()?,
+        with: node.get("with").map_or(Ok(Vec::new()), formulas)?,
+        component: node
+            .get("component")
+            .map(|node| node.count(0, 3).map(|component| component as usize))
+            .transpose()?,
+        steps: steps(node)?,
+        within: node.required("within")?.number()?,
+        wanted,
+    })
+}
+
+/// Formulas by name.
+fn formulas(node: &Node) -> Result<Vec<(String, Text)>, Diagnostic> {
+    let entries = node.entries()?.iter();
+    entries.map(|(key, value)| Ok((key.name.clone(), formula(value)?))).collect()
+}
+
+/// A formula, or plain numbers.
+fn formula(node: &Node) -> Result<Text, Diagnostic> {
+    if let Value::Text(_) = node.value {
+        return Text::read(node);
+    }
+    let numbers: Vec<String> =
+        node.numbers()?.iter().map(|number| format!("(0 + {number:?})")).collect();
+    Ok(Text { text: format!("vec({})", numbers.join(", ")), span: node.span })
+}
+
+fn inverse(node: &Node) -> Result<Inverse, Diagnostic> {
+    let of = node.get("of").map(|of| of.text().map(str::to_owned)).transpose()?;
+    Ok(Inverse { of, within: node.required("within")?.number()? })
+}

@@ -1,0 +1,189 @@
+//! TOML with spans, read by hand so that every mistake points to its place.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::source::{SourceId, Span};
+
+/// A value of a case file with where it stands.
+#[derive(Debug, Clone)]
+pub struct Node {
+    pub value: Value,
+    pub span: Span,
+}
+
+/// A value, owned.
+#[derive(Debug, Clone)]
+pub enum Value {
+    Bool(bool),
+    Number(f64),
+    Text(String),
+    Array(Vec<Node>),
+    Table(Vec<(Key, Node)>),
+}
+
+/// A key with its place.
+#[derive(Debug, Clone)]
+pub struct Key {
+    pub name: String,
+    pub span: Span,
+}
+
+/// The whole file as a table.
+pub fn read(text: &str, source: SourceId) -> Result<Node, Diagnostic> {
+    let table = DeTable::parse(text).map_err(|error| {
+        let span = Span::new(source, error.span().unwrap_or(0..0));
+        Diagnostic::error(codes::CASE_SYNTAX, error.message().to_owned()).at(span, "here")
+    })?;
+    let span = Span::new(source, table.span());
+    Ok(Node { value: self::table(table.get_ref(), source), span })
+}
+
+fn node(value: &Spanned<DeValue<'_>>, source: SourceId) -> Node {
+    let span = Span::new(source, value.span());
+    let value = match value.get_ref() {
+        DeValue::Boolean(value) => Value::Bool(*value),
+        DeValue::Integer(value) => i64::from_str_radix(value.as_str(), value.radix())
+            .map_or(Value::Number(f64::NAN), |n| Value::Number(n as f64)),
+        DeValue::Float(value) => Value::Number(value.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::String(value) => Value::Text(value.to_string()),
+        DeValue::Datetime(value) => Value::Text(value.to_string()),
+        DeValue::Array(values) => {
+            Value::Array(values.iter().map(|value| node(value, source)).collect())
+        }
+        DeValue::Table(values) => table(values, source),
+    };
+    Node { value, span }
+}
+
+fn table(table: &DeTable<'_>, source: SourceId) -> Value {
+    let key = |key: &Spanned<std::borrow::Cow<'_, str>>| Key {
+        name: key.get_ref().to_string(),
+        span: Span::new(source, key.span()),
+    };
+    let mut entries: Vec<_> =
+        table.iter().map(|(name, value)| (key(name), node(value, source))).collect();
+    entries.sort_by_key(|(key, _)| key.span.start);
+    Value::Table(entries)
+}
+
+impl Node {
+    /// An error at this place.
+    pub fn error(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::error(codes::CASE_INVALID, message).at(self.span, "here")
+    }
+
+    /// The entries of a table.
+    pub fn entries(&self) -> Result<&[(Key, Node)], Diagnostic> {
+        match &self.value {
+            Value::Table(entries) => Ok(entries),
+            _ => Err(self.error("expected a table")),
+        }
+    }
+
+    /// The elements of an array.
+    pub fn elements(&self) -> Result<&[Node], Diagnostic> {
+        match &self.value {
+            Value::Array(elements) => Ok(elements),
+            _ => Err(self.error("expected an array")),
+        }
+    }
+
+    /// An array's elements, or the value itself as the only one.
+    pub fn one_or_more(&self) -> &[Node] {
+        match &self.value {
+            Value::Array(elements) => elements,
+            _ => std::slice::from_ref(self),
+        }
+    }
+
+    /// A text.
+    pub fn text(&self) -> Result<&str, Diagnostic> {
+        match &self.value {
+            Value::Text(text) => Ok(text),
+            _ => Err(self.error("expected a string")),
+        }
+    }
+
+    /// A number; true and false are 1 and 0.
+    pub fn number(&self) -> Result<f64, Diagnostic> {
+        match self.value {
+            Value::Number(number) if !number.is_nan() => Ok(number),
+            Value::Bool(value) => Ok(f64::from(u8::from(value))),
+            _ => Err(self.error("expected a number")),
+        }
+    }
+
+    /// A whole number from `least` to `most`.
+    pub fn count(&self, least: u32, most: u32) -> Result<u32, Diagnostic> {
+        let number = self.number()?;
+        if number.fract() != 0.0 || number < f64::from(least) || number > f64::from(most) {
+            return Err(self.error(format!("expected a whole number from {least} to {most}")));
+        }
+        Ok(number as u32)
+    }
+
+    /// Numbers of an array, arrays within it included; or one number.
+    pub fn numbers(&self) -> Result<Vec<f64>, Diagnostic> {
+        match &self.value {
+            Value::Array(elements) => elements
+                .iter()
+                .map(Self::numbers)
+                .collect::<Result<Vec<_>, _>>()
+                .map(|parts| parts.concat()),
+            _ => self.number().map(|number| vec![number]),
+        }
+    }
+
+    /// Two numbers.
+    pub fn pair(&self) -> Result<(f64, f64), Diagnostic> {
+        match self.numbers()?[..] {
+            [low, high] => Ok((low, high)),
+            _ => Err(self.error("expected two numbers, `[low, high]`")),
+        }
+    }
+
+    /// One name of a closed set.
+    pub fn choice<T: Copy>(&self, known: &[(&str, T)]) -> Result<T, Diagnostic> {
+        let text = self.text()?;
+        known.iter().find(|(name, _)| *name == text).map(|(_, value)| *value).ok_or_else(|| {
+            let names: Vec<_> = known.iter().map(|(name, _)| format!("`{name}`")).collect();
+            let error = self.error(format!("`{text}` is none of {}", names.join(", ")));
+            error.suggest(text, known.iter().map(|(name, _)| *name))
+        })
+    }
+
+    /// The value of a key; an error where the table lacks it.
+    pub fn required(&self, name: &str) -> Result<&Self, Diagnostic> {
+        self.get(name).ok_or_else(|| self.error(format!("`{name}` is missing")))
+    }
+
+    /// The value of a key.
+    pub fn get(&self, name: &str) -> Option<&Self> {
+        match &self.value {
+            Value::Table(entries) => {
+                entries.iter().find(|(key, _)| key.name == name).map(|(_, node)| node)
+            }
+            _ => None,
+        }
+    }
+
+    /// An error for each key that is not known.
+    pub fn only(&self, known: &[&str]) -> Result<(), Diagnostics> {
+        let entries = self.entries().map_err(|error| vec![error])?;
+        let errors: Vec<_> = entries
+            .iter()
+            .filter(|(key, _)| !known.contains(&key.name.as_str()))
+            .map(|(key, _)| {
+                let error =
+                    Diagnostic::error(codes::CASE_INVALID, format!("unknown key `{}`", key.name))
+                        .at(key.span, "not known here");
+                error
+                    .note(format!("known are {}", known.join(", ")))
+                    .suggest(&key.name, known.iter().copied())
+            })
+            .collect();
+        if errors.is_empty() { Ok(()) } else { Err(errors) }
+    }
+}

@@ -1,0 +1,262 @@
+//! From domains to the words of every invocation.
+
+use super::domain::{self, Domain};
+use super::{Case, Oracle, TableRow};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::execute::kernel::Shape;
+use crate::execute::kernel::number;
+use crate::proof::formula::Scope;
+use naga::ScalarKind;
+
+/// Most rows of one case: more is a mistake in its domains.
+const MOST_ROWS: usize = 1 << 20;
+
+/// The inputs of a case, one row an invocation.
+#[derive(Debug)]
+pub struct Rows {
+    /// Words, row by row; what an executor takes.
+    pub words: Vec<u32>,
+    /// The same as numbers; what references and formulas take.
+    pub numbers: Vec<f64>,
+    /// Words of a row.
+    pub stride: usize,
+    pub kinds: Vec<ScalarKind>,
+    /// Word ranges that hold a unit vector: shrunk as a whole.
+    pub units: Vec<std::ops::Range<usize>>,
+}
+
+/// One column while rows grow.
+struct Column<'a> {
+    first: usize,
+    shape: Shape,
+    domain: &'a Domain,
+}
+
+impl Rows {
+    /// Rows of words of these kinds.
+    pub fn of(words: Vec<u32>, kinds: Vec<ScalarKind>) -> Self {
+        let (numbers, stride) = (numbers(&words, &kinds), kinds.len().max(1));
+        Self { words, numbers, stride, kinds, units: Vec::new() }
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.words.len() / self.stride.max(1)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.words.is_empty()
+    }
+
+    /// One row as numbers; none for a function without parameters.
+    pub fn row(&self, index: usize) -> &[f64] {
+        self.numbers.get(index * self.stride..(index + 1) * self.stride).unwrap_or(&[])
+    }
+
+    /// One row as words.
+    pub fn row_words(&self, index: usize) -> &[u32] {
+        &self.words[index * self.stride..(index + 1) * self.stride]
+    }
+
+    /// Rows of the same columns from other words.
+    pub fn with_words(&self, words: Vec<u32>) -> Self {
+        let numbers = numbers(&words, &self.kinds);
+        Self {
+            words,
+            numbers,
+            stride: self.stride,
+            kinds: self.kinds.clone(),
+            units: self.units.clone(),
+        }
+    }
+}
+
+/// The rows of a case over a function's parameters.
+pub fn rows(case: &Case, scope: &Scope<'_>) -> Result<Rows, Diagnostic> {
+    let kinds: Vec<ScalarKind> = scope.0.iter().flat_map(|(_, shape)| shape.kinds()).collect();
+    let stride = kinds.len().max(1);
+    let (words, units) = match &case.oracle {
+        Oracle::Table(table) => (table_words(table, scope, stride)?, Vec::new()),
+        _ => generated(case, scope, &kinds, stride)?,
+    };
+    let rows = Rows { numbers: numbers(&words, &kinds), words, stride, kinds, units };
+    let Some(filter) = &case.filter else { return Ok(rows) };
+    let filter = filter.bind(scope)?;
+    let kept = (0..rows.len())
+        .filter(|index| filter.scalar(rows.row(*index)) == 1.0)
+        .flat_map(|index| rows.row_words(index).to_vec())
+        .collect();
+    Ok(rows.with_words(kept))
+}
+
+type Generated = (Vec<u32>, Vec<std::ops::Range<usize>>);
+
+fn generated(
+    case: &Case,
+    scope: &Scope<'_>,
+    kinds: &[ScalarKind],
+    stride: usize,
+) -> Result<Generated, Diagnostic> {
+    let columns = columns(case, scope)?;
+    let mut rows = vec![vec![0u32; stride]];
+    for (index, column) in columns.iter().enumerate() {
+        rows = if case.zip && index > 0 {
+            zipped(rows, column, kinds, scope)
+        } else {
+            product(rows, column, kinds, scope, case)?
+        };
+    }
+    let units = columns
+        .iter()
+        .filter(|column| column.domain.is_unit())
+        .map(|column| column.first..column.first + column.shape.words() as usize);
+    Ok((rows.concat(), units.collect()))
+}
+
+/// Columns in an order in which each comes after those it needs.
+fn columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Diagnostic> {
+    let mut left: Vec<_> = case.inputs.iter().collect();
+    let mut done: Vec<&str> = Vec::new();
+    let mut columns = Vec::new();
+    while !left.is_empty() {
+        let ready = left
+            .iter()
+            .position(|(_, domain, _)| domain.needs().iter().all(|need| done.contains(need)));
+        let Some(ready) = ready else {
+            let (_, domain, span) = left[0];
+            let message = format!(
+                "`{}` is given no values, or only in a circle",
+                domain.needs().join("`, `")
+            );
+            return Err(Diagnostic::error(codes::CASE_INVALID, message).at(*span, "needed here"));
+        };
+        let (path, domain, span) = left.remove(ready);
+        let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
+        let (first, shape) =
+            scope.find(&parts).ok_or_else(|| scope.unknown(path).at(*span, "given here"))?;
+        columns.push(Column { first, shape: shape.clone(), domain });
+        done.push(path);
+    }
+    for (name, _) in &scope.0 {
+        let given = |path: &str| {
+            path == *name || path.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'))
+        };
+        if !case.inputs.iter().any(|(path, _, _)| given(path)) {
+            return Err(Diagnostic::error(
+                codes::CASE_INVALID,
+                format!("the parameter `{name}` is given no values"),
+            )
+            .at(case.span, "of this function"));
+        }
+    }
+    Ok(columns)
+}
+
+fn product(
+    rows: Vec<Vec<u32>>,
+    column: &Column<'_>,
+    kinds: &[ScalarKind],
+    scope: &Scope<'_>,
+    case: &Case,
+) -> Result<Vec<Vec<u32>>, Diagnostic> {
+    let fixed = column.domain.needs().is_empty().then(|| values(&rows[0], column, kinds, scope, 0));
+    let mut grown = Vec::new();
+    for (salt, row) in rows.iter().enumerate() {
+        let own;
+        let values = match &fixed {
+            Some(values) => values,
+            None => {
+                own = values(row, column, kinds, scope, salt as u64);
+                &own
+            }
+        };
+        grown.extend(values.iter().map(|value| placed(row, column.first, value)));
+        if grown.len() > MOST_ROWS {
+            let message = format!(
+                "the domains of `{}` multiply to more than {MOST_ROWS} rows",
+                case.function
+            );
+            return Err(Diagnostic::error(codes::CASE_INVALID, message)
+                .at(case.span, "of this function")
+                .note("`mode = \"zip\"` takes the domains side by side"));
+        }
+    }
+    Ok(grown)
+}
+
+fn zipped(
+    rows: Vec<Vec<u32>>,
+    column: &Column<'_>,
+    kinds: &[ScalarKind],
+    scope: &Scope<'_>,
+) -> Vec<Vec<u32>> {
+    if !column.domain.needs().is_empty() {
+        let pick = |index: usize, row: &Vec<u32>| {
+            let values = values(row, column, kinds, scope, index as u64);
+            placed(row, column.first, &values[index % values.len().max(1)])
+        };
+        return rows.iter().enumerate().map(|(index, row)| pick(index, row)).collect();
+    }
+    let values = values(&rows[0], column, kinds, scope, 0);
+    let count = rows.len().max(values.len());
+    (0..count)
+        .map(|index| placed(&rows[index % rows.len()], column.first, &values[index % values.len()]))
+        .collect()
+}
+
+fn values(
+    row: &[u32],
+    column: &Column<'_>,
+    kinds: &[ScalarKind],
+    scope: &Scope<'_>,
+    salt: u64,
+) -> Vec<Vec<u32>> {
+    let other = |path: &str| {
+        let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
+        let (first, count) =
+            scope.find(&parts).map_or((0, 0), |(first, shape)| (first, shape.words() as usize));
+        numbers(&row[first..first + count], &kinds[first..first + count])
+    };
+    column.domain.words(&column.shape, &other, salt)
+}
+
+fn placed(row: &[u32], first: usize, value: &[u32]) -> Vec<u32> {
+    let mut row = row.to_vec();
+    row[first..first + value.len()].copy_from_slice(value);
+    row
+}
+
+fn table_words(
+    table: &[TableRow],
+    scope: &Scope<'_>,
+    stride: usize,
+) -> Result<Vec<u32>, Diagnostic> {
+    let mut words = Vec::new();
+    for row in table {
+        let mut filled = vec![0; stride];
+        for (path, value) in &row.values {
+            let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
+            let (first, shape) = scope
+                .find(&parts)
+                .ok_or_else(|| scope.unknown(path).at(row.span, "in this row"))?;
+            let kinds = shape.kinds();
+            if value.len() != kinds.len() {
+                let message = format!("`{path}` has {} values, not {}", kinds.len(), value.len());
+                return Err(
+                    Diagnostic::error(codes::CASE_INVALID, message).at(row.span, "in this row")
+                );
+            }
+            for (index, (value, kind)) in value.iter().zip(kinds).enumerate() {
+                filled[first + index] = domain::word(*value, kind);
+            }
+        }
+        words.extend(filled);
+    }
+    Ok(words)
+}
+
+/// Words as numbers, by kind.
+pub fn numbers(words: &[u32], kinds: &[ScalarKind]) -> Vec<f64> {
+    words.iter().zip(kinds.iter().cycle()).map(|(word, kind)| number(*word, *kind)).collect()
+}

@@ -1,0 +1,107 @@
+//! The catalogue of the embedded library, its plots computed by the CPU executor.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use super::library::Library;
+use super::plots;
+use crate::catalogue::pages::{Contents, pages as written};
+use crate::catalogue::{self, Module, plot, preset, probe};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::execute::{Session, executors, on_thread};
+use crate::permute::Manifest;
+use crate::project::{self, LIBRARY};
+use crate::source::{self, Embedded, Package, SourceSet};
+
+/// Path below a folder and text.
+pub type Files = BTreeMap<String, String>;
+
+/// The catalogue's files. Errors are the library's, with its texts.
+pub fn pages() -> Result<Files, (SourceSet, Diagnostics)> {
+    let (sources, manifest) = project::library_manifest()?;
+    let sources = Mutex::new(sources);
+    let made = on_thread(|| contents(&sources, &manifest)).unwrap_or_else(|| Err(vec![stopped()]));
+    made.map_err(|problems| (sources.into_inner().unwrap_or_default(), problems))
+}
+
+/// Modules of the library, and their cases, that are made from its data, by path below the library.
+pub fn modules() -> Result<Files, (SourceSet, Diagnostics)> {
+    let mut sources = SourceSet::default();
+    let probes = match probe::library(&mut sources) {
+        Ok(probes) => probes,
+        Err(problems) => return Err((sources, problems)),
+    };
+    let made = [
+        ("wesl", probe::wesl(&probes)),
+        ("glsl", probe::glsl(&probes)),
+        ("toml", probe::cases(&probes)),
+    ];
+    Ok(made
+        .into_iter()
+        .map(|(extension, text)| (format!("ambient/probes.{extension}"), text))
+        .collect())
+}
+
+fn contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Diagnostics> {
+    let modules = catalogue::library();
+    let plots = drawn(sources, &modules)?;
+    let probes = probe::library(&mut lock(sources))?;
+    let presets = preset::library(&mut lock(sources), manifest, &probes)?;
+    Ok(written(&Contents {
+        modules: &modules,
+        plots: &plots,
+        manifest,
+        presets: &presets,
+        probes: &probes,
+    }))
+}
+
+/// The SVG of every plot, by the path of its function.
+fn drawn(sources: &Mutex<SourceSet>, modules: &[Module]) -> Result<Files, Diagnostics> {
+    let (executor, library) = (executors::eval::EXECUTOR, Library::embedded());
+    let mut session = executor.start().map_err(|_| vec![stopped()])?;
+    let mut found = Files::new();
+    for module in modules {
+        for (name, plot) in read_plots(sources, &module.path)? {
+            let path = format!("{}::{name}", module.path);
+            if !module.items.iter().any(|item| item.name == name) {
+                return Err(vec![Diagnostic::error(
+                    codes::UNKNOWN_FUNCTION,
+                    format!("`{}` plots `{path}`, which does not exist", plot::path(&module.path)),
+                )]);
+            }
+            found.insert(path.clone(), draw(&library, sources, &path, &plot, session.as_mut())?);
+        }
+    }
+    Ok(found)
+}
+
+fn read_plots(sources: &Mutex<SourceSet>, module: &str) -> Result<plot::Plots, Diagnostics> {
+    let package = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let mut sources = lock(sources);
+    match source::read(&mut sources, &package, &plot::path(module))
+        .map_err(|error| vec![error.into()])?
+    {
+        Some(id) => plot::parse(&sources, id),
+        None => Ok(plot::Plots::new()),
+    }
+}
+
+fn draw(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    path: &str,
+    plot: &plot::Plot,
+    session: &mut dyn Session,
+) -> Result<String, Diagnostics> {
+    let curves = plots::curves(library, sources, path, plot, session)?;
+    Ok(plot::draw(path.rsplit("::").next().unwrap_or(path), plot, &curves))
+}
+
+fn stopped() -> Diagnostic {
+    Diagnostic::error(codes::EVAL_INTERNAL, "the plots stopped with an internal error")
+}
+
+fn lock(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
+    sources.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}

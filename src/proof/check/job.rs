@@ -1,0 +1,324 @@
+//! A case made ready: kernels, rows, expected values. Nothing here needs an executor.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::partner::{self, Partner};
+use super::{Options, Subjects};
+use crate::bundle::Language;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::eval::{Bounded, FindingKind, Number};
+use crate::execute::fixture::Fixture;
+use crate::execute::interpreter::{Calls, Interpreter, value};
+use crate::execute::kernel::{self, Kernel, Shape};
+use crate::proof::cases::{self, Case, File, Oracle, Rows};
+use crate::proof::formula::{Formula, Scope};
+use crate::proof::laws::{self, Law};
+use crate::proof::references::{self, Arguments, Expected, Reference};
+use crate::proof::tolerance::{self, Bound};
+use naga::ScalarKind;
+
+/// One case of one module.
+pub struct Job<'a> {
+    pub module: String,
+    pub case: &'a Case,
+    /// Index of the case in its file.
+    pub index: usize,
+    /// What its measurements are recorded under.
+    pub record: String,
+    pub kernels: Vec<(Language, Kernel)>,
+    pub rows: Rows,
+    /// For each row; empty where the case has laws alone.
+    pub expected: Vec<Target>,
+    pub terms: Vec<Bound>,
+    pub near: Option<(Formula, f64)>,
+    pub filter: Option<Formula>,
+    pub laws: Vec<BoundLaw<'a>>,
+    pub oracle: Judge,
+    pub fixtures: Vec<Arc<Fixture>>,
+}
+
+/// A law, the rows it compares with, and the other functions it is about.
+pub struct BoundLaw<'a> {
+    pub law: &'a Law,
+    pub rows: Option<Rows>,
+    pub partners: Vec<Partner>,
+}
+
+/// Gives the expected value of any row: shrinking asks for rows that no case lists.
+pub enum Judge {
+    Reference(Reference),
+    Formula(Formula),
+    /// The first language's code, value plus error.
+    Eval(Box<Interpreter>),
+    /// A table or nothing: rows cannot be changed.
+    Fixed,
+}
+
+/// What a row should give.
+#[derive(Clone)]
+pub struct Target {
+    pub expected: Expected,
+    /// What each word may be off beside the terms of the case; none where it is empty.
+    pub errors: Vec<f64>,
+    /// Whether a comparison on the way was too close to call.
+    pub doubtful: bool,
+}
+
+impl From<Expected> for Target {
+    fn from(expected: Expected) -> Self {
+        Self { expected, errors: Vec::new(), doubtful: false }
+    }
+}
+
+impl Job<'_> {
+    /// What rows should give; `None` if the oracle cannot tell of any row but the case's own.
+    pub fn targets(&self, rows: &Rows) -> Result<Option<Vec<Target>>, Diagnostic> {
+        let each = |expect: &(dyn Fn(&[f64]) -> Expected + Sync)| -> Vec<Target> {
+            (0..rows.len()).into_par_iter().map(|index| expect(rows.row(index)).into()).collect()
+        };
+        match &self.oracle {
+            Judge::Reference(reference) => {
+                Ok(Some(each(&|row| reference(&mut Arguments::new(row, &self.fixtures)))))
+            }
+            Judge::Formula(formula) => Ok(Some(each(&|row| Expected::words(formula.eval(row))))),
+            Judge::Eval(interpreter) => {
+                bounded(interpreter, rows, &self.kernel().result_kinds()).map(Some)
+            }
+            Judge::Fixed => Ok(None),
+        }
+    }
+
+    /// The kernel whose parameters name the columns: the first language's.
+    pub fn kernel(&self) -> &Kernel {
+        &self.kernels[0].1
+    }
+}
+
+/// The jobs of a module's case file.
+pub fn prepare<'a>(
+    module: &str,
+    file: &'a File,
+    languages: &[Language],
+    subjects: &Subjects<'_>,
+    options: &Options<'_>,
+) -> Result<Vec<Job<'a>>, Diagnostics> {
+    let mut functions: Vec<String> = file.cases.iter().map(|case| case.function.clone()).collect();
+    functions.sort();
+    functions.dedup();
+    let modules: Vec<_> = languages
+        .iter()
+        .map(|language| Ok((*language, subjects(module, *language, &functions)?)))
+        .collect::<Result<_, Diagnostics>>()
+        .map_err(|errors| {
+            errors.into_iter().map(|error| placed(error, file)).collect::<Vec<_>>()
+        })?;
+    let jobs: Vec<_> = (0..file.cases.len())
+        .into_par_iter()
+        .map(|index| job(module, file, index, &modules, (subjects, options)))
+        .collect();
+    let (mut done, mut errors) = (Vec::new(), Vec::new());
+    for result in jobs {
+        match result {
+            Ok(job) => done.push(job),
+            Err(error) => errors.push(error),
+        }
+    }
+    if errors.is_empty() { Ok(done) } else { Err(errors) }
+}
+
+/// An error about a function is put at the first case that names the function.
+fn placed(error: Diagnostic, file: &File) -> Diagnostic {
+    let is_named = |case: &&Case| error.item.as_ref() == Some(&case.function);
+    match file.cases.iter().find(is_named) {
+        Some(case) if error.labels.is_empty() => error.at(case.span, "named here"),
+        _ => error,
+    }
+}
+
+/// An error that has no place yet is put at the case.
+fn placed_at(error: Diagnostic, case: &Case) -> Diagnostic {
+    if error.labels.is_empty() { error.at(case.span, "in this case") } else { error }
+}
+
+fn job<'a>(
+    module: &str,
+    file: &'a File,
+    index: usize,
+    modules: &[(Language, Arc<naga::Module>)],
+    (subjects, options): (&Subjects<'_>, &Options<'_>),
+) -> Result<Job<'a>, Diagnostic> {
+    let case = &file.cases[index];
+    let placed = |error: Diagnostic| placed_at(error, case);
+    let kernels: Vec<(Language, Kernel)> = modules
+        .iter()
+        .map(|(language, naga)| {
+            Ok((*language, kernel::build(naga, &case.function, &case.fixtures)?))
+        })
+        .collect::<Result<_, Diagnostic>>()
+        .map_err(placed)?;
+    let Some((_, first)) = kernels.first() else {
+        return Err(placed(Diagnostic::error(codes::CASE_INVALID, "no language was chosen")));
+    };
+    agree(&kernels).map_err(placed)?;
+    let scope = Scope(first.words().collect());
+    let rows = cases::rows(case, &scope)?;
+    if rows.is_empty() {
+        return Err(placed(Diagnostic::error(codes::CASE_INVALID, "no row is left to try")));
+    }
+    let terms = tolerance::bind(&case.tolerance, &scope, &first.results).map_err(placed)?;
+    let languages: Vec<Language> = modules.iter().map(|(language, _)| *language).collect();
+    let bound = |law| {
+        let partners = partner::prepare(law, module, &languages, subjects, &rows, &scope)?;
+        Ok(BoundLaw { law, rows: laws::transformed(law, &rows, &scope)?, partners })
+    };
+    let laws = case
+        .laws
+        .iter()
+        .filter(|law| options.partners || law.partners.is_empty())
+        .map(bound)
+        .collect::<Result<_, Diagnostic>>()?;
+    let mut job = Job {
+        module: module.to_owned(),
+        record: record(module, file, index),
+        case,
+        index,
+        terms,
+        near: case
+            .near
+            .as_ref()
+            .map(|(text, margin)| Ok::<_, Diagnostic>((text.bind(&scope)?, *margin)))
+            .transpose()?,
+        filter: case.filter().map(|text| text.bind(&scope)).transpose()?,
+        laws,
+        oracle: judge(module, case, &scope, first, options)?,
+        fixtures: first.resources().map(|resource| resource.fixture.clone()).collect(),
+        expected: Vec::new(),
+        rows,
+        kernels,
+    };
+    job.expected = expected(&job)?;
+    Ok(job)
+}
+
+/// `math::safe::saturate`, and from a function's second case on `math::safe::saturate#2`.
+fn record(module: &str, file: &File, index: usize) -> String {
+    let function = &file.cases[index].function;
+    match file.cases[..index].iter().filter(|case| case.function == *function).count() {
+        0 => format!("{module}::{function}"),
+        earlier => format!("{module}::{function}#{}", earlier + 1),
+    }
+}
+
+/// Both languages must have the same parameters and results.
+fn agree(kernels: &[(Language, Kernel)]) -> Result<(), Diagnostic> {
+    let kinds =
+        |kernel: &Kernel| kernel.words().flat_map(|(_, shape)| shape.kinds()).collect::<Vec<_>>();
+    let differs = kernels.iter().find(|(_, kernel)| {
+        kinds(kernel) != kinds(&kernels[0].1)
+            || kernel.result_kinds() != kernels[0].1.result_kinds()
+    });
+    match differs {
+        Some((_, kernel)) => {
+            let message = format!(
+                "`{}` has other parameters or another result in the other language",
+                kernel.name
+            );
+            Err(Diagnostic::error(codes::UNTESTABLE_FUNCTION, message))
+        }
+        None => Ok(()),
+    }
+}
+
+fn judge(
+    module: &str,
+    case: &Case,
+    scope: &Scope<'_>,
+    kernel: &Kernel,
+    options: &Options<'_>,
+) -> Result<Judge, Diagnostic> {
+    let reference = || {
+        references::find(module, &case.function)
+            .filter(|_| options.references)
+            .map(Judge::Reference)
+    };
+    let eval = || Interpreter::new(kernel).map(|interpreter| Judge::Eval(Box::new(interpreter)));
+    match &case.oracle {
+        Oracle::Formula(text) => text.bind(scope).map(Judge::Formula),
+        Oracle::Table(_) | Oracle::None => Ok(Judge::Fixed),
+        Oracle::Eval => eval(),
+        Oracle::Default => reference().map_or_else(eval, Ok),
+        Oracle::Reference => reference().ok_or_else(|| {
+            let message = format!("there is no reference for `{module}::{}`", case.function);
+            let error =
+                Diagnostic::error(codes::CASE_INVALID, message).at(case.span, "of this function");
+            error.note("give a `formula`, a table of `rows`, or `oracle = \"eval\"`")
+        }),
+    }
+}
+
+fn expected(job: &Job<'_>) -> Result<Vec<Target>, Diagnostic> {
+    let expected: Vec<Target> = match &job.case.oracle {
+        Oracle::Table(table) => {
+            table.iter().map(|row| Expected::words(row.expect.iter().copied()).into()).collect()
+        }
+        _ => {
+            job.targets(&job.rows).map_err(|error| placed_at(error, job.case))?.unwrap_or_default()
+        }
+    };
+    let words = job.kernel().results.iter().map(Shape::words).sum::<u32>() as usize;
+    match expected.iter().find(|target| target.expected.value.len() != words) {
+        Some(wrong) => {
+            let message = format!(
+                "`{}` returns {words} values, {} are expected of it",
+                job.case.function,
+                wrong.expected.value.len()
+            );
+            Err(Diagnostic::error(codes::CASE_INVALID, message)
+                .at(job.case.span, "of this function"))
+        }
+        None => Ok(expected),
+    }
+}
+
+/// Rows that one thread runs before it asks for more.
+const CHUNK: usize = 1024;
+
+/// Value plus error of every row.
+pub fn bounded(
+    interpreter: &Interpreter,
+    rows: &Rows,
+    kinds: &[ScalarKind],
+) -> Result<Vec<Target>, Diagnostic> {
+    let chunks: Vec<Vec<Target>> = rows
+        .words
+        .par_chunks(CHUNK * rows.stride)
+        .map(|words| {
+            let mut calls = interpreter.calls::<Bounded>()?;
+            words
+                .chunks(rows.stride)
+                .map(|row| bounded_row(&mut calls, row, kinds))
+                .collect::<Result<_, _>>()
+        })
+        .collect::<Result<_, Diagnostic>>()?;
+    Ok(chunks.into_iter().flatten().collect())
+}
+
+fn bounded_row(
+    calls: &mut Calls<'_, Bounded>,
+    row: &[u32],
+    kinds: &[ScalarKind],
+) -> Result<Target, Diagnostic> {
+    calls.machine.forget();
+    let found = calls.call(row)?;
+    let expected = Expected::words(found.iter().zip(kinds).map(|(slot, kind)| value(*slot, *kind)));
+    let errors = found
+        .iter()
+        .zip(kinds)
+        .map(|(slot, kind)| if *kind == ScalarKind::Float { slot.error() } else { 0.0 })
+        .collect();
+    let doubtful =
+        calls.machine.findings().iter().any(|finding| finding.kind == FindingKind::Ambiguous);
+    Ok(Target { expected, errors, doubtful })
+}

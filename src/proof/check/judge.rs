@@ -1,0 +1,194 @@
+//! Compares what an executor returned with what was expected.
+
+use super::job::{Job, Target};
+use super::law::LawVerdict;
+use super::profile::Profile;
+use crate::execute::kernel::number;
+use crate::proof::cases::Rows;
+use crate::proof::tolerance;
+use naga::ScalarKind;
+
+/// What became of the rows of a case.
+#[derive(Debug, Default)]
+pub struct Verdict {
+    /// Rows tried.
+    pub inputs: usize,
+    /// Rows whose expected value no f32 holds, or of which nothing is promised: anything is right.
+    pub indeterminate: usize,
+    /// Rows that are off, but where a comparison is too close to call.
+    pub ambiguous: usize,
+    /// Whether there are more ambiguous rows than the case allows.
+    pub too_ambiguous: bool,
+    /// The component that used most of what it is allowed.
+    pub worst: Option<Worst>,
+    /// Rows that are off.
+    pub failing: Vec<usize>,
+    pub laws: Vec<LawVerdict>,
+    /// Largest distance from the first language's results, in units in the last place.
+    pub parity: Option<f64>,
+    /// A small failing input, as a text with a case to paste.
+    pub smallest: Option<String>,
+    /// How the error runs over the inputs, where it was asked for.
+    pub profile: Option<Box<Profile>>,
+}
+
+/// One component of one row.
+#[derive(Debug, Clone, Copy)]
+pub struct Worst {
+    pub row: usize,
+    pub word: usize,
+    pub found: f64,
+    pub expected: f64,
+    pub error: f64,
+    pub allowed: f64,
+}
+
+impl Verdict {
+    /// Whether every row and every law holds.
+    pub fn passed(&self) -> bool {
+        self.failing.is_empty() && self.passed_but_for_values()
+    }
+
+    /// Whether all but the values themselves holds.
+    pub fn passed_but_for_values(&self) -> bool {
+        !self.too_ambiguous && !self.proves_nothing() && self.laws.iter().all(|law| law.broken == 0)
+    }
+
+    /// Whether every value would have been right.
+    pub fn proves_nothing(&self) -> bool {
+        self.inputs > 0 && self.indeterminate == self.inputs
+    }
+}
+
+impl Worst {
+    /// Error over what is allowed; at most 1 passes.
+    pub fn share(&self) -> f64 {
+        if self.error == 0.0 { 0.0 } else { self.error / self.allowed }
+    }
+
+    /// The error in units in the last place of the expected value.
+    pub fn ulps(&self) -> f64 {
+        self.error / tolerance::ulp(self.expected)
+    }
+
+    /// What is allowed in units in the last place of the expected value.
+    pub fn allowed_ulps(&self) -> f64 {
+        self.allowed / tolerance::ulp(self.expected)
+    }
+}
+
+/// Judges every row.
+pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Target], results: &[u32]) -> Verdict {
+    let kinds = job.kernel().result_kinds();
+    let mut verdict = Verdict { inputs: rows.len(), ..Verdict::default() };
+    for (index, (target, found)) in
+        expected.iter().zip(results.chunks(kinds.len().max(1))).enumerate()
+    {
+        let row = rows.row(index);
+        if is_indeterminate(target) {
+            verdict.indeterminate += 1;
+            continue;
+        }
+        let Some(worst) = compare(job, row, target, found, &kinds, index) else { continue };
+        if worst.share() <= 1.0 {
+            if verdict.worst.is_none_or(|known| known.share() <= worst.share()) {
+                verdict.worst = Some(worst);
+            }
+        } else if target.doubtful || is_ambiguous(job, row) {
+            verdict.ambiguous += 1;
+        } else {
+            verdict.failing.push(index);
+            if verdict.worst.is_none_or(|known| known.share() < worst.share()) {
+                verdict.worst = Some(worst);
+            }
+        }
+    }
+    verdict.too_ambiguous = verdict.ambiguous as f64 > job.case.ambiguous * rows.len() as f64;
+    verdict
+}
+
+/// The worst component of the alternative that fits best.
+pub fn compare(
+    job: &Job<'_>,
+    row: &[f64],
+    target: &Target,
+    found: &[u32],
+    kinds: &[ScalarKind],
+    index: usize,
+) -> Option<Worst> {
+    let values = std::iter::once(&target.expected.value).chain(&target.expected.alternatives);
+    let one =
+        |value: &Vec<f64>| compare_one(job, row, (value, &target.errors), found, kinds, index);
+    values.filter_map(one).min_by(|a, b| a.share().total_cmp(&b.share()))
+}
+
+/// `of` is the expected value and what each word may be off beside the terms.
+fn compare_one(
+    job: &Job<'_>,
+    row: &[f64],
+    of: (&[f64], &[f64]),
+    found: &[u32],
+    kinds: &[ScalarKind],
+    index: usize,
+) -> Option<Worst> {
+    let values = tolerance::values(&job.terms, row);
+    let component = |word: usize| {
+        let found = number(found[word], kinds[word]);
+        let expected = of.0[word];
+        let is_float = kinds[word] == ScalarKind::Float;
+        let own = of.1.get(word).copied().unwrap_or(0.0);
+        let allowed = if is_float {
+            tolerance::allowed(&job.terms, &values, word, expected) + own
+        } else {
+            0.0
+        };
+        Worst {
+            row: index,
+            word,
+            found,
+            expected,
+            error: distance(found, expected, is_float),
+            allowed,
+        }
+    };
+    (0..kinds.len()).map(component).max_by(|a, b| a.share().total_cmp(&b.share()))
+}
+
+/// How far off a component is. Subnormals may be flushed; no number is infinitely far off.
+pub fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
+    let error = if found == expected { 0.0 } else { (found - expected).abs() };
+    if error.is_nan() {
+        f64::INFINITY
+    } else if is_float && error <= f64::from(f32::MIN_POSITIVE) {
+        0.0
+    } else {
+        error
+    }
+}
+
+/// Whether anything is right.
+pub fn is_indeterminate(target: &Target) -> bool {
+    let held = |value: &f64| value.is_finite() && value.abs() <= f64::from(f32::MAX);
+    !target.expected.value.iter().all(held) || !target.errors.iter().all(|error| error.is_finite())
+}
+
+/// Whether a comparison that the case names is too close to call.
+pub fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
+    job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
+}
+
+/// How far two languages are apart on one executor; infinite where kinds other than f32 differ.
+pub fn parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
+    let kinds = job.kernel().result_kinds();
+    let apart = |((a, b), kind): ((&u32, &u32), &ScalarKind)| {
+        let (x, y) = (number(*a, *kind), number(*b, *kind));
+        match kind {
+            _ if a == b || x == y || (x.is_nan() && y.is_nan()) => 0.0,
+            ScalarKind::Float if x.is_finite() && y.is_finite() => {
+                (x - y).abs() / tolerance::ulp(x)
+            }
+            _ => f64::INFINITY,
+        }
+    };
+    first.iter().zip(second).zip(kinds.iter().cycle()).map(apart).fold(0.0, f64::max)
+}

@@ -1,0 +1,148 @@
+//! Judges the laws of a case.
+
+use super::job::{Job, Target};
+use super::judge;
+use crate::execute::kernel::number;
+use crate::proof::cases::Rows;
+use crate::proof::laws::{self, Integral, Law};
+use crate::proof::tolerance;
+use naga::ScalarKind;
+
+/// What became of a law.
+#[derive(Debug)]
+pub struct LawVerdict {
+    pub name: &'static str,
+    /// Rows that break it, with the first one's words.
+    pub broken: usize,
+    pub example: Option<String>,
+    /// The first row that breaks it, where it is one row that does.
+    pub row: Option<usize>,
+    /// A small input that breaks it, with a case to paste.
+    pub smallest: Option<String>,
+}
+
+/// Rows with what they gave.
+#[derive(Clone, Copy)]
+pub struct Given<'a> {
+    pub rows: &'a Rows,
+    /// What each should give; none where that is not known.
+    pub expected: &'a [Target],
+    pub results: &'a [u32],
+    /// The rows that a law compares these with, and what they gave.
+    pub transformed: Option<(&'a Rows, &'a [u32])>,
+}
+
+impl LawVerdict {
+    pub fn new(law: &Law) -> Self {
+        Self { name: law.kind.name, broken: 0, example: None, row: None, smallest: None }
+    }
+}
+
+/// Judges one law over all rows.
+pub fn judge(job: &Job<'_>, law: &Law, given: &Given<'_>) -> LawVerdict {
+    let kinds = job.kernel().result_kinds();
+    match (law.kind.name, &law.integral, given.transformed) {
+        ("reaches", ..) => reaches(law, given.results, &kinds),
+        (_, Some(rule), Some((rows, found))) => integral(law, rule, rows, found, &kinds),
+        _ => each(job, law, given, &kinds),
+    }
+}
+
+/// A law of single rows, or of a row and its transformed one.
+fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> LawVerdict {
+    let mut verdict = LawVerdict::new(law);
+    for index in 0..given.rows.len() {
+        let row = given.rows.row(index);
+        let other_row = given.transformed.map(|(rows, _)| rows.row(index));
+        let outside = other_row
+            .zip(job.filter.as_ref())
+            .is_some_and(|(other, filter)| filter.scalar(other) != 1.0);
+        let target = given.expected.get(index);
+        if outside || target.is_some_and(judge::is_indeterminate) || judge::is_ambiguous(job, row) {
+            continue;
+        }
+        let values = tolerance::values(&job.terms, row);
+        let moved = other_row.map_or(0.0, |other| apart(row, other));
+        for (word, kind) in kinds.iter().enumerate().filter(|(_, kind)| **kind != ScalarKind::Bool)
+        {
+            let at = index * kinds.len() + word;
+            let value = number(given.results[at], *kind);
+            let other = given.transformed.map(|(_, words)| number(words[at], *kind));
+            let allowed = if other.is_some() {
+                let own = target.and_then(|target| target.errors.get(word)).copied().unwrap_or(0.0);
+                2.0 * (tolerance::allowed(&job.terms, &values, word, value) + own)
+                    + f64::from(f32::MIN_POSITIVE)
+            } else {
+                0.0
+            };
+            let broken = laws::broken_by(law, value, other, moved, word);
+            if value.is_nan() || other.is_some_and(f64::is_nan) || broken > allowed {
+                verdict.broken += 1;
+                verdict.row.get_or_insert(index);
+                let text = || {
+                    format!(
+                        "{row:?} gives {value}, compared with {other:?}: off by {broken:e}, allowed {allowed:e}"
+                    )
+                };
+                verdict.example.get_or_insert_with(text);
+            }
+        }
+    }
+    verdict
+}
+
+/// Distance between the numbers of two rows.
+fn apart(row: &[f64], other: &[f64]) -> f64 {
+    row.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+fn integral(
+    law: &Law,
+    rule: &Integral,
+    rows: &Rows,
+    found: &[u32],
+    kinds: &[ScalarKind],
+) -> LawVerdict {
+    let mut verdict = LawVerdict::new(law);
+    if rows.is_empty() {
+        verdict.broken = 1;
+        verdict.example = Some("no row has a unit vector to integrate about".to_owned());
+    }
+    for word in 0..kinds.len() {
+        let values: Vec<f64> =
+            found.chunks(kinds.len()).map(|words| number(words[word], kinds[word])).collect();
+        for (index, sum) in rule.sums(&values).into_iter().enumerate() {
+            let (wanted, off) = (law.number(word), rule.off(sum, law.number(word)));
+            if off <= rule.within {
+                continue;
+            }
+            verdict.broken += 1;
+            let row = rows.row(index * rule.calls());
+            let most = if rule.at_most { "at most " } else { "" };
+            let text = || {
+                format!(
+                    "over all `{}`, else as in {row:?}, it is {sum}, expected {most}{wanted}: off by {off:e}",
+                    law.names[0]
+                )
+            };
+            verdict.example.get_or_insert_with(text);
+        }
+    }
+    verdict
+}
+
+fn reaches(law: &Law, results: &[u32], kinds: &[ScalarKind]) -> LawVerdict {
+    let mut verdict = LawVerdict::new(law);
+    let values =
+        || results.iter().zip(kinds.iter().cycle()).map(|(word, kind)| number(*word, *kind));
+    let (least, most) =
+        (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    if let [low, high] = law.numbers[..]
+        && (least > low || most < high)
+    {
+        verdict.broken = 1;
+        verdict.example =
+            Some(format!("values lie in [{least}, {most}], expected to reach [{low}, {high}]"));
+    }
+    verdict
+}

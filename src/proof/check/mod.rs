@@ -1,0 +1,299 @@
+//! Runs cases of modules in each language on each executor. Prints nothing: results are data.
+
+pub(super) mod job;
+pub(super) mod judge;
+pub mod law;
+mod partner;
+mod profile;
+mod proof;
+mod report;
+mod shrink;
+
+pub use judge::{Verdict, Worst};
+pub use law::LawVerdict;
+pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
+pub use proof::{Parity, Proof, Spec, Value};
+pub use report::{failures, failures_of, lacking, language, short, stricter, table};
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::cases::File;
+use super::ratchet::{self, Ratchet};
+use crate::bundle::Language;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::execute::kernel::Kernel;
+use crate::execute::{STACK, Session};
+use job::Job;
+
+/// Gives the module that holds functions of a library module, in a language: composed, parsed
+/// and valid. Names of the functions are kept.
+pub type Subjects<'a> =
+    dyn Fn(&str, Language, &[String]) -> Result<Arc<naga::Module>, Diagnostics> + Sync + 'a;
+
+/// An executor that is open.
+pub struct Open {
+    /// Name on the command line.
+    pub executor: &'static str,
+    pub session: Box<dyn Session>,
+}
+
+/// What a check found, in the order of files, cases, languages, executors.
+#[derive(Debug, Default)]
+pub struct Report {
+    pub outcomes: Vec<Outcome>,
+    /// One for each case, where they were asked for.
+    pub proofs: Vec<Proof>,
+}
+
+/// One function in one language on one executor.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Path of the module, `lighting::spot`.
+    pub module: String,
+    pub function: String,
+    pub language: Language,
+    pub executor: &'static str,
+    /// Name, driver and version of the device.
+    pub adapter: String,
+    /// Index of the case in its file.
+    pub case: usize,
+    /// What its measurements are recorded under: the function's path and, from its second case
+    /// on, the number of the case, `math::safe::saturate#2`.
+    pub record: String,
+    /// What was found; or why the executor did not run it.
+    pub verdict: Result<Verdict, Diagnostic>,
+    /// Share of the stated tolerance that was recorded for this adapter.
+    pub recorded: Option<f64>,
+    /// Share that a waiver lets the executor need, and its reason.
+    pub waiver: Option<(f64, String)>,
+}
+
+impl Outcome {
+    /// Path of the function.
+    pub fn path(&self) -> String {
+        format!("{}::{}", self.module, self.function)
+    }
+
+    /// Whether every row and law holds, and no more is needed than was recorded.
+    pub fn passed(&self) -> bool {
+        self.is_within() && !self.exceeds_driver()
+    }
+
+    /// Why the executor has no way to run the function, where that is so: it neither passes nor
+    /// fails.
+    pub fn lacks(&self) -> Option<&Diagnostic> {
+        let is_lack = |error: &&Diagnostic| error.code.name == codes::EXECUTOR_LACKS.name;
+        self.verdict.as_ref().err().filter(is_lack)
+    }
+
+    /// Whether it ran and does not pass.
+    pub fn failed(&self) -> bool {
+        !self.passed() && self.lacks().is_none()
+    }
+
+    /// Whether more error was met than the driver tier allows.
+    pub fn exceeds_driver(&self) -> bool {
+        self.of_driver().is_some_and(|share| share > 1.0)
+    }
+
+    /// The worst error over what the driver tier allows, where it was recorded for this adapter.
+    pub fn of_driver(&self) -> Option<f64> {
+        let share = self.verdict.as_ref().ok()?.worst.map_or(0.0, |worst| worst.share());
+        Some(share / (ratchet::SLACK * self.recorded?))
+    }
+
+    /// Whether the values are within what is stated, or what a waiver allows.
+    pub fn is_within(&self) -> bool {
+        self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict))
+    }
+
+    fn is_waived(&self, verdict: &Verdict) -> bool {
+        let share = verdict.worst.map_or(0.0, |worst| worst.share());
+        verdict.passed_but_for_values()
+            && self.waiver.as_ref().is_some_and(|(waived, _)| share <= *waived)
+    }
+}
+
+impl Report {
+    /// Whether everything that could be run holds.
+    pub fn passed(&self) -> bool {
+        !self.outcomes.iter().any(Outcome::failed) && self.proofs.iter().all(Proof::passed)
+    }
+
+    /// Appends another report.
+    pub fn append(&mut self, other: Self) {
+        self.outcomes.extend(other.outcomes);
+        self.proofs.extend(other.proofs);
+    }
+}
+
+/// How to check.
+#[derive(Debug, Clone, Copy)]
+pub struct Options<'a> {
+    /// Whether the references of `src/proof/references/` are meant by a module's path.
+    pub references: bool,
+    /// Whether to keep how the error runs over the inputs.
+    pub profile: bool,
+    /// Whether to compare with what WGSL allows, and the languages in f64.
+    pub prove: bool,
+    /// Whether to judge laws that are about several functions.
+    pub partners: bool,
+    /// What drivers were measured to need.
+    pub ratchet: Option<&'a Ratchet>,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { references: true, profile: false, prove: false, partners: true, ratchet: None }
+    }
+}
+
+/// [`check_with`] the default options.
+pub fn check(
+    files: &[(String, File)],
+    languages: &[Language],
+    subjects: &Subjects<'_>,
+    open: &mut [Open],
+) -> Result<Report, Diagnostics> {
+    check_with(files, languages, subjects, open, &Options::default())
+}
+
+/// Checks the cases of each module (`lighting::spot` and its file).
+///
+/// Errors are mistakes in the cases or in the modules; failing numbers are in the report.
+pub fn check_with(
+    files: &[(String, File)],
+    languages: &[Language],
+    subjects: &Subjects<'_>,
+    open: &mut [Open],
+    options: &Options<'_>,
+) -> Result<Report, Diagnostics> {
+    let prepared: Vec<_> = files
+        .par_iter()
+        .map(|(module, file)| job::prepare(module, file, languages, subjects, options))
+        .collect();
+    let (mut jobs, mut errors) = (Vec::new(), Vec::new());
+    for result in prepared {
+        match result {
+            Ok(found) => jobs.extend(found),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let columns: Vec<Vec<Outcome>> = std::thread::scope(|scope| {
+        let jobs = &jobs;
+        let names: Vec<_> = open.iter().map(|open| open.executor).collect();
+        let threads: Vec<_> = open
+            .iter_mut()
+            .map(|open| {
+                std::thread::Builder::new()
+                    .stack_size(STACK)
+                    .spawn_scoped(scope, move || run_all(jobs, open, options))
+            })
+            .collect();
+        let columns = threads.into_iter().map(|thread| thread.ok()?.join().ok());
+        columns
+            .zip(names)
+            .map(|(column, name)| column.ok_or_else(|| vec![stopped(name)]))
+            .collect::<Result<_, Diagnostics>>()
+    })?;
+    Ok(Report {
+        outcomes: interleaved(columns),
+        proofs: if options.prove { proof::prove(&jobs) } else { Vec::new() },
+    })
+}
+
+fn stopped(executor: &str) -> Diagnostic {
+    Diagnostic::error(
+        codes::EXECUTOR_FAILED,
+        format!("the executor `{executor}` stopped with an internal error"),
+    )
+}
+
+fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outcome> {
+    let adapter = open.session.adapter();
+    let kernels = jobs.iter().flat_map(|job| &job.kernels).map(|(_, kernel)| kernel);
+    open.session.prepare(&kernels.collect::<Vec<_>>());
+    let mut outcomes = Vec::new();
+    for job in jobs {
+        let mut first = None;
+        let path = format!("{}::{}", job.module, job.case.function);
+        let waiver = options.ratchet.and_then(|ratchet| ratchet.waiver(&path, open.executor));
+        for (language, kernel) in &job.kernels {
+            outcomes.push(Outcome {
+                module: job.module.clone(),
+                function: job.case.function.clone(),
+                language: *language,
+                executor: open.executor,
+                adapter: adapter.clone(),
+                case: job.index,
+                record: job.record.clone(),
+                verdict: run(job, (*language, kernel), open.session.as_mut(), &mut first, options),
+                recorded: options
+                    .ratchet
+                    .and_then(|ratchet| ratchet.share(&job.record, open.executor, &adapter)),
+                waiver: waiver.map(|waiver| (waiver.share, waiver.reason.clone())),
+            });
+        }
+    }
+    outcomes
+}
+
+/// One case in one language; `first` keeps the first language's results, which others are compared with.
+fn run(
+    job: &Job<'_>,
+    (language, kernel): (Language, &Kernel),
+    session: &mut dyn Session,
+    first: &mut Option<Vec<u32>>,
+    options: &Options<'_>,
+) -> Result<Verdict, Diagnostic> {
+    let results = session.run(kernel, &job.rows.words)?;
+    let mut verdict = judge::judge(job, &job.rows, &job.expected, &results);
+    for law in &job.laws {
+        if let Some(found) = partner::judge(job, law, language, &results, session)? {
+            verdict.laws.push(found);
+            continue;
+        }
+        let transformed =
+            law.rows.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
+        let transformed = law.rows.as_ref().zip(transformed.as_deref());
+        let mut found = law::judge(
+            job,
+            law.law,
+            &law::Given {
+                rows: &job.rows,
+                expected: &job.expected,
+                results: &results,
+                transformed,
+            },
+        );
+        if let Some(row) = found.row {
+            found.smallest = Some(shrink::shrink_law(job, kernel, session, law.law, row)?);
+        }
+        verdict.laws.push(found);
+    }
+    if let Some(row) = verdict.failing.first() {
+        verdict.smallest = Some(shrink::shrink(job, kernel, session, *row)?);
+    }
+    verdict.profile = options.profile.then(|| Box::new(profile::profile(job, &results)));
+    verdict.parity = first.as_ref().map(|first| judge::parity(job, first, &results));
+    first.get_or_insert(results);
+    Ok(verdict)
+}
+
+/// Outcomes of all executors, side by side for each job.
+fn interleaved(columns: Vec<Vec<Outcome>>) -> Vec<Outcome> {
+    let mut columns: Vec<_> = columns.into_iter().map(Vec::into_iter).collect();
+    let mut outcomes = Vec::new();
+    loop {
+        let before = outcomes.len();
+        outcomes.extend(columns.iter_mut().filter_map(Iterator::next));
+        if outcomes.len() == before {
+            return outcomes;
+        }
+    }
+}

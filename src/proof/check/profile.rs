@@ -1,0 +1,214 @@
+//! How the error of a case runs over its inputs: what the plots of a report show.
+
+use super::job::{Job, Target};
+use super::judge::{self, Worst};
+use crate::execute::kernel::Shape;
+
+/// Bins along a parameter.
+pub const BINS: usize = 48;
+/// Cells along each side of a map.
+pub const CELLS: usize = 32;
+/// Inputs that are kept whole.
+const WORST: usize = 5;
+/// Largest over median magnitude from which a scale is no longer linear.
+const WIDE: f64 = 1e3;
+
+/// The error over the inputs of one case in one language on one executor.
+#[derive(Debug, Clone)]
+pub struct Profile {
+    /// One for each word of a row that varies.
+    pub axes: Vec<Axis>,
+    /// Where exactly two words vary.
+    pub map: Option<Map>,
+    /// The inputs that came nearest to what is allowed, or went beyond.
+    pub worst: Vec<Input>,
+}
+
+/// One varying word of the rows.
+#[derive(Debug, Clone)]
+pub struct Axis {
+    /// `c`, `at.uv.x`.
+    pub name: String,
+    pub scale: Scale,
+    /// By place along the scale; bins without a row are left out.
+    pub bins: Vec<Bin>,
+}
+
+/// How values of an axis lie along a plot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    pub low: f64,
+    pub high: f64,
+    /// Around zero, values up to this size lie evenly, larger ones by their logarithm; 0 for an even scale.
+    pub bend: f64,
+}
+
+/// The largest of a slice of rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bin {
+    /// Index along the axis, below [`BINS`].
+    pub index: usize,
+    pub error: f64,
+    pub allowed: f64,
+    pub ulps: f64,
+}
+
+/// Largest share of what is allowed over two parameters.
+#[derive(Debug, Clone)]
+pub struct Map {
+    /// Indices of the axes.
+    pub across: usize,
+    pub up: usize,
+    /// [`CELLS`]² shares, row by row from the lowest value of `up`; NaN where there is no row.
+    pub cells: Vec<f64>,
+}
+
+/// One input with its outcome.
+#[derive(Debug, Clone)]
+pub struct Input {
+    /// Name, value and bits of each word.
+    pub words: Vec<(String, f64, u32)>,
+    pub worst: Worst,
+}
+
+impl Scale {
+    fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
+        let (low, high) =
+            values.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            });
+        let mut sizes: Vec<f64> = values.map(f64::abs).filter(|size| *size > 0.0).collect();
+        sizes.sort_by(f64::total_cmp);
+        let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+        let largest = sizes.last().copied().unwrap_or(0.0);
+        let bend = if low > 0.0 && high / low > WIDE {
+            low
+        } else if largest > WIDE * median {
+            median
+        } else {
+            0.0
+        };
+        Self { low, high, bend }
+    }
+
+    fn bent(self, value: f64) -> f64 {
+        if self.bend == 0.0 { value } else { (value / self.bend).asinh() }
+    }
+
+    /// Where a value lies, from 0 to 1.
+    pub fn place(self, value: f64) -> f64 {
+        let (low, high) = (self.bent(self.low), self.bent(self.high));
+        if high > low { ((self.bent(value) - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 }
+    }
+
+    /// The value at a place.
+    pub fn value(self, place: f64) -> f64 {
+        let (low, high) = (self.bent(self.low), self.bent(self.high));
+        let bent = low + (high - low) * place;
+        if self.bend == 0.0 { bent } else { bent.sinh() * self.bend }
+    }
+
+    fn index(self, value: f64, count: usize) -> usize {
+        ((self.place(value) * count as f64) as usize).min(count - 1)
+    }
+}
+
+/// The profile of results of a job's rows.
+pub fn profile(job: &Job<'_>, results: &[u32]) -> Profile {
+    let kinds = job.kernel().result_kinds();
+    let found: Vec<Worst> = job
+        .expected
+        .iter()
+        .zip(results.chunks(kinds.len().max(1)))
+        .enumerate()
+        .filter(|(_, (target, _))| !judge::is_indeterminate(target))
+        .filter_map(|(index, (target, found)): (usize, (&Target, &[u32]))| {
+            judge::compare(job, job.rows.row(index), target, found, &kinds, index)
+        })
+        .collect();
+    let is_doubtful =
+        |row: usize| job.expected[row].doubtful || judge::is_ambiguous(job, job.rows.row(row));
+    let found: Vec<Worst> =
+        found.into_iter().filter(|worst| worst.share() <= 1.0 || !is_doubtful(worst.row)).collect();
+    let names = columns(job);
+    let varying: Vec<(usize, Scale)> = (0..names.len().min(job.rows.stride))
+        .filter_map(|column| Some((column, varies(job, column)?)))
+        .collect();
+    let axes = varying
+        .iter()
+        .map(|(column, scale)| axis(job, &found, names[*column].clone(), *column, *scale))
+        .collect();
+    let map = match varying[..] {
+        [(across, x), (up, y)] => Some(map(job, &found, (across, x), (up, y))),
+        _ => None,
+    };
+    Profile { axes, map, worst: worst(job, found, &names) }
+}
+
+fn varies(job: &Job<'_>, column: usize) -> Option<Scale> {
+    let values = (0..job.rows.len()).map(|row| job.rows.row(row)[column]);
+    let scale = Scale::of(values);
+    (scale.low < scale.high).then_some(scale)
+}
+
+fn axis(job: &Job<'_>, found: &[Worst], name: String, column: usize, scale: Scale) -> Axis {
+    let mut bins: Vec<Option<Bin>> = vec![None; BINS];
+    for worst in found {
+        let index = scale.index(job.rows.row(worst.row)[column], BINS);
+        let bin = bins[index].get_or_insert(Bin { index, error: 0.0, allowed: 0.0, ulps: 0.0 });
+        bin.error = bin.error.max(worst.error);
+        bin.allowed = bin.allowed.max(worst.allowed);
+        bin.ulps = bin.ulps.max(worst.ulps());
+    }
+    Axis { name, scale, bins: bins.into_iter().flatten().collect() }
+}
+
+fn map(job: &Job<'_>, found: &[Worst], across: (usize, Scale), up: (usize, Scale)) -> Map {
+    let mut cells = vec![f64::NAN; CELLS * CELLS];
+    for worst in found {
+        let row = job.rows.row(worst.row);
+        let cell =
+            &mut cells[up.1.index(row[up.0], CELLS) * CELLS + across.1.index(row[across.0], CELLS)];
+        *cell = cell.max(worst.share());
+    }
+    Map { across: 0, up: 1, cells }
+}
+
+fn worst(job: &Job<'_>, mut found: Vec<Worst>, names: &[String]) -> Vec<Input> {
+    found.sort_by(|a, b| b.share().total_cmp(&a.share()).then(a.row.cmp(&b.row)));
+    let input = |worst: Worst| {
+        let words = names.iter().zip(job.rows.row(worst.row)).zip(job.rows.row_words(worst.row));
+        Input {
+            words: words.map(|((name, value), word)| (name.clone(), *value, *word)).collect(),
+            worst,
+        }
+    };
+    found.into_iter().filter(|worst| worst.error > 0.0).take(WORST).map(input).collect()
+}
+
+/// The name of each word of a row.
+fn columns(job: &Job<'_>) -> Vec<String> {
+    job.kernel().words().flat_map(|(name, shape)| parts(name, shape)).collect()
+}
+
+fn parts(name: &str, shape: &Shape) -> Vec<String> {
+    let letters = |size: u32| "xyzw".chars().take(size as usize);
+    match shape {
+        Shape::Scalar(_) => vec![name.to_owned()],
+        Shape::Vector { size, .. } => {
+            letters(*size).map(|letter| format!("{name}.{letter}")).collect()
+        }
+        Shape::Matrix { columns, rows } => (0..*columns)
+            .flat_map(|column| {
+                letters(*rows).map(move |letter| format!("{name}[{column}].{letter}"))
+            })
+            .collect(),
+        Shape::Array { base, count } => {
+            (0..*count).flat_map(|index| parts(&format!("{name}[{index}]"), base)).collect()
+        }
+        Shape::Struct { members } => members
+            .iter()
+            .flat_map(|(member, shape)| parts(&format!("{name}.{member}"), shape))
+            .collect(),
+    }
+}

@@ -1,0 +1,240 @@
+//! What is known of a case without a device: what WGSL allows its code, and whether both
+//! languages mean the same.
+
+use rayon::prelude::*;
+
+use super::job::{self, Job, Judge, Target};
+use super::judge;
+use crate::diagnostic::Diagnostic;
+use crate::execute::interpreter::Interpreter;
+use crate::proof::cases::Oracle;
+use crate::proof::tolerance;
+use naga::ScalarKind;
+
+/// Largest relative difference of the two languages in f64.
+const PARITY: f64 = 1e-12;
+/// Most of what a case allows that the code as written may be off in f64: the rest is for rounding.
+/// A table's digits are rounded themselves.
+const VALUE: f64 = 0.5;
+const VALUE_OF_TABLE: f64 = 1.0;
+/// What rounding in f64 may add of what it may add in f32, with a few bits to spare.
+const F64_SHARE: f64 = 1.0 / (1u64 << 26) as f64;
+
+/// What was found of one case.
+#[derive(Debug, Clone)]
+pub struct Proof {
+    pub module: String,
+    pub function: String,
+    /// Index of the case in its file.
+    pub case: usize,
+    /// What WGSL allows, against what the case allows; or why it cannot be told.
+    pub spec: Result<Spec, String>,
+    /// The code in f64 against the oracle, where that is not the code itself.
+    pub value: Option<Value>,
+    /// WESL against GLSL in f64, where there are both.
+    pub parity: Option<Result<Parity, String>>,
+}
+
+/// The case's tolerance beside the error bound of its code under the accuracy WGSL demands.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Spec {
+    /// Rows on which no comparison is in doubt and the bound is finite.
+    pub rows: usize,
+    /// Of those, rows where the case allows less than WGSL does.
+    pub stricter: usize,
+    /// Least stated tolerance over bound, with the two in units in the last place; 0 without rows.
+    pub least: f64,
+    pub stated_ulps: f64,
+    pub bound_ulps: f64,
+}
+
+/// How far the code as written is from the oracle, before any rounding of f32.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Value {
+    /// Rows compared: those on which no comparison is in doubt.
+    pub rows: usize,
+    /// Rows that are off by more than rounding leaves of what the case allows.
+    pub off: usize,
+    /// Largest distance over what the case allows, and the row it is in.
+    pub share: f64,
+    pub row: usize,
+}
+
+/// How far the two languages are apart.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Parity {
+    /// Rows compared: those on which no comparison is in doubt.
+    pub rows: usize,
+    /// Rows that are apart.
+    pub apart: usize,
+    /// Largest relative difference, and the row it is in.
+    pub worst: f64,
+    pub row: usize,
+}
+
+impl Proof {
+    /// Whether the languages agree, and the code with the oracle.
+    pub fn passed(&self) -> bool {
+        self.agree() && self.value.is_none_or(|value| value.off == 0)
+    }
+
+    /// Whether the languages agree.
+    pub fn agree(&self) -> bool {
+        self.parity
+            .as_ref()
+            .is_none_or(|parity| parity.as_ref().is_ok_and(|parity| parity.apart == 0))
+    }
+
+    /// Path of the function.
+    pub fn path(&self) -> String {
+        format!("{}::{}", self.module, self.function)
+    }
+}
+
+/// Proves what there is to prove of each job.
+pub fn prove(jobs: &[Job<'_>]) -> Vec<Proof> {
+    jobs.par_iter().map(one).collect()
+}
+
+fn one(job: &Job<'_>) -> Proof {
+    let text = |error: Diagnostic| error.message;
+    let kinds = job.kernel().result_kinds();
+    let bounded: Vec<Result<Vec<Target>, String>> = job
+        .kernels
+        .iter()
+        .map(|(_, kernel)| {
+            Interpreter::new(kernel)
+                .and_then(|interpreter| job::bounded(&interpreter, &job.rows, &kinds))
+                .map_err(text)
+        })
+        .collect();
+    let parity = match &bounded[..] {
+        [first, second, ..] => Some(match (first, second) {
+            (Ok(first), Ok(second)) => Ok(apart(first, second, &kinds)),
+            (Err(error), _) | (_, Err(error)) => Err(error.clone()),
+        }),
+        _ => None,
+    };
+    let value =
+        bounded.first().and_then(|first| first.as_ref().ok()).and_then(|first| value(job, first));
+    let spec = match bounded.into_iter().next() {
+        Some(Ok(first)) => Ok(spec(job, &first, &kinds)),
+        Some(Err(error)) => Err(error),
+        None => Err("no language was chosen".to_owned()),
+    };
+    Proof {
+        module: job.module.clone(),
+        function: job.case.function.clone(),
+        case: job.index,
+        spec,
+        value,
+        parity,
+    }
+}
+
+fn spec(job: &Job<'_>, bounds: &[Target], kinds: &[ScalarKind]) -> Spec {
+    let mut spec = Spec::default();
+    for (index, (bound, target)) in bounds.iter().zip(&job.expected).enumerate() {
+        if bound.doubtful || judge::is_indeterminate(bound) || judge::is_indeterminate(target) {
+            continue;
+        }
+        spec.rows += 1;
+        let values = tolerance::values(&job.terms, job.rows.row(index));
+        let mut stricter = false;
+        for (word, expected) in target
+            .expected
+            .value
+            .iter()
+            .enumerate()
+            .filter(|(word, _)| kinds[*word] == ScalarKind::Float)
+        {
+            let stated = tolerance::allowed(&job.terms, &values, word, *expected)
+                + target.errors.get(word).copied().unwrap_or(0.0);
+            let allowed = bound.errors[word];
+            if allowed <= f64::from(f32::MIN_POSITIVE) {
+                continue;
+            }
+            let share = stated / allowed;
+            stricter |= share < 1.0;
+            if spec.bound_ulps == 0.0 || share < spec.least {
+                let ulp = tolerance::ulp(*expected);
+                spec = Spec {
+                    least: share,
+                    stated_ulps: stated / ulp,
+                    bound_ulps: allowed / ulp,
+                    ..spec
+                };
+            }
+        }
+        spec.stricter += usize::from(stricter);
+    }
+    spec
+}
+
+fn value(job: &Job<'_>, found: &[Target]) -> Option<Value> {
+    if matches!(job.oracle, Judge::Eval(_)) || job.expected.is_empty() {
+        return None;
+    }
+    let limit = if matches!(job.case.oracle, Oracle::Table(_)) { VALUE_OF_TABLE } else { VALUE };
+    let mut value = Value::default();
+    for (row, (found, target)) in found.iter().zip(&job.expected).enumerate() {
+        let inputs = job.rows.row(row);
+        if found.doubtful || judge::is_indeterminate(target) || judge::is_ambiguous(job, inputs) {
+            continue;
+        }
+        value.rows += 1;
+        let share = share(job, inputs, found, target);
+        value.off += usize::from(share > limit);
+        if share > value.share {
+            value = Value { share, row, ..value };
+        }
+    }
+    Some(value)
+}
+
+/// Distance over what the case allows, of the component where that is largest, in the alternative
+/// that fits best.
+fn share(job: &Job<'_>, inputs: &[f64], found: &Target, target: &Target) -> f64 {
+    let values = tolerance::values(&job.terms, inputs);
+    let of = |expected: &Vec<f64>| {
+        let component = |(word, (found, expected)): (usize, (&f64, &f64))| {
+            let off = judge::distance(*found, *expected, false);
+            if off == 0.0 {
+                0.0
+            } else {
+                off / tolerance::allowed(&job.terms, &values, word, *expected)
+            }
+        };
+        found.expected.value.iter().zip(expected).enumerate().map(component).fold(0.0, f64::max)
+    };
+    std::iter::once(&target.expected.value)
+        .chain(&target.expected.alternatives)
+        .map(of)
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn apart(first: &[Target], second: &[Target], kinds: &[ScalarKind]) -> Parity {
+    let mut parity = Parity::default();
+    for (row, (a, b)) in first.iter().zip(second).enumerate() {
+        if a.doubtful || b.doubtful || judge::is_indeterminate(a) || judge::is_indeterminate(b) {
+            continue;
+        }
+        parity.rows += 1;
+        let mut is_apart = false;
+        for word in 0..kinds.len() {
+            let (x, y) = (a.expected.value[word], b.expected.value[word]);
+            let difference = (x - y).abs();
+            let relative = difference / x.abs().max(y.abs()).max(f64::from(f32::MIN_POSITIVE));
+            // Where terms cancel, what rounding in f64 leaves is relative to the terms.
+            let rounding = a.errors[word].max(b.errors[word]) * F64_SHARE;
+            if difference > rounding && relative > PARITY {
+                is_apart = true;
+                if relative > parity.worst {
+                    parity = Parity { worst: relative, row, ..parity };
+                }
+            }
+        }
+        parity.apart += usize::from(is_apart);
+    }
+    parity
+}

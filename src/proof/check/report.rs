@@ -1,0 +1,222 @@
+//! A report as text.
+
+use super::{Outcome, Proof, Report};
+use crate::bundle::Language;
+
+const HEADINGS: [&str; COLUMNS] = [
+    "function",
+    "language",
+    "executor",
+    "inputs",
+    "worst error",
+    "ULP",
+    "of allowed",
+    "headroom",
+    "driver",
+    "ambiguous",
+    "free",
+    "parity ULP",
+];
+const COLUMNS: usize = 12;
+
+/// One line for each function, language and executor.
+pub fn table(report: &Report) -> String {
+    let rows: Vec<[String; COLUMNS]> = std::iter::once(HEADINGS.map(str::to_owned))
+        .chain(report.outcomes.iter().map(row))
+        .collect();
+    let width =
+        |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..HEADINGS.len()).map(width).collect();
+    let line = |row: &[String; COLUMNS]| {
+        let cells = row.iter().enumerate().map(|(column, cell)| {
+            if column < 3 {
+                format!("{cell:<width$}", width = widths[column])
+            } else {
+                format!("{cell:>width$}", width = widths[column])
+            }
+        });
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}
+
+fn row(outcome: &Outcome) -> [String; COLUMNS] {
+    let name = format!("{}::{}", outcome.module, outcome.function);
+    let head = [name, language(outcome.language).to_owned(), outcome.executor.to_owned()];
+    let tail = match &outcome.verdict {
+        Err(_) => {
+            let headroom = if outcome.lacks().is_some() { "cannot run" } else { "not run" };
+            ["-", "-", "-", "-", headroom, "-", "-", "-", "-"].map(str::to_owned)
+        }
+        Ok(verdict) => {
+            let share = if outcome.passed() {
+                verdict.worst.map_or("exact".to_owned(), |worst| headroom(worst.share()))
+            } else {
+                "FAILED".to_owned()
+            };
+            let number = |pick: fn(&super::Worst) -> f64| {
+                verdict.worst.as_ref().map_or("0".to_owned(), |worst| short(pick(worst)))
+            };
+            let percent = |rows: usize| {
+                format!("{:.2} %", 100.0 * rows as f64 / verdict.inputs.max(1) as f64)
+            };
+            [
+                verdict.inputs.to_string(),
+                number(|worst| worst.error),
+                number(|worst| worst.ulps()),
+                number(|worst| worst.allowed_ulps()),
+                share,
+                outcome
+                    .of_driver()
+                    .map_or("-".to_owned(), |share| format!("{:.0} %", 100.0 * share)),
+                percent(verdict.ambiguous),
+                percent(verdict.indeterminate),
+                verdict.parity.map_or("-".to_owned(), short),
+            ]
+        }
+    };
+    let mut cells = head.into_iter().chain(tail);
+    std::array::from_fn(|_| cells.next().unwrap_or_default())
+}
+
+/// Cases that state less than WGSL allows their code, one line each.
+pub fn stricter(report: &Report) -> String {
+    let line = |proof: &Proof| {
+        let spec = proof.spec.as_ref().ok().filter(|spec| spec.stricter > 0)?;
+        let (name, rows) = (format!("{}::{}", proof.module, proof.function), spec.rows);
+        let (stated, bound) = (short(spec.stated_ulps), short(spec.bound_ulps));
+        Some(format!(
+            "{name} (case {}): {stated} ULP are stated where WGSL allows {bound}, on {} of {rows} inputs less\n",
+            proof.case + 1,
+            spec.stricter
+        ))
+    };
+    report.proofs.iter().filter_map(line).collect()
+}
+
+/// What does not hold of a proof, a line each.
+fn disproved(proof: &Proof) -> String {
+    let place = format!("{} (case {})", proof.path(), proof.case + 1);
+    let mut text = if proof.agree() { String::new() } else { unequal(proof, &place) };
+    if let Some(value) = proof.value.filter(|value| value.off > 0) {
+        let (off, rows, share) = (value.off, value.rows, short(value.share));
+        text += &format!(
+            "{place}: the code in f64, without any rounding, is off on {off} of {rows} inputs, by up to {share} of what is allowed (row {})\n",
+            value.row
+        );
+    }
+    text
+}
+
+fn unequal(proof: &Proof, place: &str) -> String {
+    match &proof.parity {
+        Some(Err(error)) => {
+            format!("{place}: the languages could not be compared in f64: {error}\n")
+        }
+        Some(Ok(parity)) => {
+            let (apart, rows, worst) = (parity.apart, parity.rows, parity.worst);
+            format!(
+                "{place}: WESL and GLSL differ in f64 on {apart} of {rows} inputs, by up to {worst:.1e} of the value (row {})\n",
+                parity.row
+            )
+        }
+        None => String::new(),
+    }
+}
+
+/// What executors have no way to run, with the reason, one line each.
+pub fn lacking(report: &Report) -> String {
+    let line = |outcome: &Outcome| {
+        let (reason, case) = (&outcome.lacks()?.message, outcome.case + 1);
+        let (path, language) = (outcome.path(), language(outcome.language));
+        Some(format!("{path} (case {case}, {language} on {}): {reason}\n", outcome.executor))
+    };
+    report.outcomes.iter().filter_map(line).collect()
+}
+
+/// What failed of a report, each with its smallest input; empty when nothing did.
+pub fn failures(report: &Report) -> String {
+    failures_of(&report.outcomes, &report.proofs)
+}
+
+/// What failed of these.
+pub fn failures_of(outcomes: &[Outcome], proofs: &[Proof]) -> String {
+    let mut text: String = proofs.iter().filter(|proof| !proof.passed()).map(disproved).collect();
+    for outcome in outcomes.iter().filter(|outcome| outcome.failed()) {
+        let place = format!(
+            "{}::{} ({}, {} on {})",
+            outcome.module,
+            outcome.function,
+            language(outcome.language),
+            outcome.executor,
+            outcome.adapter
+        );
+        match &outcome.verdict {
+            Err(error) => text += &format!("{place} did not run: {}\n", error.message),
+            Ok(verdict) => {
+                text += &format!(
+                    "{place}: {} of {} inputs are off\n",
+                    verdict.failing.len(),
+                    verdict.inputs
+                );
+                if let (true, Some(worst), Some(recorded)) =
+                    (outcome.exceeds_driver(), verdict.worst, outcome.recorded)
+                {
+                    let (found, limit) = (
+                        worst.ulps(),
+                        worst.allowed_ulps() * recorded * crate::proof::ratchet::SLACK,
+                    );
+                    text += &format!(
+                        "  {} ULP, but this driver was recorded to need at most {}\n",
+                        short(found),
+                        short(limit)
+                    );
+                }
+                if verdict.proves_nothing() {
+                    text += "  no input has a value that f32 could hold and the code determines: nothing was tested\n";
+                }
+                if verdict.too_ambiguous {
+                    text += &format!(
+                        "  {} inputs are ambiguous, more than the case allows\n",
+                        verdict.ambiguous
+                    );
+                }
+                for law in verdict.laws.iter().filter(|law| law.broken > 0) {
+                    text += &format!(
+                        "  the law `{}` is broken {} times: {}\n",
+                        law.name,
+                        law.broken,
+                        law.example.as_deref().unwrap_or("")
+                    );
+                    text += law.smallest.as_deref().unwrap_or("");
+                }
+                text += verdict.smallest.as_deref().unwrap_or("");
+                text += "\n";
+            }
+        }
+    }
+    text
+}
+
+/// Name of a language.
+pub fn language(language: Language) -> &'static str {
+    match language {
+        Language::Wesl => "wesl",
+        Language::Glsl => "glsl",
+    }
+}
+
+fn headroom(share: f64) -> String {
+    if share == 0.0 { "exact".to_owned() } else { format!("{:.0} %", 100.0 * (1.0 - share)) }
+}
+
+/// A few significant digits, without a long tail.
+pub fn short(value: f64) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (0.01..10_000.0).contains(&value.abs()) {
+        format!("{value:.2}")
+    } else {
+        format!("{value:.2e}")
+    }
+}

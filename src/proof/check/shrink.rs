@@ -1,0 +1,265 @@
+//! Makes a failing input small: towards 0, 1 and few mantissa bits, a batch of candidates a draw.
+
+use super::job::{Job, Target};
+use super::judge;
+use super::law::{self, Given};
+use crate::diagnostic::Diagnostic;
+use crate::execute::Session;
+use crate::execute::kernel::Kernel;
+use crate::execute::kernel::number;
+use crate::proof::cases::Rows;
+use crate::proof::formula::Scope;
+use crate::proof::laws::{self, Law};
+use naga::ScalarKind;
+
+/// Rounds of candidates: each round keeps the simplest input that still fails.
+const ROUNDS: usize = 24;
+
+/// The smallest failing input found from a failing row, as text: values in decimal and hex, and a
+/// case ready to paste.
+pub fn shrink(
+    job: &Job<'_>,
+    kernel: &Kernel,
+    session: &mut dyn Session,
+    failing: usize,
+) -> Result<String, Diagnostic> {
+    let best = smallest(job, failing, &mut |rows| {
+        let Some(expected) = job.targets(rows)? else { return Ok(None) };
+        let results = session.run(kernel, &rows.words)?;
+        Ok(judge::judge(job, rows, &expected, &results).failing.first().copied())
+    })?;
+    let found = session.run(kernel, &best)?;
+    let target = if best == job.rows.row_words(failing) {
+        None
+    } else {
+        job.targets(&job.rows.with_words(best.clone()))?
+    };
+    match target.as_ref().and_then(|targets| targets.first()).or(job.expected.get(failing)) {
+        Some(target) => Ok(describe(job, &best, target, &found)),
+        None => Ok(String::new()),
+    }
+}
+
+/// The same for a row that breaks a law.
+pub fn shrink_law(
+    job: &Job<'_>,
+    kernel: &Kernel,
+    session: &mut dyn Session,
+    law: &Law,
+    failing: usize,
+) -> Result<String, Diagnostic> {
+    let scope = Scope(job.kernel().words().collect());
+    let best = smallest(job, failing, &mut |rows| {
+        let others = laws::transformed(law, rows, &scope)?;
+        let expected = job.targets(rows)?.unwrap_or_default();
+        let results = session.run(kernel, &rows.words)?;
+        let transformed =
+            others.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
+        let transformed = others.as_ref().zip(transformed.as_deref());
+        Ok(law::judge(
+            job,
+            law,
+            &Given { rows, expected: &expected, results: &results, transformed },
+        )
+        .row)
+    })?;
+    let found = session.run(kernel, &best)?;
+    let input = Input::new(job, &best);
+    let found = format!("  found {}\n\n", values(&found, &job.kernel().result_kinds()));
+    let head = format!("[[case]]\nfunction = {:?}\noracle = \"none\"\n", job.case.function);
+    let laws = format!("{}laws = [{}]\n# {}\n", fixtures(job), laws::toml(law), input.bits);
+    Ok(format!("{}{found}{head}{laws}inputs = {{ {} }}\n", input.text, input.lists))
+}
+
+/// The simplest input found that still fails; `first_failing` gives the index of a row that does.
+fn smallest(
+    job: &Job<'_>,
+    failing: usize,
+    first_failing: &mut dyn FnMut(&Rows) -> Result<Option<usize>, Diagnostic>,
+) -> Result<Vec<u32>, Diagnostic> {
+    let mut best = job.rows.row_words(failing).to_vec();
+    let ranges = ranges(job);
+    for _ in 0..ROUNDS {
+        let mut candidates = candidates(job, &best);
+        candidates.retain(|candidate| {
+            complexity(job, candidate) < complexity(job, &best) && meant(job, &ranges, candidate)
+        });
+        candidates.sort_by_key(|candidate| complexity(job, candidate));
+        candidates.truncate(1024);
+        if candidates.is_empty() {
+            break;
+        }
+        let Some(simpler) = first_failing(&job.rows.with_words(candidates.concat()))? else {
+            break;
+        };
+        best = candidates.swap_remove(simpler);
+    }
+    Ok(best)
+}
+
+/// Inputs with one value, or one unit vector, made simpler.
+fn candidates(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
+    let mut found = Vec::new();
+    for range in &job.rows.units {
+        for axis in 0..2 * range.len() {
+            let mut candidate = row.to_vec();
+            candidate[range.clone()].fill(0);
+            candidate[range.start + axis / 2] =
+                if axis % 2 == 0 { 1f32.to_bits() } else { (-1f32).to_bits() };
+            found.push(candidate);
+        }
+    }
+    for (index, word) in row.iter().enumerate() {
+        if !job.rows.units.iter().any(|range| range.contains(&index)) {
+            found.extend(simpler(*word, job.rows.kinds[index]).into_iter().map(|value| {
+                let mut candidate = row.to_vec();
+                candidate[index] = value;
+                candidate
+            }));
+        }
+    }
+    found
+}
+
+fn simpler(word: u32, kind: ScalarKind) -> Vec<u32> {
+    if kind != ScalarKind::Float {
+        return vec![0, 1, word / 2, word.saturating_sub(1)];
+    }
+    let plain = [0.0f32, 1.0, -1.0, 0.5, 2.0].map(f32::to_bits);
+    let shorter = [22, 20, 16, 12, 8, 4, 2, 1].map(|bits| word & (u32::MAX << bits));
+    plain.into_iter().chain(shorter).collect()
+}
+
+/// The least and the largest value of each column.
+fn ranges(job: &Job<'_>) -> Vec<(f64, f64)> {
+    let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); job.rows.kinds.len()];
+    for row in 0..job.rows.len() {
+        ranges
+            .iter_mut()
+            .zip(job.rows.row(row))
+            .for_each(|(range, value)| *range = (range.0.min(*value), range.1.max(*value)));
+    }
+    ranges
+}
+
+/// Whether the case means such an input: within the columns' values, and not filtered out.
+fn meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
+    let row = crate::proof::cases::numbers(candidate, &job.rows.kinds);
+    let is_within =
+        row.iter().zip(ranges).all(|(value, (low, high))| (*low..=*high).contains(value));
+    is_within && job.filter.as_ref().is_none_or(|filter| filter.scalar(&row) == 1.0)
+}
+
+/// Lower is simpler: values other than 0, then mantissa bits, then magnitude.
+fn complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
+    let cost = |(word, kind): (&u32, &ScalarKind)| match kind {
+        ScalarKind::Float if *word & 0x7fff_ffff == 0 => (0, *word >> 31),
+        ScalarKind::Float => {
+            let mantissa = 23 - (word & 0x7f_ffff | 0x80_0000).trailing_zeros();
+            (1, 1 + mantissa * 8 + ((word >> 23 & 0xff) as i32 - 127).unsigned_abs() + (word >> 31))
+        }
+        _ => (u32::from(*word != 0), 32 - word.leading_zeros()),
+    };
+    row.iter()
+        .zip(&job.rows.kinds)
+        .map(cost)
+        .fold((0, 0), |sum, cost| (sum.0 + cost.0, sum.1 + cost.1))
+}
+
+/// One row, parameter by parameter.
+struct Input {
+    /// In decimal and hex, a line each.
+    text: String,
+    /// As a table's row has them.
+    row: String,
+    /// As `inputs` lists them.
+    lists: String,
+    bits: String,
+}
+
+impl Input {
+    fn new(job: &Job<'_>, words: &[u32]) -> Self {
+        let numbers = crate::proof::cases::numbers(words, &job.rows.kinds);
+        let (mut text, mut at) = (String::new(), 0);
+        let (mut row, mut lists, mut bits) = (Vec::new(), Vec::new(), Vec::new());
+        for (name, shape) in job.kernel().words() {
+            let range = at..at + shape.words() as usize;
+            at = range.end;
+            text += &format!(
+                "  {name} = {}\n",
+                values(&words[range.clone()], &job.rows.kinds[range.clone()])
+            );
+            bits.push(format!("{name} = {}", hex(&words[range.clone()])));
+            row.push(format!("{name} = {}", list(&numbers[range.clone()])));
+            lists.push(if range.len() == 1 {
+                row[row.len() - 1].clone()
+            } else {
+                format!("{name} = [{}]", list(&numbers[range]))
+            });
+        }
+        Self { text, row: row.join(", "), lists: lists.join(", "), bits: bits.join(", ") }
+    }
+}
+
+/// The input in decimal and hex, then a case to paste that fails alike.
+fn describe(job: &Job<'_>, words: &[u32], target: &Target, found: &[u32]) -> String {
+    let input = Input::new(job, words);
+    let worst = judge::judge(
+        job,
+        &job.rows.with_words(words.to_vec()),
+        std::slice::from_ref(target),
+        found,
+    )
+    .worst;
+    let allowed = worst.map_or(0.0, |worst| worst.allowed);
+    let (found, expected) =
+        (values(found, &job.kernel().result_kinds()), list(&target.expected.value));
+    let said = format!("  found {found}\n  expected {expected}\n  allowed {allowed:e}\n\n");
+    input.text.clone() + &said + &pasted(job, &input, &expected, allowed)
+}
+
+/// A case with the one row, with the fixtures that it names.
+fn pasted(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> String {
+    let mut text = format!("[[case]]\nfunction = {:?}\n", job.case.function);
+    if allowed > 0.0 {
+        text += &format!("tolerance = {{ abs = {allowed:e} }}\n");
+    }
+    text += &fixtures(job);
+    if !input.bits.is_empty() {
+        text += &format!("# {}\n", input.bits);
+    }
+    let separator = if input.row.is_empty() { "" } else { ", " };
+    text + &format!("rows = [{{ {}{separator}expect = {expected} }}]\n", input.row)
+}
+
+/// The line that names them, if there are any.
+fn fixtures(job: &Job<'_>) -> String {
+    let names: Vec<String> = job
+        .case
+        .fixture_names
+        .iter()
+        .map(|(parameter, name)| format!("{parameter} = {name:?}"))
+        .collect();
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!("fixtures = {{ {} }}\n", names.join(", "))
+    }
+}
+
+/// Numbers as TOML writes them.
+fn list(numbers: &[f64]) -> String {
+    let one = |number: &f64| if number.is_nan() { "nan".to_owned() } else { format!("{number:?}") };
+    format!("[{}]", numbers.iter().map(one).collect::<Vec<_>>().join(", "))
+}
+
+fn hex(words: &[u32]) -> String {
+    let words: Vec<String> = words.iter().map(|word| format!("0x{word:08x}")).collect();
+    if let [word] = &words[..] { word.clone() } else { format!("[{}]", words.join(", ")) }
+}
+
+fn values(words: &[u32], kinds: &[ScalarKind]) -> String {
+    let one =
+        |(word, kind): (&u32, &ScalarKind)| format!("{} (0x{word:08x})", number(*word, *kind));
+    words.iter().zip(kinds).map(one).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,164 @@
+//! Values of expressions over the library's functions, on any executor.
+//!
+//! An expression is WGSL: `lighting::spot::cone_exponent(0.9, 0.8, 4.0)`. It becomes the body of a
+//! function of a root module; naga finds its type. For GLSL the same expression is translated
+//! token by token, and calls the GLSL modules.
+
+mod rewrite;
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Mutex;
+
+use naga::proc::TypeResolution;
+use naga::{Expression, Handle, ScalarKind, Statement};
+
+use super::library::Library;
+use crate::bundle::Language;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::execute::Session;
+use crate::execute::kernel::{self, number};
+use crate::source::{SourceId, SourceSet, Span};
+use crate::validate::Validated;
+use rewrite::Rewritten;
+
+/// Name of the function around the expression.
+const FUNCTION: &str = "lamplight_eval";
+
+/// The components of a value, structs and arrays flattened, matrices by columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Value {
+    pub words: Vec<u32>,
+    pub kinds: Vec<ScalarKind>,
+}
+
+impl fmt::Display for Value {
+    /// Separated by spaces; f32 as the shortest decimal that reads back the same.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let texts: Vec<String> = self
+            .words
+            .iter()
+            .zip(&self.kinds)
+            .map(|(word, kind)| component(*word, *kind))
+            .collect();
+        f.write_str(&texts.join(" "))
+    }
+}
+
+fn component(word: u32, kind: ScalarKind) -> String {
+    match kind {
+        ScalarKind::Float => {
+            let value = f32::from_bits(word);
+            let plain = value == 0.0 || !value.is_finite() || (1e-5..1e9).contains(&value.abs());
+            if plain { value.to_string() } else { format!("{value:e}") }
+        }
+        ScalarKind::Bool => (word != 0).to_string(),
+        _ => number(word, kind).to_string(),
+    }
+}
+
+/// The value of an expression. Errors point into it, as a source named `<expression>`.
+pub fn evaluate(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    text: &str,
+    language: Language,
+    session: &mut dyn Session,
+) -> Result<Value, Diagnostics> {
+    let id = lock(sources).add("<expression>", text);
+    let module = module(library, sources, text, language).map_err(|(errors, wrapper)| {
+        errors
+            .into_iter()
+            .map(|error| relocated(error, &lock(sources), &wrapper, id))
+            .collect::<Vec<_>>()
+    })?;
+    let whole = |error: Diagnostic| {
+        if error.labels.is_empty() {
+            error.at(Span::new(id, 0..text.len()), "in this expression")
+        } else {
+            error
+        }
+    };
+    let kernel =
+        kernel::build(&module, FUNCTION, &BTreeMap::new()).map_err(|error| vec![whole(error)])?;
+    let words = session.run(&kernel, &[]).map_err(|error| vec![whole(error)])?;
+    Ok(Value { words, kinds: kernel.result_kinds() })
+}
+
+type Failed = (Diagnostics, Rewritten);
+
+fn module(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    text: &str,
+    language: Language,
+) -> Result<naga::Module, Failed> {
+    let wesl = rewrite::wesl(text, library);
+    let typed = library
+        .importing(sources, ("expression.wesl", &wesl.text), Language::Wesl, FUNCTION)
+        .and_then(|validated| returning(validated).map_err(|error| vec![error]));
+    let (module, ty) = match typed {
+        Ok(typed) => typed,
+        Err(errors) => return Err((errors, wesl)),
+    };
+    if language == Language::Wesl {
+        return Ok(module);
+    }
+    let glsl = rewrite::glsl(text, library, &module, ty);
+    match library.importing(sources, ("expression.frag.glsl", &glsl.text), Language::Glsl, FUNCTION)
+    {
+        Ok(validated) => Ok(validated.module),
+        Err(errors) => Err((errors, glsl)),
+    }
+}
+
+/// The module with the function returning the value it binds, and the value's type.
+fn returning(validated: Validated) -> Result<(naga::Module, Handle<naga::Type>), Diagnostic> {
+    let Validated { mut module, info, .. } = validated;
+    let nothing = || Diagnostic::error(codes::UNTESTABLE_FUNCTION, "the expression has no value");
+    let handle = module
+        .functions
+        .iter()
+        .find(|(_, function)| function.name.as_deref() == Some(FUNCTION))
+        .map(|(handle, _)| handle);
+    let handle = handle.ok_or_else(nothing)?;
+    let value: Handle<Expression> = module.functions[handle]
+        .named_expressions
+        .iter()
+        .last()
+        .map(|(value, _)| *value)
+        .ok_or_else(nothing)?;
+    let ty = match &info[handle][value].ty {
+        TypeResolution::Handle(ty) => *ty,
+        TypeResolution::Value(inner) => module
+            .types
+            .insert(naga::Type { name: None, inner: inner.clone() }, naga::Span::UNDEFINED),
+    };
+    let function = &mut module.functions[handle];
+    function.result = Some(naga::FunctionResult { ty, binding: None });
+    if matches!(function.body.last(), Some(Statement::Return { .. })) {
+        let end = function.body.len();
+        function.body.cull(end - 1..end);
+    }
+    function.body.push(Statement::Return { value: Some(value) }, naga::Span::UNDEFINED);
+    Ok((module, ty))
+}
+
+/// A diagnostic with its labels in the wrapper moved to the expression.
+fn relocated(
+    mut error: Diagnostic,
+    sources: &SourceSet,
+    wrapper: &Rewritten,
+    id: SourceId,
+) -> Diagnostic {
+    for label in &mut error.labels {
+        if *sources.get(label.span.source).text == *wrapper.text {
+            label.span = Span::new(id, wrapper.original(label.span.range()));
+        }
+    }
+    error
+}
+
+fn lock(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
+    sources.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}

@@ -1,0 +1,329 @@
+//! The small language of case files: f64 formulas over the parameters of a function.
+//!
+//! Numbers, parameters by path (`light.kind`, `n.x`), `+ - * /`, comparisons and `&&`, `||`
+//! (1 or 0), parentheses, and the functions of [`FUNCTIONS`]. A vector with a scalar works by
+//! component. Formulas say where a comparison is too close to call (`near`), which inputs are
+//! meant (`where`), what an error grows with (`scaled`), and what is expected (`formula`).
+
+use std::ops::Range;
+
+use crate::diagnostic::{Diagnostic, codes, nearest};
+use crate::execute::kernel::Shape;
+
+/// A formula with its names resolved to words of a row.
+#[derive(Debug, Clone)]
+pub enum Formula {
+    Number(f64),
+    /// First word and count.
+    Words(usize, usize),
+    Negated(Box<Formula>),
+    Binary(&'static Operator, Box<Formula>, Box<Formula>),
+    Call(&'static Function, Vec<Formula>),
+}
+
+/// A binary operator: spelling, precedence, meaning.
+type Operator = (&'static str, u8, fn(f64, f64) -> f64);
+
+/// Longest first where one is the beginning of another.
+const OPERATORS: &[Operator] = &[
+    ("||", 1, |a, b| truth(a != 0.0 || b != 0.0)),
+    ("&&", 2, |a, b| truth(a != 0.0 && b != 0.0)),
+    ("<=", 3, |a, b| truth(a <= b)),
+    (">=", 3, |a, b| truth(a >= b)),
+    ("==", 3, |a, b| truth(a == b)),
+    ("!=", 3, |a, b| truth(a != b)),
+    ("<", 3, |a, b| truth(a < b)),
+    (">", 3, |a, b| truth(a > b)),
+    ("+", 4, |a, b| a + b),
+    ("-", 4, |a, b| a - b),
+    ("*", 5, |a, b| a * b),
+    ("/", 5, |a, b| a / b),
+];
+
+/// A function of formulas.
+#[derive(Debug)]
+pub struct Function {
+    pub name: &'static str,
+    /// Number of arguments; `None` for any, at least one.
+    arity: Option<usize>,
+    apply: fn(&[Vec<f64>]) -> Vec<f64>,
+}
+
+/// Every function, by name.
+pub const FUNCTIONS: &[Function] = &[
+    Function { name: "abs", arity: Some(1), apply: |a| map(&a[0], f64::abs) },
+    Function { name: "acos", arity: Some(1), apply: |a| map(&a[0], f64::acos) },
+    Function {
+        name: "clamp",
+        arity: Some(3),
+        apply: |a| zip(&zip(&a[0], &a[1], f64::max), &a[2], f64::min),
+    },
+    Function { name: "cross", arity: Some(2), apply: |a| cross(&a[0], &a[1]) },
+    Function {
+        name: "dot",
+        arity: Some(2),
+        apply: |a| vec![zip(&a[0], &a[1], |x, y| x * y).iter().sum()],
+    },
+    Function {
+        name: "dot_abs",
+        arity: Some(2),
+        apply: |a| vec![zip(&a[0], &a[1], |x, y| (x * y).abs()).iter().sum()],
+    },
+    Function { name: "exp2", arity: Some(1), apply: |a| map(&a[0], f64::exp2) },
+    Function { name: "floor", arity: Some(1), apply: |a| map(&a[0], f64::floor) },
+    Function { name: "length", arity: Some(1), apply: |a| vec![length(&a[0])] },
+    Function { name: "log2", arity: Some(1), apply: |a| map(&a[0], f64::log2) },
+    Function { name: "max", arity: Some(2), apply: |a| zip(&a[0], &a[1], f64::max) },
+    Function { name: "min", arity: Some(2), apply: |a| zip(&a[0], &a[1], f64::min) },
+    Function { name: "normalize", arity: Some(1), apply: |a| map(&a[0], |x| x / length(&a[0])) },
+    Function { name: "pow", arity: Some(2), apply: |a| zip(&a[0], &a[1], f64::powf) },
+    Function {
+        name: "select",
+        arity: Some(3),
+        apply: |a| if a[2][0] != 0.0 { a[1].clone() } else { a[0].clone() },
+    },
+    Function { name: "sqrt", arity: Some(1), apply: |a| map(&a[0], f64::sqrt) },
+    Function { name: "vec", arity: None, apply: |a| a.concat() },
+];
+
+impl Formula {
+    /// Parses a text over named parameters; ranges of the error are bytes of `text`.
+    pub fn parse(text: &str, scope: &Scope<'_>) -> Result<Self, (Range<usize>, String)> {
+        let mut parser = Parser { text, at: 0, depth: 0, scope };
+        let formula = parser.binary(0)?;
+        parser.skip();
+        if parser.at < text.len() {
+            return Err((parser.at..text.len(), "unexpected text after the formula".to_owned()));
+        }
+        Ok(formula)
+    }
+
+    /// The components over one row of words.
+    pub fn eval(&self, row: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Number(value) => vec![*value],
+            Self::Words(first, count) => row[*first..first + count].to_vec(),
+            Self::Negated(inner) => map(&inner.eval(row), |x| -x),
+            Self::Binary(operator, left, right) => {
+                zip(&left.eval(row), &right.eval(row), operator.2)
+            }
+            Self::Call(function, arguments) => (function.apply)(
+                &arguments.iter().map(|argument| argument.eval(row)).collect::<Vec<_>>(),
+            ),
+        }
+    }
+
+    /// The first component.
+    pub fn scalar(&self, row: &[f64]) -> f64 {
+        self.eval(row).first().copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// Names and shapes of the words of a row, in order.
+pub struct Scope<'a>(pub Vec<(&'a str, &'a Shape)>);
+
+impl Scope<'_> {
+    /// First word and shape of a path.
+    pub fn find(&self, path: &[String]) -> Option<(usize, &Shape)> {
+        let (name, rest) = path.split_first()?;
+        let index = self.0.iter().position(|(known, _)| known == name)?;
+        let first: u32 = self.0[..index].iter().map(|(_, shape)| shape.words()).sum();
+        let (offset, part) = self.0[index].1.part(rest)?;
+        Some(((first + offset) as usize, part))
+    }
+
+    /// First word and count of a path, which may end in a vector's component.
+    fn words(&self, path: &[String]) -> Option<(usize, usize)> {
+        if let Some((first, shape)) = self.find(path) {
+            return Some((first, shape.words() as usize));
+        }
+        let (last, rest) = path.split_last()?;
+        let index = "xyzw"
+            .find(last.as_str())
+            .or_else(|| "rgba".find(last.as_str()))
+            .filter(|_| last.len() == 1)?;
+        match self.find(rest)? {
+            (first, Shape::Vector { size, .. }) if index < *size as usize => {
+                Some((first + index, 1))
+            }
+            _ => None,
+        }
+    }
+
+    /// An error for a path that is not there.
+    pub fn unknown(&self, path: &str) -> Diagnostic {
+        let names: Vec<_> = self.0.iter().map(|(name, _)| format!("`{name}`")).collect();
+        Diagnostic::error(codes::CASE_INVALID, format!("the function has no parameter `{path}`"))
+            .note(format!("its parameters are {}", names.join(", ")))
+            .suggest(path, self.0.iter().map(|(name, _)| *name))
+    }
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    at: usize,
+    depth: u32,
+    scope: &'a Scope<'a>,
+}
+
+type Parsed = Result<Formula, (Range<usize>, String)>;
+
+impl Parser<'_> {
+    fn binary(&mut self, weakest: u8) -> Parsed {
+        self.depth += 1;
+        if self.depth > 100 {
+            return Err((self.at..self.at, "the formula is nested too deeply".to_owned()));
+        }
+        let mut left = self.unary()?;
+        while let Some(operator) = self.operator(weakest) {
+            self.at += operator.0.len();
+            left =
+                Formula::Binary(operator, Box::new(left), Box::new(self.binary(operator.1 + 1)?));
+        }
+        self.depth -= 1;
+        Ok(left)
+    }
+
+    fn operator(&mut self, weakest: u8) -> Option<&'static Operator> {
+        self.skip();
+        let rest = &self.text[self.at..];
+        OPERATORS
+            .iter()
+            .find(|operator| rest.starts_with(operator.0))
+            .filter(|operator| operator.1 >= weakest)
+    }
+
+    fn unary(&mut self) -> Parsed {
+        self.skip();
+        match self.text[self.at..].chars().next() {
+            Some('-') => {
+                self.at += 1;
+                Ok(Formula::Negated(Box::new(self.unary()?)))
+            }
+            Some('(') => {
+                self.at += 1;
+                let inner = self.binary(0)?;
+                self.expect(')').map(|()| inner)
+            }
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_alphabetic() || c == '_' => self.name(),
+            _ => Err((
+                self.at..self.text.len(),
+                "expected a number, a parameter or a function".to_owned(),
+            )),
+        }
+    }
+
+    fn number(&mut self) -> Parsed {
+        let rest = &self.text[self.at..];
+        let mut end = 0;
+        for (index, c) in rest.char_indices() {
+            let exponent_sign = (c == '-' || c == '+') && rest[..index].ends_with(['e', 'E']);
+            if !(c.is_ascii_alphanumeric() || c == '.' || exponent_sign) {
+                break;
+            }
+            end = index + c.len_utf8();
+        }
+        let range = self.at..self.at + end;
+        self.at = range.end;
+        rest[..end]
+            .parse()
+            .map(Formula::Number)
+            .map_err(|_| (range, format!("`{}` is not a number", &rest[..end])))
+    }
+
+    fn name(&mut self) -> Parsed {
+        let rest = &self.text[self.at..];
+        let end = rest
+            .find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'))
+            .unwrap_or(rest.len());
+        let (name, range) = (&rest[..end], self.at..self.at + end);
+        self.at += end;
+        self.skip();
+        if self.text[self.at..].starts_with('(') {
+            return self.call(name, range);
+        }
+        let path: Vec<String> = name.split('.').map(str::to_owned).collect();
+        self.scope.words(&path).map(|(first, count)| Formula::Words(first, count)).ok_or_else(
+            || {
+                let known = nearest(name, self.scope.0.iter().map(|(name, _)| *name));
+                (
+                    range,
+                    format!(
+                        "there is no parameter `{name}`{}",
+                        known.map_or(String::new(), |known| format!("; did you mean `{known}`?"))
+                    ),
+                )
+            },
+        )
+    }
+
+    fn call(&mut self, name: &str, range: Range<usize>) -> Parsed {
+        let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
+            let known = nearest(name, FUNCTIONS.iter().map(|function| function.name));
+            return Err((
+                range,
+                format!(
+                    "there is no function `{name}`{}",
+                    known.map_or(String::new(), |known| format!("; did you mean `{known}`?"))
+                ),
+            ));
+        };
+        self.at += 1;
+        let mut arguments = vec![self.binary(0)?];
+        while self.expect(',').is_ok() {
+            arguments.push(self.binary(0)?);
+        }
+        self.expect(')')?;
+        match function.arity {
+            Some(arity) if arity != arguments.len() => {
+                Err((range, format!("`{name}` takes {arity} arguments, not {}", arguments.len())))
+            }
+            _ => Ok(Formula::Call(function, arguments)),
+        }
+    }
+
+    fn expect(&mut self, wanted: char) -> Result<(), (Range<usize>, String)> {
+        self.skip();
+        if !self.text[self.at..].starts_with(wanted) {
+            return Err((self.at..self.text.len(), format!("expected `{wanted}`")));
+        }
+        self.at += wanted.len_utf8();
+        Ok(())
+    }
+
+    fn skip(&mut self) {
+        self.at = self.text.len() - self.text[self.at..].trim_start().len();
+    }
+}
+
+fn truth(value: bool) -> f64 {
+    f64::from(u8::from(value))
+}
+
+fn length(a: &[f64]) -> f64 {
+    a.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn map(a: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
+    a.iter().map(|x| f(*x)).collect()
+}
+
+/// By component; a scalar goes with every component, a shorter vector with its own count.
+fn zip(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let count = match (a.len(), b.len()) {
+        (1, n) | (n, 1) => n,
+        (n, m) => n.min(m),
+    };
+    let pick = |v: &[f64], i: usize| v[if v.len() == 1 { 0 } else { i }];
+    (0..count).map(|i| f(pick(a, i), pick(b, i))).collect()
+}
+
+fn cross(a: &[f64], b: &[f64]) -> Vec<f64> {
+    match (a, b) {
+        ([a0, a1, a2], [b0, b1, b2]) => {
+            vec![a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0]
+        }
+        _ => vec![f64::NAN; 3],
+    }
+}

@@ -1,0 +1,264 @@
+//! Directional albedo by quadrature: what a surface reflects of all the light that comes from one
+//! direction, for functions of cosines as for functions of directions.
+//!
+//! The factors' parameters are found by name. Those of the geometry (`nl nv nh lh vh lv th bh tl bl
+//! tv bv n_cross_h2 mu`, or the directions `n l v h`) come from the rule, the others from the case's
+//! row, or as formulas from `with`. `n` is z, the tangent x, the bitangent y; `view` names the case's parameter
+//! that is the cosine n.v, `azimuth` turns the viewer about the normal. `mu` is v.h.
+//!
+//! | `over` | the integral is |
+//! |---|---|
+//! | `l` | product * n.l over the hemisphere of `l` |
+//! | `h` | product * n.h over the hemisphere of `h`: 1 for a distribution of normals |
+//! | `below` | product * -n.l over the other hemisphere of `l` |
+//! | `sphere` | product over all directions `l`, without a cosine |
+//!
+//! A narrow lobe needs `peak`, a formula of its width alpha: the directions are then chosen about
+//! the half vector as GGX of that width is distributed.
+
+use std::f64::consts::PI;
+
+use super::integral::{MOST_CALLS, MOST_ROWS, gauss_legendre};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::proof::cases::{Rows, Text, word};
+use crate::proof::formula::{Formula, Scope};
+
+/// How an albedo is integrated, and what it must be.
+#[derive(Debug, Clone)]
+pub struct Albedo {
+    pub over: Over,
+    /// Parameter that is the cosine n.v.
+    pub view: String,
+    /// Angle of the viewer about the normal from the tangent, radians.
+    pub azimuth: f64,
+    /// Width of the lobe about the half vector.
+    pub peak: Option<Text>,
+    /// Formulas for parameters that neither the geometry nor the case has.
+    pub with: Vec<(String, Text)>,
+    /// The one component of the function's value that is the albedo, and of the product.
+    pub component: Option<usize>,
+    /// Steps in the cosine; there are twice as many azimuths.
+    pub steps: usize,
+    pub within: f64,
+    pub wanted: Wanted,
+}
+
+/// The directions that are integrated over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Over {
+    Light,
+    Half,
+    /// Below the horizon: light that passes through.
+    Below,
+    Sphere,
+}
+
+/// What the integral must be.
+#[derive(Debug, Clone)]
+pub enum Wanted {
+    /// The value of the case's function.
+    Own,
+    Exactly(Text),
+    AtMost(Text),
+}
+
+type Vector = [f64; 3];
+
+/// Directions of one call.
+#[derive(Debug, Clone, Copy)]
+struct Geometry {
+    l: Vector,
+    v: Vector,
+    h: Vector,
+}
+
+/// A cosine of the geometry by the name that parameters have for it.
+type Cosine = (&'static str, fn(&Geometry) -> f64);
+
+const COSINES: &[Cosine] = &[
+    ("nl", |g| g.l[2]),
+    ("nv", |g| g.v[2]),
+    ("nh", |g| g.h[2]),
+    ("lh", |g| dot(g.l, g.h)),
+    ("vh", |g| dot(g.v, g.h)),
+    ("mu", |g| dot(g.v, g.h)),
+    ("lv", |g| dot(g.l, g.v)),
+    ("th", |g| g.h[0]),
+    ("bh", |g| g.h[1]),
+    ("tl", |g| g.l[0]),
+    ("bl", |g| g.l[1]),
+    ("tv", |g| g.v[0]),
+    ("bv", |g| g.v[1]),
+    ("n_cross_h2", |g| g.h[0] * g.h[0] + g.h[1] * g.h[1]),
+];
+
+/// A direction by the name that parameters have for it.
+type Direction = (&'static str, fn(&Geometry) -> Vector);
+
+const DIRECTIONS: &[Direction] =
+    &[("n", |_| [0.0, 0.0, 1.0]), ("l", |g| g.l), ("v", |g| g.v), ("h", |g| g.h)];
+
+impl Albedo {
+    /// The case's rows that are integrated.
+    pub fn chosen(&self, rows: &Rows) -> Vec<usize> {
+        let most = MOST_ROWS.min(MOST_CALLS / self.calls()).max(1);
+        let count = rows.len().min(most);
+        (0..count).map(|index| index * rows.len() / count.max(1)).collect()
+    }
+
+    /// How many calls one row takes.
+    pub fn calls(&self) -> usize {
+        2 * self.steps * self.steps
+    }
+
+    /// The calls of a factor for the chosen rows of the case, whose parameters are in `case`.
+    pub fn rows(
+        &self,
+        rows: &Rows,
+        case: &Scope<'_>,
+        factor: &Scope<'_>,
+        span: crate::source::Span,
+    ) -> Result<Rows, Diagnostic> {
+        let kinds: Vec<_> = factor.0.iter().flat_map(|(_, shape)| shape.kinds()).collect();
+        let bound = |(name, text): &(String, Text)| Ok((name.clone(), text.bind(case)?));
+        let with = self.with.iter().map(bound).collect::<Result<Vec<_>, Diagnostic>>()?;
+        let mut words = Vec::new();
+        for row in self.chosen(rows) {
+            for (geometry, _) in self.nodes(rows.row(row), case)? {
+                let mut values = Vec::new();
+                for (name, shape) in &factor.0 {
+                    let found = value(name, &geometry, rows.row(row), (case, &with));
+                    let value = found.filter(|value| value.len() == shape.words() as usize);
+                    values.extend(value.ok_or_else(|| unknown(name, span))?);
+                }
+                words.extend(values.iter().zip(&kinds).map(|(value, kind)| word(*value, *kind)));
+            }
+        }
+        Ok(Rows::of(words, kinds))
+    }
+
+    /// Directions and weights of the rule for one row; calls that have no weight are among them.
+    fn nodes(&self, row: &[f64], case: &Scope<'_>) -> Result<Vec<(Geometry, f64)>, Diagnostic> {
+        let nv = self.cosine_to_viewer(row, case);
+        let sine = (1.0 - nv * nv).max(0.0).sqrt();
+        let v = [sine * self.azimuth.cos(), sine * self.azimuth.sin(), nv];
+        let peak = self.peak.as_ref().map(|peak| peak.bind(case)).transpose()?;
+        let alpha = peak.map(|peak| peak.scalar(row));
+        let directions = match alpha {
+            Some(alpha) => about_half(self.steps, alpha),
+            None => even(self.steps, if self.over == Over::Sphere { -1.0 } else { 0.0 }),
+        };
+        let node = |(direction, weight)| match (self.over, alpha) {
+            (Over::Half, _) => half(v, direction, weight),
+            (Over::Light, Some(_)) => mirrored(v, direction, weight),
+            (Over::Light, None) => light(v, direction, weight * direction[2]),
+            (Over::Below, _) => light(v, direction.map(|x| -x), weight * direction[2]),
+            (Over::Sphere, _) => light(v, direction, weight),
+        };
+        Ok(directions.into_iter().map(node).collect())
+    }
+
+    fn cosine_to_viewer(&self, row: &[f64], case: &Scope<'_>) -> f64 {
+        let found = case.find(std::slice::from_ref(&self.view));
+        found.and_then(|(first, _)| row.get(first)).copied().unwrap_or(1.0).clamp(0.0, 1.0)
+    }
+
+    /// The integrals of one component, a value for each call, for the chosen rows.
+    pub fn sums(
+        &self,
+        rows: &Rows,
+        case: &Scope<'_>,
+        values: &[f64],
+    ) -> Result<Vec<f64>, Diagnostic> {
+        let mut sums = Vec::new();
+        for (row, values) in self.chosen(rows).into_iter().zip(values.chunks(self.calls())) {
+            let nodes = self.nodes(rows.row(row), case)?;
+            let weighted = |((_, weight), value): (&(Geometry, f64), &f64)| {
+                if *weight == 0.0 { 0.0 } else { weight * value }
+            };
+            sums.push(nodes.iter().zip(values).map(weighted).sum());
+        }
+        Ok(sums)
+    }
+}
+
+/// A parameter of a factor, from a row of the case and the formulas that the law names.
+fn value(
+    name: &str,
+    geometry: &Geometry,
+    row: &[f64],
+    (case, with): (&Scope<'_>, &[(String, Formula)]),
+) -> Option<Vec<f64>> {
+    let with = with.iter().find(|(known, _)| known == name).map(|(_, formula)| formula.eval(row));
+    let cosine = COSINES.iter().find(|(known, _)| *known == name);
+    let direction = DIRECTIONS.iter().find(|(known, _)| *known == name);
+    let own = || {
+        let (first, shape) = case.find(&[name.to_owned()])?;
+        Some(row[first..first + shape.words() as usize].to_vec())
+    };
+    with.or_else(|| cosine.map(|(_, cosine)| vec![cosine(geometry)]))
+        .or_else(|| direction.map(|(_, direction)| direction(geometry).to_vec()))
+        .or_else(own)
+}
+
+fn unknown(name: &str, span: crate::source::Span) -> Diagnostic {
+    let message = format!("neither the geometry nor the case gives a `{name}` of this type");
+    Diagnostic::error(codes::CASE_INVALID, message)
+        .at(span, "in this law")
+        .note("a value for it is given by `with`, such as `with = { f90 = 1 }`")
+}
+
+/// Even azimuths and Gauss-Legendre in the cosine, from `low` to 1, with their solid angles.
+fn even(steps: usize, low: f64) -> Vec<(Vector, f64)> {
+    ring(steps, |x| (low + (1.0 - low) * x, 1.0 - low))
+}
+
+/// Half vectors as GGX of the width alpha is distributed: tan^2 = alpha^2*u/(1 - u).
+fn about_half(steps: usize, alpha: f64) -> Vec<(Vector, f64)> {
+    ring(steps, |u| {
+        let tan2 = alpha * alpha * u / (1.0 - u);
+        let cosine = 1.0 / (1.0 + tan2).sqrt();
+        (cosine, 0.5 * cosine.powi(3) * alpha * alpha / (1.0 - u).powi(2))
+    })
+}
+
+/// Directions at even azimuths whose cosine, with its slope, is a function on [0, 1].
+fn ring(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vector, f64)> {
+    let azimuths = 2 * steps;
+    let mut found = Vec::new();
+    for (x, weight) in gauss_legendre(steps) {
+        let (z, slope) = cosine(0.5 * (x + 1.0));
+        let radius = (1.0 - z * z).max(0.0).sqrt();
+        let solid = 0.5 * weight * slope * 2.0 * PI / azimuths as f64;
+        for step in 0..azimuths {
+            let (sin, cos) = (2.0 * PI * (step as f64 + 0.5) / azimuths as f64).sin_cos();
+            found.push(([radius * cos, radius * sin, z], solid));
+        }
+    }
+    found
+}
+
+/// A call for a light's direction.
+fn light(v: Vector, l: Vector, weight: f64) -> (Geometry, f64) {
+    let sum = [0, 1, 2].map(|index| l[index] + v[index]);
+    let length = dot(sum, sum).sqrt().max(1e-12);
+    (Geometry { l, v, h: sum.map(|value| value / length) }, weight)
+}
+
+/// A call for the light that `h` mirrors towards the viewer: dl = 4*(v.h)*dh.
+fn mirrored(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
+    let vh = dot(v, h);
+    let l = [0, 1, 2].map(|index| 2.0 * vh * h[index] - v[index]);
+    let seen = vh > 0.0 && l[2] > 0.0;
+    (Geometry { l, v, h }, if seen { weight * 4.0 * vh * l[2] } else { 0.0 })
+}
+
+/// A call for a normal of the surface's facets.
+fn half(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
+    let (geometry, _) = mirrored(v, h, weight);
+    (geometry, weight * h[2])
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

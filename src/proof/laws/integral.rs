@@ -1,0 +1,160 @@
+//! Integrals over directions, by a product rule: Gauss-Legendre in the cosine, even azimuths.
+//!
+//! With `p` steps the rule is exact for polynomials of degree `2p - 1` in the direction's
+//! components; a lobe of exponent `s` wants about `sqrt(s)` times as many.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use crate::proof::cases::Rows;
+
+/// Most calls of one law, over all its rows.
+pub const MOST_CALLS: usize = 1 << 17;
+/// Most of a case's rows that are integrated: those that differ in more than the direction.
+pub const MOST_ROWS: usize = 48;
+
+/// What an integral is over, and what it must be.
+#[derive(Debug, Clone)]
+pub struct Integral {
+    /// Parameter that the hemisphere is about; the whole sphere without it.
+    pub about: Option<String>,
+    /// Whether the cosine to `about` is a factor.
+    pub cosine: bool,
+    /// Steps in the cosine; there are twice as many azimuths.
+    pub steps: usize,
+    /// How far off the sum may be: what the rule itself leaves.
+    pub within: f64,
+    /// Whether less than the law's numbers is right too.
+    pub at_most: bool,
+}
+
+/// One direction of the rule in the frame of `about`, which is z, with its weight.
+struct Node {
+    direction: [f64; 3],
+    weight: f64,
+}
+
+impl Integral {
+    fn nodes(&self) -> Vec<Node> {
+        let azimuths = 2 * self.steps;
+        let (low, high) = if self.about.is_some() { (0.0, 1.0) } else { (-1.0, 1.0) };
+        let rings = gauss_legendre(self.steps).into_iter().flat_map(|(x, weight)| {
+            let z = low + (high - low) * (x + 1.0) / 2.0;
+            let (radius, factor) = ((1.0 - z * z).sqrt(), if self.cosine { z } else { 1.0 });
+            let weight = weight * (high - low) / 2.0 * factor * 2.0 * PI / azimuths as f64;
+            (0..azimuths).map(move |step| {
+                let (sin, cos) = (2.0 * PI * (step as f64 + 0.5) / azimuths as f64).sin_cos();
+                Node { direction: [radius * cos, radius * sin, z], weight }
+            })
+        });
+        rings.collect()
+    }
+
+    /// Rows of a case, each once for every direction of the rule in place of the words `direction`.
+    pub fn rows(&self, rows: &Rows, direction: Range<usize>, about: Option<Range<usize>>) -> Rows {
+        let nodes = self.nodes();
+        let chosen =
+            distinct(rows, &direction, &about, MOST_ROWS.min(MOST_CALLS / nodes.len()).max(1));
+        let mut words = Vec::new();
+        for row in chosen {
+            let axis =
+                about.clone().map_or(Some([0.0, 0.0, 1.0]), |about| unit(&rows.row(row)[about]));
+            let Some(axis) = axis else { continue };
+            let frame = frame(axis);
+            for node in &nodes {
+                let mut candidate = rows.row_words(row).to_vec();
+                for (word, component) in direction.clone().zip(0..3) {
+                    let value: f64 = (0..3)
+                        .map(|column| frame[column][component] * node.direction[column])
+                        .sum();
+                    candidate[word] = (value as f32).to_bits();
+                }
+                words.extend(candidate);
+            }
+        }
+        rows.with_words(words)
+    }
+
+    /// The sums of one component, for each row that was integrated.
+    pub fn sums(&self, values: &[f64]) -> Vec<f64> {
+        let nodes = self.nodes();
+        values
+            .chunks(nodes.len())
+            .map(|values| values.iter().zip(&nodes).map(|(value, node)| value * node.weight).sum())
+            .collect()
+    }
+
+    /// How many calls one row takes.
+    pub fn calls(&self) -> usize {
+        2 * self.steps * self.steps
+    }
+
+    /// How far a sum is from what it must be.
+    pub fn off(&self, sum: f64, wanted: f64) -> f64 {
+        if self.at_most { (sum - wanted).max(0.0) } else { (sum - wanted).abs() }
+    }
+}
+
+/// Rows that differ in more than the direction, at most so many of them, from all over.
+fn distinct(
+    rows: &Rows,
+    direction: &Range<usize>,
+    about: &Option<Range<usize>>,
+    most: usize,
+) -> Vec<usize> {
+    let mut seen = std::collections::BTreeSet::new();
+    let differs = |row: &usize| {
+        let mut words = rows.row_words(*row).to_vec();
+        words[direction.clone()].fill(0);
+        seen.insert(words)
+    };
+    let has_axis =
+        |row: &usize| about.clone().is_none_or(|about| unit(&rows.row(*row)[about]).is_some());
+    let all: Vec<usize> = (0..rows.len()).filter(has_axis).filter(differs).collect();
+    let count = all.len().min(most);
+    (0..count).map(|index| all[index * all.len() / count]).collect()
+}
+
+fn unit(vector: &[f64]) -> Option<[f64; 3]> {
+    let &[x, y, z] = vector else { return None };
+    let length = (x * x + y * y + z * z).sqrt();
+    (length.is_finite() && (length - 1.0).abs() < 1e-3)
+        .then(|| [x / length, y / length, z / length])
+}
+
+/// Three axes at right angles, the last of which is given.
+fn frame(z: [f64; 3]) -> [[f64; 3]; 3] {
+    let other = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+    let x = cross(other, z);
+    let length = x.iter().map(|value| value * value).sum::<f64>().sqrt();
+    let x = x.map(|value| value / length);
+    [x, cross(z, x), z]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Nodes and weights on [-1, 1]: the zeros of Legendre's polynomial, found by Newton's method.
+pub fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
+    let node = |index: usize| {
+        let mut x = (PI * (index as f64 + 0.75) / (count as f64 + 0.5)).cos();
+        for _ in 0..32 {
+            let (value, slope) = legendre(count, x);
+            x -= value / slope;
+        }
+        let (_, slope) = legendre(count, x);
+        (x, 2.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..count).map(node).collect()
+}
+
+/// Legendre's polynomial of a degree and its derivative, by the three-term recurrence.
+fn legendre(degree: usize, x: f64) -> (f64, f64) {
+    let (mut before, mut value) = (1.0, x);
+    for n in 2..=degree {
+        let n = n as f64;
+        (before, value) = (value, ((2.0 * n - 1.0) * x * value - (n - 1.0) * before) / n);
+    }
+    (value, degree as f64 * (x * value - before) / (x * x - 1.0))
+}

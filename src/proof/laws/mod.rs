@@ -1,0 +1,289 @@
+//! Laws: what holds between a function's values, whatever the oracle says.
+//!
+//! | law | holds |
+//! |---|---|
+//! | `range = [low, high]` | every component lies there, bounds included, exactly |
+//! | `rising = "x"`, `falling = "x"` | a larger `x` never gives a smaller (larger) value, up to the tolerance |
+//! | `swap = ["l", "v"]` | exchanging the parameters changes nothing: symmetry, reciprocity |
+//! | `even = ["n", "l"]` | negating the parameters changes nothing |
+//! | `continuous = "x", slope = 4` | `x` a little larger changes the value by no more than that slope allows: no jumps |
+//! | `at = { d = 0 }, gives = 1` | the value there, whatever the other parameters are |
+//! | `integral = "l", about = "n", gives = 3.14, within = 0.001` | the integral over the hemisphere of directions `l` about `n`, for the case's other values; over the sphere without `about`; `cosine = true` for the cosine as a factor; `at_most` in place of `gives` for energy; `steps = 16` |
+//! | `reaches = [low, high]` | some row comes at least that low and some that high: the inputs are no trivial ones |
+//! | `albedo = ["d_ggx", "v_smith_ggx"], within = 0.001` | the function's value is the directional albedo of the product of these, by quadrature (see [`Albedo`]); or `gives`, `at_most` |
+//! | `inverse = "g", within = 1e-6` | `g` of the value gives the first parameter back, or that named by `of` |
+//!
+//! The last two are about other functions too: those of the same module by name, others by path.
+
+mod albedo;
+mod integral;
+
+pub use albedo::{Albedo, Over, Wanted};
+pub use integral::Integral;
+
+use std::ops::Range;
+
+use super::cases::Rows;
+use super::formula::Scope;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::execute::kernel::Shape;
+use crate::source::Span;
+use naga::ScalarKind;
+
+/// A kind of law.
+pub struct Kind {
+    pub name: &'static str,
+    pub takes: Takes,
+}
+
+/// What the law's key is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Takes {
+    Numbers,
+    Names,
+    /// A parameter; the largest slope is in `slope`.
+    Slope,
+    /// The direction's parameter; see [`Integral`].
+    Integral,
+    /// Values of parameters; the expected result is in `gives`.
+    Point,
+    /// The factors of a reflectance; see [`Albedo`].
+    Albedo,
+    /// A function that leads back; see [`Inverse`].
+    Inverse,
+}
+
+impl Takes {
+    /// What else the law's table may have.
+    pub fn options(self) -> &'static [&'static str] {
+        match self {
+            Self::Numbers | Self::Names => &[],
+            Self::Slope => &["slope"],
+            Self::Integral => &["about", "cosine", "steps", "gives", "at_most", "within"],
+            Self::Point => &["gives"],
+            Self::Albedo => &[
+                "over",
+                "view",
+                "azimuth",
+                "peak",
+                "with",
+                "component",
+                "steps",
+                "gives",
+                "at_most",
+                "within",
+            ],
+            Self::Inverse => &["of", "within"],
+        }
+    }
+}
+
+/// Every kind.
+pub const KINDS: &[Kind] = &[
+    Kind { name: "range", takes: Takes::Numbers },
+    Kind { name: "reaches", takes: Takes::Numbers },
+    Kind { name: "rising", takes: Takes::Names },
+    Kind { name: "falling", takes: Takes::Names },
+    Kind { name: "swap", takes: Takes::Names },
+    Kind { name: "even", takes: Takes::Names },
+    Kind { name: "continuous", takes: Takes::Slope },
+    Kind { name: "at", takes: Takes::Point },
+    Kind { name: "integral", takes: Takes::Integral },
+    Kind { name: "albedo", takes: Takes::Albedo },
+    Kind { name: "inverse", takes: Takes::Inverse },
+];
+
+/// One law of a case.
+#[derive(Debug)]
+pub struct Law {
+    pub kind: &'static Kind,
+    pub span: Span,
+    pub names: Vec<String>,
+    pub numbers: Vec<f64>,
+    pub at: Vec<(String, Vec<f64>)>,
+    pub integral: Option<Integral>,
+    pub albedo: Option<Albedo>,
+    pub inverse: Option<Inverse>,
+    /// The other functions that the law is about, as they are named.
+    pub partners: Vec<String>,
+}
+
+/// A way back: the function of the law, fed with a row's value and the row's other parameters of
+/// its names, gives a parameter of the row.
+#[derive(Debug, Clone)]
+pub struct Inverse {
+    /// The parameter; the first one without it.
+    pub of: Option<String>,
+    /// How far off it may be, relative to it above 1.
+    pub within: f64,
+}
+
+impl std::fmt::Debug for Kind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// The law as a case file has it. An integral is of many rows: none of them alone breaks it.
+pub fn toml(law: &Law) -> String {
+    let names = law.names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
+    let point = || {
+        law.at
+            .iter()
+            .map(|(name, values)| format!("{name:?} = {values:?}"))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let value = match law.kind.takes {
+        Takes::Numbers => format!("{:?}", law.numbers),
+        Takes::Names => format!("[{names}]"),
+        Takes::Integral | Takes::Albedo | Takes::Inverse => names,
+        Takes::Slope => format!("{names}, slope = {:?}", law.number(0)),
+        Takes::Point => format!("{{ {} }}, gives = {:?}", point(), law.numbers),
+    };
+    format!("{{ {} = {value} }}", law.kind.name)
+}
+
+impl Law {
+    /// A law of a kind, of which nothing else is known yet.
+    pub fn new(kind: &'static Kind, span: Span) -> Self {
+        Self {
+            kind,
+            span,
+            names: Vec::new(),
+            numbers: Vec::new(),
+            at: Vec::new(),
+            integral: None,
+            albedo: None,
+            inverse: None,
+            partners: Vec::new(),
+        }
+    }
+
+    /// The number for a component: a single one is for all.
+    pub fn number(&self, word: usize) -> f64 {
+        self.numbers
+            .get(if self.numbers.len() == 1 { 0 } else { word })
+            .copied()
+            .unwrap_or(f64::NAN)
+    }
+}
+
+/// The kind of that name.
+pub fn find(name: &str) -> Option<&'static Kind> {
+    KINDS.iter().find(|kind| kind.name == name)
+}
+
+/// The rows that the law compares a case's rows with; `None` for laws of single values.
+pub fn transformed(law: &Law, rows: &Rows, scope: &Scope<'_>) -> Result<Option<Rows>, Diagnostic> {
+    if !law.partners.is_empty() {
+        return Ok(None);
+    }
+    if let Some(integral) = &law.integral {
+        let direction = |name: &String| direction(law, name, scope);
+        let over = law.names.first().map(direction).transpose()?.unwrap_or_default();
+        return Ok(Some(integral.rows(
+            rows,
+            over,
+            integral.about.as_ref().map(direction).transpose()?,
+        )));
+    }
+    let mut words = rows.words.clone();
+    let places: Vec<_> =
+        law.names.iter().map(|name| place(law, name, scope)).collect::<Result<_, _>>()?;
+    for row in words.chunks_mut(rows.stride) {
+        match law.kind.name {
+            "rising" | "falling" => {
+                words_of(&places).for_each(|word| raise(&mut row[word], rows.kinds[word]))
+            }
+            "continuous" => {
+                words_of(&places).for_each(|word| nudge(&mut row[word], rows.kinds[word]))
+            }
+            "even" => words_of(&places).for_each(|word| row[word] ^= 0x8000_0000),
+            "swap" => swap(row, &places),
+            "at" => set(law, row, scope)?,
+            _ => return Ok(None),
+        }
+    }
+    Ok(Some(rows.with_words(words)))
+}
+
+fn place<'a>(
+    law: &Law,
+    name: &str,
+    scope: &'a Scope<'_>,
+) -> Result<(usize, &'a Shape), Diagnostic> {
+    let parts: Vec<String> = name.split('.').map(str::to_owned).collect();
+    scope.find(&parts).ok_or_else(|| scope.unknown(name).at(law.span, "in this law"))
+}
+
+/// Words of three floats.
+fn direction(law: &Law, name: &str, scope: &Scope<'_>) -> Result<Range<usize>, Diagnostic> {
+    let (first, shape) = place(law, name, scope)?;
+    if shape.kinds() == [ScalarKind::Float; 3] {
+        return Ok(first..first + 3);
+    }
+    Err(Diagnostic::error(
+        codes::CASE_INVALID,
+        format!("`{name}` is no direction: it has not three floats"),
+    )
+    .at(law.span, "in this law"))
+}
+
+fn words_of<'a>(places: &'a [(usize, &Shape)]) -> impl Iterator<Item = usize> + 'a {
+    places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize)
+}
+
+/// A value a little larger: enough to cross an edge that a case goes close to.
+fn nudge(word: &mut u32, kind: ScalarKind) {
+    if kind == ScalarKind::Float {
+        let value = f32::from_bits(*word);
+        *word = (value + value.abs() / 256.0 + 1.0 / 4096.0).to_bits();
+    }
+}
+
+/// A value one part in sixteen larger, at least by the smallest normal number.
+fn raise(word: &mut u32, kind: ScalarKind) {
+    *word = match kind {
+        ScalarKind::Float => {
+            let value = f32::from_bits(*word);
+            (value + value.abs() / 16.0 + f32::MIN_POSITIVE).to_bits()
+        }
+        _ => word.saturating_add(1),
+    };
+}
+
+fn swap(row: &mut [u32], places: &[(usize, &Shape)]) {
+    if let [(first, shape), (second, other)] = places {
+        for word in 0..shape.words().min(other.words()) as usize {
+            row.swap(first + word, second + word);
+        }
+    }
+}
+
+fn set(law: &Law, row: &mut [u32], scope: &Scope<'_>) -> Result<(), Diagnostic> {
+    for (name, values) in &law.at {
+        let (first, shape) = place(law, name, scope)?;
+        for (index, kind) in shape.kinds().into_iter().enumerate() {
+            let value =
+                values.get(if values.len() == 1 { 0 } else { index }).copied().unwrap_or(0.0);
+            row[first + index] = super::cases::word(value, kind);
+        }
+    }
+    Ok(())
+}
+
+/// How far a value breaks a law, beyond nothing: `value` of the row itself, `other` of the
+/// transformed row, which is `moved` away, `word` the component.
+pub fn broken_by(law: &Law, value: f64, other: Option<f64>, moved: f64, word: usize) -> f64 {
+    let number = |index: usize| law.number(index);
+    match (law.kind.name, other) {
+        ("continuous", Some(other)) => ((other - value).abs() - number(0) * moved).max(0.0),
+        ("range", _) => (number(0) - value).max(value - number(1)).max(0.0),
+        ("rising", Some(other)) => (value - other).max(0.0),
+        ("falling", Some(other)) => (other - value).max(0.0),
+        ("swap" | "even", Some(other)) => (other - value).abs(),
+        ("at", Some(other)) => (other - number(word)).abs(),
+        _ => 0.0,
+    }
+}

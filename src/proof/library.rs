@@ -1,0 +1,302 @@
+//! A package of shader modules, composed for proof: the shipped library or a user's own.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::cases::{self, File};
+use super::check::{self, Open, Report};
+use super::ratchet::{self, Ratchet};
+use crate::bundle::Language;
+use crate::compose::{self, Composed, Keep, Options};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::Settings;
+use crate::project::LIBRARY;
+use crate::resolve::{self, Packages};
+use crate::source::{self, Embedded, Files, Memory, Package, ReadError, SourceSet};
+use crate::validate::{self, Validated};
+
+/// A package and those it may import, shared by threads.
+#[derive(Clone)]
+pub struct Library {
+    name: String,
+    files: Arc<dyn Files>,
+    dependencies: Vec<(String, Arc<dyn Files>)>,
+}
+
+impl Library {
+    /// The library that the binary carries.
+    pub fn embedded() -> Self {
+        Self::new(LIBRARY, Arc::new(Embedded), Vec::new())
+    }
+
+    /// A package with its dependencies, by name.
+    pub fn new(
+        name: &str,
+        files: Arc<dyn Files>,
+        dependencies: Vec<(String, Arc<dyn Files>)>,
+    ) -> Self {
+        Self { name: name.to_owned(), files, dependencies }
+    }
+
+    /// Name in import paths.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Paths of all case files: TOML files beside a module of the same name.
+    pub fn case_files(&self) -> Vec<String> {
+        let modules = self.files.list(&["wesl", "wgsl", "glsl"]);
+        let has_module = |path: &str| {
+            let stem = path.trim_end_matches("toml");
+            modules.iter().any(|module| {
+                module.strip_prefix(stem).is_some_and(|rest| !rest.contains(['.', '/']))
+            })
+        };
+        self.files.list(&["toml"]).into_iter().filter(|path| has_module(path)).collect()
+    }
+
+    /// Paths of all modules that are no programs: `lighting::spot`.
+    pub fn modules(&self) -> Vec<String> {
+        let paths =
+            self.files.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
+        paths.map(|path| path.trim_end_matches(".wesl").replace('/', "::")).collect()
+    }
+
+    /// The text of a file of the package, if it is there.
+    pub fn text(&self, path: &str) -> Option<String> {
+        self.files.read(path).ok().flatten()
+    }
+
+    /// First path components of the modules: `lighting`, `brdf`, and so on.
+    pub fn folders(&self) -> Vec<String> {
+        let mut folders: Vec<_> = self
+            .files
+            .list(&["wesl"])
+            .iter()
+            .filter_map(|path| Some(path.split_once(['/', '.'])?.0.to_owned()))
+            .collect();
+        folders.dedup();
+        folders
+    }
+
+    /// Checks case files (paths below the package) in the languages on the open executors, which
+    /// are held to what was recorded of them.
+    pub fn check(
+        &self,
+        sources: &Mutex<SourceSet>,
+        paths: &[String],
+        languages: &[Language],
+        open: &mut [Open],
+    ) -> Result<Report, Diagnostics> {
+        let ratchet = self.ratchet(sources)?;
+        let options = check::Options {
+            references: self.has_references(),
+            ratchet: ratchet.as_ref(),
+            ..check::Options::default()
+        };
+        self.check_with(sources, paths, languages, open, &options)
+    }
+
+    /// Whether the crate's references are about this package.
+    pub fn has_references(&self) -> bool {
+        self.name == LIBRARY
+    }
+
+    /// What drivers were measured to need of the package's tolerances, if that is recorded.
+    pub fn ratchet(&self, sources: &Mutex<SourceSet>) -> Result<Option<Ratchet>, Diagnostics> {
+        let mut sources = lock(sources);
+        let id = source::read(&mut sources, &self.package(), ratchet::FILE)
+            .map_err(|error| vec![error.into()])?;
+        id.map(|id| Ratchet::parse(&sources.get(id).text, id))
+            .transpose()
+            .map_err(|error| vec![error])
+    }
+
+    /// As [`Self::check`], with options.
+    pub fn check_with(
+        &self,
+        sources: &Mutex<SourceSet>,
+        paths: &[String],
+        languages: &[Language],
+        open: &mut [Open],
+        options: &check::Options<'_>,
+    ) -> Result<Report, Diagnostics> {
+        let files = self.read(sources, paths)?;
+        let subjects = |module: &str, language: Language, functions: &[String]| {
+            self.module(sources, module, language, functions)
+        };
+        check::check_with(&files, languages, &subjects, open, options)
+    }
+
+    /// The case files of these paths, each with its module's path.
+    pub(super) fn read(
+        &self,
+        sources: &Mutex<SourceSet>,
+        paths: &[String],
+    ) -> Result<Vec<(String, File)>, Diagnostics> {
+        let mut sources = lock(sources);
+        let package = self.package();
+        let mut files = Vec::new();
+        for path in paths {
+            let id =
+                source::read(&mut sources, &package, path).map_err(|error| vec![error.into()])?;
+            let id = id.ok_or_else(|| {
+                vec![Diagnostic::error(
+                    codes::UNREADABLE,
+                    format!("there is no case file `{path}`"),
+                )]
+            })?;
+            files.push((
+                path.trim_end_matches(".toml").replace('/', "::"),
+                cases::parse(&sources, id)?,
+            ));
+        }
+        Ok(files)
+    }
+
+    /// A WESL module with everything it declares, and the map back to its text.
+    pub fn whole(
+        &self,
+        sources: &Mutex<SourceSet>,
+        module: &str,
+    ) -> Result<(Composed, Validated), Diagnostics> {
+        let packages = Packages { root: self.package(), dependencies: self.dependencies() };
+        let root = format!("{}.wesl", module.replace("::", "/"));
+        let graph = resolve::wesl::load(&mut lock(sources), &packages, &root)?;
+        let composed = compose::wesl::compose(&graph, &Settings::default(), &Options::default())?;
+        let validated = validate::validate(&composed)?;
+        Ok((composed, validated))
+    }
+
+    /// A module with the named functions of a module of the package.
+    pub fn module(
+        &self,
+        sources: &Mutex<SourceSet>,
+        module: &str,
+        language: Language,
+        functions: &[String],
+    ) -> Result<Arc<naga::Module>, Diagnostics> {
+        let path = module.replace("::", "/");
+        let (root, extra) = match language {
+            Language::Wesl => {
+                let wesl = format!("{path}.wesl");
+                let exists = self.files.read(&wesl).is_ok_and(|found| found.is_some());
+                (if exists { wesl } else { format!("{path}.wgsl") }, None)
+            }
+            Language::Glsl => {
+                let text = format!("#version 450\n#include \"{path}.glsl\"\nvoid main() {{}}\n");
+                ("lamplight_check.frag.glsl".to_owned(), Some(text))
+            }
+        };
+        let files = Overlay {
+            base: self.files.clone(),
+            extra: extra.map(|text| (root.clone(), text)).into_iter().collect(),
+        };
+        let packages = Packages {
+            root: Package { name: self.name.clone(), files: Box::new(files) },
+            dependencies: self.dependencies(),
+        };
+        compose_module(sources, &packages, &root, language, functions)
+            .map(|validated| Arc::new(validated.module))
+    }
+
+    /// A module of its own package that imports this one by name.
+    pub fn importing(
+        &self,
+        sources: &Mutex<SourceSet>,
+        root: (&str, &str),
+        language: Language,
+        function: &str,
+    ) -> Result<Validated, Diagnostics> {
+        let files = Memory(BTreeMap::from([(root.0.to_owned(), root.1.to_owned())]));
+        let mut dependencies = self.dependencies();
+        dependencies.push(self.package());
+        let packages = Packages {
+            root: Package { name: "expression".to_owned(), files: Box::new(files) },
+            dependencies,
+        };
+        compose_module(sources, &packages, root.0, language, &[function.to_owned()])
+    }
+
+    fn package(&self) -> Package {
+        shared(&self.name, &self.files)
+    }
+
+    fn dependencies(&self) -> Vec<Package> {
+        self.dependencies.iter().map(|(name, files)| shared(name, files)).collect()
+    }
+}
+
+fn shared(name: &str, files: &Arc<dyn Files>) -> Package {
+    Package {
+        name: name.to_owned(),
+        files: Box::new(Overlay { base: files.clone(), extra: BTreeMap::new() }),
+    }
+}
+
+fn compose_module(
+    sources: &Mutex<SourceSet>,
+    packages: &Packages,
+    root: &str,
+    language: Language,
+    functions: &[String],
+) -> Result<Validated, Diagnostics> {
+    validate::validate(&composed(sources, packages, root, language, functions)?)
+}
+
+fn composed(
+    sources: &Mutex<SourceSet>,
+    packages: &Packages,
+    root: &str,
+    language: Language,
+    functions: &[String],
+) -> Result<Composed, Diagnostics> {
+    let settings = Settings::default();
+    let mut keep = functions.to_vec();
+    match language {
+        Language::Wesl => {
+            let graph = resolve::wesl::load(&mut lock(sources), packages, root)?;
+            compose::wesl::compose(
+                &graph,
+                &settings,
+                &Options { keep: Keep::Items(keep), ..Options::default() },
+            )
+        }
+        Language::Glsl => {
+            let graph = resolve::glsl::load(&mut lock(sources), packages, root)?;
+            keep.push("main".to_owned());
+            compose::glsl::compose(
+                &graph,
+                &settings,
+                &Options { keep: Keep::Items(keep), ..Options::default() },
+            )
+        }
+    }
+}
+
+/// Files with a few more on top.
+struct Overlay {
+    base: Arc<dyn Files>,
+    extra: BTreeMap<String, String>,
+}
+
+impl Files for Overlay {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        match self.extra.get(path) {
+            Some(text) => Ok(Some(text.clone())),
+            None => self.base.read(path),
+        }
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        self.base.list(extensions)
+    }
+
+    fn display(&self, path: &str) -> String {
+        self.base.display(path)
+    }
+}
+
+fn lock(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
+    sources.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,79 @@
+//! `survivors.toml`: mutants that no input can tell from the original, and mutants that no case
+//! kills all the same, each with a reason. The first do not count, the second do.
+//!
+//! ```toml
+//! [[equivalent]]
+//! function = "lighting::spot::cone_smooth"
+//! line = "let t = clamp((c - outer) / (inner - outer), 0.0, 1.0);"
+//! mutation = "`max` in `...`"               # as printed
+//! reason = "why the value is the same"
+//!
+//! [[survivor]]                              # the same keys: why no case tells it
+//! ```
+
+use std::fmt;
+
+use super::report::Outcome;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::proof::library::Library;
+
+/// Name of the file at the package's root.
+const FILE: &str = "survivors.toml";
+
+/// One entry.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Listed {
+    function: String,
+    line: String,
+    mutation: String,
+    pub reason: String,
+    /// Whether no input can tell it, so that it does not count.
+    pub equivalent: bool,
+}
+
+impl Listed {
+    /// Whether the entry means this mutant.
+    pub fn is(&self, outcome: &Outcome) -> bool {
+        self.function == outcome.function
+            && self.line == outcome.line
+            && self.mutation == outcome.words
+    }
+}
+
+impl fmt::Display for Listed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {} (in `{}`)", self.function, self.mutation, self.line)
+    }
+}
+
+/// The entries of the package's list; none without the file.
+pub fn read(library: &Library) -> Result<Vec<Listed>, Diagnostics> {
+    let Some(text) = library.text(FILE) else { return Ok(Vec::new()) };
+    let invalid =
+        |message: String| vec![Diagnostic::error(codes::CASE_SYNTAX, format!("{FILE}: {message}"))];
+    let table: toml::Table =
+        text.parse().map_err(|error: toml::de::Error| invalid(error.message().to_owned()))?;
+    let entries =
+        |key: &str| table.get(key).and_then(toml::Value::as_array).map_or(&[][..], Vec::as_slice);
+    let kinds = [("equivalent", true), ("survivor", false)];
+    kinds
+        .iter()
+        .flat_map(|(key, equivalent)| {
+            entries(key).iter().map(|entry| listed(entry, *equivalent).map_err(invalid))
+        })
+        .collect()
+}
+
+fn listed(entry: &toml::Value, equivalent: bool) -> Result<Listed, String> {
+    let text = |key: &str| match entry.get(key).and_then(toml::Value::as_str) {
+        Some(text) if !text.is_empty() => Ok(text.to_owned()),
+        _ => Err(format!("an entry has no `{key}`: {entry}")),
+    };
+    Ok(Listed {
+        function: text("function")?,
+        line: text("line")?,
+        mutation: text("mutation")?,
+        reason: text("reason")?,
+        equivalent,
+    })
+}

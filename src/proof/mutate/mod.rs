@@ -1,0 +1,104 @@
+//! How much the numeric cases notice: coverage of the library's statements and branches, and
+//! mutants, each a library function with one mistake put in.
+//!
+//! `module -> sites (what could be wrong where) -> mutant -> rows until one fails -> fate`
+//!
+//! A mutant is made in naga's representation and runs in the evaluator in f32, under the same
+//! verdicts as `lamplight check`: it is killed when a row is off by more than its tolerance, when
+//! a law breaks, or when a call does not end. Before that it runs in f64, where an oracle that is
+//! not the code itself holds to nine digits beside those that the code as written loses. Mutants
+//! that no input can tell from the original, and those that live for another reason, are listed
+//! in `survivors.toml` at the package's root.
+
+mod apply;
+mod coverage;
+mod listed;
+mod report;
+mod site;
+mod suite;
+mod words;
+
+pub use coverage::{Coverage, Place, coverage};
+pub use report::{Fate, Outcome, Report};
+
+use std::sync::Mutex;
+
+use rayon::prelude::*;
+
+use super::library::Library;
+use crate::diagnostic::Diagnostics;
+use crate::source::SourceSet;
+use crate::validate::on_large_stack;
+use listed::Listed;
+use site::Site;
+use suite::{Subject, Suite};
+
+/// Runs every mutant of the modules (`lighting::spot`) against their own cases.
+///
+/// # Errors
+/// Mistakes in modules and case files, and cases that fail without any mutation.
+pub fn mutate(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    modules: &[String],
+) -> Result<Report, Diagnostics> {
+    let listed = listed::read(library)?;
+    on_large_stack(|| {
+        let files = suite::files(library, sources, modules)?;
+        let suites = suite::suites(library, sources, &files)?;
+        suites
+            .par_iter()
+            .map(Suite::check)
+            .collect::<Result<(), _>>()
+            .map_err(|error| vec![error])?;
+        let mutants: Vec<(&Suite<'_>, &Subject, Site)> = suites.iter().flat_map(mutants).collect();
+        let texts = sources.lock().map(|sources| sources.clone()).unwrap_or_default();
+        let outcomes = mutants
+            .par_iter()
+            .filter_map(|(suite, subject, site)| outcome(&texts, &listed, suite, subject, site))
+            .collect();
+        Ok(report::report(outcomes, &listed))
+    })
+}
+
+fn mutants<'a, 'f>(
+    suite: &'a Suite<'f>,
+) -> impl Iterator<Item = (&'a Suite<'f>, &'a Subject, Site)> {
+    let sites = |subject: &'a Subject| {
+        site::sites(&suite.whole, &suite.info, subject.function)
+            .into_iter()
+            .map(move |site| (subject, site))
+    };
+    suite.subjects.iter().flat_map(sites).map(move |(subject, site)| (suite, subject, site))
+}
+
+/// What became of one mutant; `None` where it is not valid.
+fn outcome(
+    sources: &SourceSet,
+    listed: &[Listed],
+    suite: &Suite<'_>,
+    subject: &Subject,
+    site: &Site,
+) -> Option<Outcome> {
+    let fate = suite.fate(subject, site)?;
+    let text = words::Text {
+        sources,
+        map: &suite.map,
+        function: &suite.whole.functions[subject.function],
+    };
+    let (place, line) = text.place(site.span);
+    let mut outcome = Outcome {
+        function: format!("{}::{}", suite.module, subject.name),
+        place,
+        line,
+        words: text.words(site),
+        fate,
+    };
+    if let (Fate::Survived, Some(index)) =
+        (outcome.fate, listed.iter().position(|listed| listed.is(&outcome)))
+    {
+        outcome.fate =
+            if listed[index].equivalent { Fate::Equivalent(index) } else { Fate::Explained(index) };
+    }
+    Some(outcome)
+}

@@ -1,0 +1,102 @@
+//! What became of the mutants.
+
+use super::listed::Listed;
+
+/// Share of the mutants that the cases must kill.
+pub const LEAST_SHARE: f64 = 0.97;
+
+/// What became of one mutant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Outcome {
+    /// `lighting::spot::cone_hard`.
+    pub function: String,
+    /// The author's `file:line`.
+    pub place: String,
+    /// That line, trimmed.
+    pub line: String,
+    /// The mistake.
+    pub words: String,
+    pub fate: Fate,
+}
+
+/// How a mutant ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fate {
+    Killed,
+    Survived,
+    /// No case runs the function.
+    Unreached,
+    /// Survived for a reason that is listed, by the index of the entry.
+    Explained(usize),
+    /// Listed as equal to the original, by the index of the entry.
+    Equivalent(usize),
+}
+
+/// All mutants, in the order of modules, functions and text.
+#[derive(Debug, Default)]
+pub struct Report {
+    pub outcomes: Vec<Outcome>,
+    /// Entries of the list that no surviving mutant is like, in words.
+    pub stale: Vec<String>,
+    /// Reasons of the list's entries.
+    reasons: Vec<String>,
+}
+
+pub fn report(outcomes: Vec<Outcome>, listed: &[Listed]) -> Report {
+    let used = |index: usize| {
+        outcomes.iter().any(|outcome| {
+            [Fate::Equivalent(index), Fate::Explained(index)].contains(&outcome.fate)
+        })
+    };
+    let stale = listed
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| !used(*index))
+        .map(|(_, listed)| listed.to_string())
+        .collect();
+    Report { outcomes, stale, reasons: listed.iter().map(|listed| listed.reason.clone()).collect() }
+}
+
+impl Report {
+    /// Mutants killed, and those that count: all but the listed ones.
+    pub fn killed(&self) -> (usize, usize) {
+        let of = |fates: fn(Fate) -> bool| {
+            self.outcomes.iter().filter(|outcome| fates(outcome.fate)).count()
+        };
+        (of(|fate| fate == Fate::Killed), of(|fate| !matches!(fate, Fate::Equivalent(_))))
+    }
+
+    /// Whether enough of them were killed.
+    pub fn passed(&self) -> bool {
+        let (killed, all) = self.killed();
+        killed as f64 >= LEAST_SHARE * all as f64
+    }
+
+    /// One line for each mutant that got through.
+    pub fn survivors(&self) -> String {
+        let through = self.outcomes.iter().filter_map(|outcome| match outcome.fate {
+            Fate::Survived => Some((outcome, "")),
+            Fate::Unreached => Some((outcome, "no case runs this function")),
+            Fate::Explained(index) => {
+                Some((outcome, self.reasons.get(index).map_or("", String::as_str)))
+            }
+            Fate::Killed | Fate::Equivalent(_) => None,
+        });
+        let line = |(outcome, why): (&Outcome, &str)| {
+            let why = if why.is_empty() { String::new() } else { format!(" ({why})") };
+            format!("{}: {}: {}{why}\n", outcome.place, outcome.function, outcome.words)
+        };
+        through.map(line).collect()
+    }
+
+    /// Mutants that are listed as equal to the original.
+    pub fn equivalent(&self) -> usize {
+        self.outcomes.iter().filter(|outcome| matches!(outcome.fate, Fate::Equivalent(_))).count()
+    }
+
+    /// The last line of the report.
+    pub fn summary(&self) -> String {
+        let (killed, all) = self.killed();
+        format!("killed {killed} of {all} mutants")
+    }
+}

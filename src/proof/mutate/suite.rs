@@ -1,0 +1,411 @@
+//! A module with its cases made ready to be run many times.
+
+use std::sync::{Arc, Mutex};
+
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{Expression, Function, Handle, Module, ScalarKind};
+use rayon::prelude::*;
+
+use super::apply::apply;
+use super::report::Fate;
+use super::site::Site;
+use super::words::author;
+use crate::bundle::Language;
+use crate::compose::SourceMap;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::eval::Machine;
+use crate::execute::interpreter::{Calls, Interpreter, value, word_of};
+use crate::execute::kernel::Kernel;
+use crate::proof::cases::{File, Rows};
+use crate::proof::check::Options;
+use crate::proof::check::job::{self, Job, Judge, Target};
+use crate::proof::check::judge;
+use crate::proof::check::law::{self, Given};
+use crate::proof::library::Library;
+use crate::proof::tolerance;
+use crate::source::SourceSet;
+
+/// Loop trips of one call: many times what any case needs, few enough for a mutant without end.
+const TRIPS: u64 = 20_000;
+
+/// Rows run before the first look at them; each later batch is four times as large.
+const FIRST_BATCH: usize = 48;
+
+/// What a value in f64 may be off beside [`Expected`]'s own digits: a share of the value, and a
+/// share of what the case allows f32, since f64 rounds by 2^-29 of it.
+const RELATIVE: f64 = 1e-9;
+const OF_STATED: f64 = 1.0 / (1u64 << 26) as f64;
+
+/// A library module.
+pub struct Suite<'f> {
+    pub module: String,
+    pub map: SourceMap,
+    /// Everything the module declares and reaches, compacted as kernels are.
+    pub whole: Module,
+    pub info: ModuleInfo,
+    /// The module's own functions.
+    pub subjects: Vec<Subject>,
+    pub cases: Vec<Ready<'f>>,
+}
+
+/// A function that the module itself declares.
+pub struct Subject {
+    pub function: Handle<Function>,
+    pub name: String,
+}
+
+/// A case with its rows in batches, telling ones first.
+pub struct Ready<'f> {
+    pub job: Job<'f>,
+    order: Vec<usize>,
+    batches: Vec<Batch>,
+}
+
+/// Rows with what they should give.
+struct Batch {
+    rows: Rows,
+    expected: Vec<Target>,
+    /// How far each word may be from it in f64: twice as far as the code as written is, which is
+    /// what its constants lose as f32; infinite where the oracle is the code, or has no opinion.
+    slack: Vec<f64>,
+}
+
+/// A module's path, and its cases if it has any.
+pub type Named = (String, Option<File>);
+
+/// The case files of the modules.
+pub fn files(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    modules: &[String],
+) -> Result<Vec<Named>, Diagnostics> {
+    let present = library.case_files();
+    let read = |module: &String| {
+        let path = format!("{}.toml", module.replace("::", "/"));
+        if !present.contains(&path) {
+            return Ok((module.clone(), None));
+        }
+        Ok((module.clone(), library.read(sources, &[path])?.pop().map(|(_, file)| file)))
+    };
+    modules.iter().map(read).collect()
+}
+
+/// Composes the modules and prepares their cases.
+pub fn suites<'f>(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    files: &'f [Named],
+) -> Result<Vec<Suite<'f>>, Diagnostics> {
+    files.par_iter().map(|(module, file)| suite(library, sources, module, file.as_ref())).collect()
+}
+
+fn suite<'f>(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    module: &str,
+    file: Option<&'f File>,
+) -> Result<Suite<'f>, Diagnostics> {
+    let (composed, validated) = library.whole(sources, module)?;
+    let mut whole = validated.module;
+    let parsed = Arc::new(whole.clone());
+    naga::compact::compact(&mut whole, naga::compact::KeepUnused::Yes);
+    let info = info(&whole).ok_or_else(|| vec![internal(module)])?;
+    let subjects = subjects(sources, module, &composed.map, &whole);
+    let jobs = match file {
+        Some(file) => job::prepare(
+            module,
+            file,
+            &[Language::Wesl],
+            &|_, _, _| Ok(parsed.clone()),
+            // A mutant is of one module, and what it gives is compared with its oracle.
+            &Options { partners: false, ..Options::default() },
+        )?,
+        None => Vec::new(),
+    };
+    let cases = jobs.into_par_iter().map(ready).collect::<Result<_, _>>()?;
+    Ok(Suite { module: module.to_owned(), map: composed.map, whole, info, subjects, cases })
+}
+
+fn internal(name: &str) -> Diagnostic {
+    Diagnostic::error(codes::EVAL_INTERNAL, format!("`{name}` is not valid after compaction"))
+}
+
+pub fn info(module: &Module) -> Option<ModuleInfo> {
+    Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module).ok()
+}
+
+fn subjects(
+    sources: &Mutex<SourceSet>,
+    module: &str,
+    map: &SourceMap,
+    whole: &Module,
+) -> Vec<Subject> {
+    let Ok(sources) = sources.lock() else { return Vec::new() };
+    let file = format!("{}.wesl", module.replace("::", "/"));
+    let own = |handle| {
+        author(map, whole.functions.get_span(handle))
+            .is_some_and(|span| is_file(&sources.get(span.source).path, &file))
+    };
+    let named = whole.functions.iter().filter(|(handle, _)| own(*handle));
+    named
+        .map(|(function, found)| Subject { function, name: found.name.clone().unwrap_or_default() })
+        .collect()
+}
+
+fn is_file(path: &str, file: &str) -> bool {
+    path == file || path.strip_suffix(file).is_some_and(|rest| rest.ends_with('/'))
+}
+
+fn ready(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
+    let order = order(&job.rows);
+    let interpreter = Interpreter::new(job.kernel()).map_err(|error| vec![error])?;
+    let mut calls = interpreter.calls::<f64>().map_err(|error| vec![error])?;
+    let mut batches = Vec::new();
+    let (mut from, mut size) = (0, FIRST_BATCH);
+    while from < order.len() && !job.expected.is_empty() {
+        let chosen = &order[from..order.len().min(from + size)];
+        let words = chosen.iter().flat_map(|row| job.rows.row_words(*row)).copied().collect();
+        let (rows, expected) = (
+            job.rows.with_words(words),
+            chosen.iter().map(|row| job.expected[*row].clone()).collect::<Vec<_>>(),
+        );
+        let slack = slack(&job, &rows, &expected, &mut calls).map_err(|error| vec![error])?;
+        batches.push(Batch { rows, expected, slack });
+        (from, size) = (from + size, size * 4);
+    }
+    drop(calls);
+    Ok(Ready { order, batches, job })
+}
+
+fn slack(
+    job: &Job<'_>,
+    rows: &Rows,
+    expected: &[Target],
+    calls: &mut Calls<'_, f64>,
+) -> Result<Vec<f64>, Diagnostic> {
+    let kinds = job.kernel().result_kinds();
+    let mut slack = Vec::new();
+    for (index, target) in expected.iter().enumerate() {
+        let found = exact(calls, rows.row_words(index), &kinds)?;
+        let values = tolerance::values(&job.terms, rows.row(index));
+        let is_known = !matches!(job.oracle, Judge::Eval(_)) && !judge::is_indeterminate(target);
+        slack.extend((0..kinds.len()).map(|word| {
+            let value = target.expected.value[word];
+            let stated = tolerance::allowed(&job.terms, &values, word, value);
+            let off = nearest(target, &found, word);
+            let own = 2.0 * off + RELATIVE * value.abs() + OF_STATED * stated;
+            if is_known && off <= stated { own } else { f64::INFINITY }
+        }));
+    }
+    Ok(slack)
+}
+
+/// One row's result in f64.
+fn exact(
+    calls: &mut Calls<'_, f64>,
+    row: &[u32],
+    kinds: &[ScalarKind],
+) -> Result<Vec<f64>, Diagnostic> {
+    Ok(calls.call(row)?.iter().zip(kinds).map(|(slot, kind)| value(*slot, *kind)).collect())
+}
+
+/// Distance of a word from what is right of it.
+fn nearest(target: &Target, found: &[f64], word: usize) -> f64 {
+    let all = std::iter::once(&target.expected.value).chain(&target.expected.alternatives);
+    all.map(
+        |value| if found[word] == value[word] { 0.0 } else { (found[word] - value[word]).abs() },
+    )
+    .fold(f64::INFINITY, f64::min)
+}
+
+/// Rows at the ends of their columns and of simple values take turns with rows from all over.
+fn order(rows: &Rows) -> Vec<usize> {
+    let column = |index: usize| (0..rows.len()).map(move |row| rows.row(row)[index]);
+    let ends: Vec<(f64, f64)> = (0..rows.stride.min(rows.row(0).len()))
+        .map(|index| {
+            (
+                column(index).fold(f64::INFINITY, f64::min),
+                column(index).fold(f64::NEG_INFINITY, f64::max),
+            )
+        })
+        .collect();
+    let is_edge = |(value, (low, high)): (&f64, &(f64, f64))| {
+        value == low || value == high || *value == 0.0 || value.abs() == 1.0
+    };
+    let edges = |row: usize| rows.row(row).iter().zip(&ends).filter(|pair| is_edge(*pair)).count();
+    // A step near the golden section visits rows evenly.
+    let count = rows.len();
+    let step = (1..=count)
+        .rev()
+        .find(|step| *step as f64 <= count as f64 * 0.618 && gcd(*step, count) == 1)
+        .unwrap_or(1);
+    let spread = (0..count).map(|index| index * step % count);
+    let mut by_edges: Vec<usize> = spread.clone().collect();
+    by_edges.sort_by_key(|row| std::cmp::Reverse(edges(*row)));
+    let mut seen = vec![false; count];
+    spread
+        .zip(by_edges)
+        .flat_map(|(even, edge)| [even, edge])
+        .filter(|row| !std::mem::replace(&mut seen[*row], true))
+        .collect()
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+impl Suite<'_> {
+    /// The first case that fails, or does not run, without any mistake put in.
+    pub fn check(&self) -> Result<(), Diagnostic> {
+        let failing = self.cases.iter().find(|case| self.run(case, None) != Some(Fate::Survived));
+        failing.map_or(Ok(()), |case| {
+            let name = &case.job.case.function;
+            Err(Diagnostic::error(
+                codes::CASE_INVALID,
+                format!("`{name}` fails this case as it is"),
+            )
+            .at(case.job.case.span, "in this case"))
+        })
+    }
+
+    /// Whether a case notices the mistake; `None` where it is not valid.
+    pub fn fate(&self, subject: &Subject, site: &Site) -> Option<Fate> {
+        let reaching = |case: &&Ready<'_>| find(&case.job.kernel().module, &subject.name).is_some();
+        let (own, others): (Vec<_>, Vec<_>) = self
+            .cases
+            .iter()
+            .filter(reaching)
+            .partition(|case| case.job.case.function == subject.name);
+        let mut fate =
+            if own.is_empty() && others.is_empty() { Some(Fate::Unreached) } else { None };
+        for case in own.into_iter().chain(others) {
+            fate = self.run(case, Some((subject, site)));
+            if fate != Some(Fate::Survived) {
+                break;
+            }
+        }
+        fate
+    }
+
+    fn run(&self, case: &Ready<'_>, mistake: Option<(&Subject, &Site)>) -> Option<Fate> {
+        let kernel = case.job.kernel();
+        let mut module = kernel.module.clone();
+        if let Some((subject, site)) = mistake {
+            let ty = |handle: Handle<Expression>| {
+                Some(self.info[subject.function][handle].ty.inner_with(&self.whole.types).clone())
+            };
+            let function = find(&module, &subject.name)?;
+            apply(module.functions.get_mut(function), site, ty).then_some(())?;
+        }
+        let interpreter = Interpreter::of(kernel, &module).ok()?;
+        Some(if case.notices(&interpreter).unwrap_or(true) { Fate::Killed } else { Fate::Survived })
+    }
+}
+
+fn find(module: &Module, name: &str) -> Option<Handle<Function>> {
+    module
+        .functions
+        .iter()
+        .find(|(_, function)| function.name.as_deref() == Some(name))
+        .map(|(handle, _)| handle)
+}
+
+impl Ready<'_> {
+    /// Whether a value is off, a law broken, or too much left open.
+    fn notices(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
+        Ok(self.is_off(interpreter)? || self.fails(interpreter)?)
+    }
+
+    /// Whether a value in f64 is off: the code as written, compared to nearly all its digits.
+    fn is_off(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
+        let kinds = self.job.kernel().result_kinds();
+        let mut calls = interpreter.calls::<f64>()?;
+        calls.machine.loop_limit = TRIPS;
+        for batch in &self.batches {
+            for (index, target) in batch.expected.iter().enumerate() {
+                let found = exact(&mut calls, batch.rows.row_words(index), &kinds)?;
+                let slack = &batch.slack[index * kinds.len()..];
+                // What is no number is infinitely far, but from an oracle without an opinion.
+                if (0..kinds.len()).any(|word| nearest(target, &found, word) > slack[word]) {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether a row in f32 or a law fails, as `lamplight check` judges them.
+    fn fails(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
+        let mut runner = Runner::new(self.job.kernel(), interpreter)?;
+        let words = self.job.kernel().result_words() as usize;
+        let mut results = vec![0; words * self.job.rows.len()];
+        let mut order = self.order.iter();
+        for Batch { rows, expected, .. } in &self.batches {
+            let found = runner.run(&rows.words)?;
+            if !judge::judge(&self.job, rows, expected, &found).failing.is_empty() {
+                return Ok(true);
+            }
+            found.chunks(words).zip(&mut order).for_each(|(found, row)| {
+                results[row * words..(row + 1) * words].copy_from_slice(found)
+            });
+        }
+        if self.batches.is_empty() {
+            results = runner.run(&self.job.rows.words)?;
+        }
+        if judge::judge(&self.job, &self.job.rows, &self.job.expected, &results).too_ambiguous {
+            return Ok(true);
+        }
+        for law in &self.job.laws {
+            let transformed = law.rows.as_ref().map(|rows| runner.run(&rows.words)).transpose()?;
+            let transformed = law.rows.as_ref().zip(transformed.as_deref());
+            let given = Given {
+                rows: &self.job.rows,
+                expected: &self.job.expected,
+                results: &results,
+                transformed,
+            };
+            if law::judge(&self.job, law.law, &given).broken > 0 {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Runs every row of the case, for what the machine records meanwhile.
+    pub fn record(
+        &self,
+        interpreter: &Interpreter,
+        seen: &mut dyn FnMut(&Machine<'_, f32>),
+    ) -> Result<(), Diagnostic> {
+        let mut runner = Runner::new(self.job.kernel(), interpreter)?;
+        runner.run(&self.job.rows.words)?;
+        seen(&runner.calls.machine);
+        Ok(())
+    }
+}
+
+/// Runs rows of a kernel in f32.
+struct Runner<'p> {
+    calls: Calls<'p, f32>,
+    kinds: Vec<ScalarKind>,
+    stride: usize,
+}
+
+impl<'p> Runner<'p> {
+    fn new(kernel: &Kernel, interpreter: &'p Interpreter) -> Result<Self, Diagnostic> {
+        let mut calls = interpreter.calls::<f32>()?;
+        calls.machine.loop_limit = TRIPS;
+        Ok(Self { calls, kinds: kernel.result_kinds(), stride: kernel.input_words() as usize })
+    }
+
+    /// A function without parameters has one row.
+    fn run(&mut self, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        let mut results = Vec::new();
+        let count = inputs.len().checked_div(self.stride).unwrap_or(1);
+        for row in 0..count {
+            let found = self.calls.call(&inputs[row * self.stride..(row + 1) * self.stride])?;
+            results.extend(found.iter().zip(&self.kinds).map(|(slot, kind)| word_of(*slot, *kind)));
+        }
+        Ok(results)
+    }
+}

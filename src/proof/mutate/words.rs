@@ -1,0 +1,115 @@
+//! A mistake in the author's words and place.
+
+use naga::{Expression, Function, Handle, Span};
+
+use super::site::{Edit, How, Site};
+use crate::compose::SourceMap;
+use crate::source::{self, SourceSet};
+
+/// Characters of an excerpt.
+const LONGEST: usize = 80;
+
+/// Where the text of a composed function came from.
+pub struct Text<'a> {
+    pub sources: &'a SourceSet,
+    pub map: &'a SourceMap,
+    pub function: &'a Function,
+}
+
+impl Text<'_> {
+    /// `file:line` and the trimmed line.
+    pub fn place(&self, span: Span) -> (String, String) {
+        let Some(found) = author(self.map, span) else { return ("?".to_owned(), String::new()) };
+        let source = self.sources.get(found.source);
+        let (line, _) = self.sources.position(found.source, found.start as usize);
+        let text = source.text.lines().nth(line - 1).unwrap_or_default().trim();
+        (format!("{}:{line}", source.path), text.to_owned())
+    }
+
+    /// What the mistake is.
+    pub fn words(&self, site: &Site) -> String {
+        let whole = self.excerpt(site.span);
+        match &site.edit {
+            Edit::Expression { how, .. } => self.expression(*how, &whole),
+            Edit::Negated { condition, .. } => format!("`{}` negated", self.operand(*condition)),
+            Edit::NoExit { condition, .. } => {
+                format!("no early exit at `{}`", self.operand(*condition))
+            }
+            Edit::NoStore { .. } => format!("no assignment `{whole}`"),
+            Edit::Argument { argument, .. } => {
+                format!("`{}` instead of `{whole}`", self.operand(*argument))
+            }
+        }
+    }
+
+    fn expression(&self, how: How, whole: &str) -> String {
+        match how {
+            How::Swapped => format!("operands swapped in `{whole}`"),
+            How::Operator(operator) => format!("operator `{operator}` in `{whole}`"),
+            How::Kept(operand) => format!("`{}` instead of `{whole}`", self.operand(operand)),
+            How::NoLowerBound => format!("no lower bound in `{whole}`"),
+            How::NoUpperBound => format!("no upper bound in `{whole}`"),
+            How::Number(value) => format!("`{value}` instead of `{whole}`"),
+            How::Whole(value) => format!("`{value}` instead of `{whole}`"),
+            How::Flipped => format!("the opposite of `{whole}`"),
+            How::Function(name) => format!("`{name}` in `{whole}`"),
+        }
+    }
+
+    fn operand(&self, handle: Handle<Expression>) -> String {
+        match self.function.expressions[handle] {
+            Expression::FunctionArgument(index) => self
+                .function
+                .arguments
+                .get(index as usize)
+                .and_then(|argument| argument.name.clone())
+                .unwrap_or_default(),
+            // naga gives the reading of a variable no place.
+            Expression::Load { pointer } => self
+                .variable(pointer)
+                .unwrap_or_else(|| self.excerpt(self.function.expressions.get_span(handle))),
+            _ => self.excerpt(self.function.expressions.get_span(handle)),
+        }
+    }
+
+    fn variable(&self, pointer: Handle<Expression>) -> Option<String> {
+        match self.function.expressions[pointer] {
+            Expression::LocalVariable(variable) => {
+                self.function.local_variables[variable].name.clone()
+            }
+            _ => None,
+        }
+    }
+
+    /// The author's text in single spaces.
+    fn excerpt(&self, span: Span) -> String {
+        let text = author(self.map, span).map_or("?", |found| self.whole_call(found));
+        let spaced = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        match spaced.char_indices().nth(LONGEST) {
+            Some((end, _)) => format!("{}...", &spaced[..end]),
+            None => spaced,
+        }
+    }
+
+    /// naga places a call at the name of what is called: its arguments belong to it.
+    fn whole_call(&self, span: source::Span) -> &str {
+        let text = &self.sources.get(span.source).text;
+        let (name, rest) = (self.sources.text(span), &text[span.end as usize..]);
+        if !name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+            || !rest.starts_with('(')
+        {
+            return name;
+        }
+        let mut depth = 0;
+        let end = rest.bytes().position(|byte| {
+            depth += i32::from(byte == b'(') - i32::from(byte == b')');
+            depth == 0
+        });
+        &text[span.start as usize..span.end as usize + end.map_or(0, |end| end + 1)]
+    }
+}
+
+/// The author's span of a span of the composed text.
+pub fn author(map: &SourceMap, span: Span) -> Option<source::Span> {
+    map.lookup(span.to_range()?)
+}

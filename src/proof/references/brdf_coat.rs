@@ -1,0 +1,23 @@
+//! Sources: Khronos Group, KHR_materials_clearcoat, 2020; Fresnel's equation at normal incidence.
+
+use super::{Arguments, Entry, Expected};
+
+pub const REFERENCES: Entry =
+    Entry { module: "brdf::coat", functions: &[("coat_mix", coat_mix), ("coat_f0", coat_f0)] };
+
+fn coat_mix(a: &mut Arguments<'_>) -> Expected {
+    let (base, coat, share) = (a.vec3(), a.vec3(), (a.f64() * a.f64()).clamp(0.0, 1.0));
+    base.lerp(coat, share).into()
+}
+
+/// The base's index, from its reflectance in air, against the coat's: ((k - n)/(k + n))^2, with
+/// the limit 1 for a reflectance of 1.
+fn coat_f0(a: &mut Arguments<'_>) -> Expected {
+    let (f0, ior) = (a.vec3(), a.f64().max(0.0));
+    let one = |f0: f64| {
+        let s = f0.clamp(0.0, 1.0).sqrt();
+        let base = (1.0 + s) / (1.0 - s);
+        if base.is_finite() { ((base - ior) / (base + ior)).powi(2) } else { 1.0 }
+    };
+    Expected::words(f0.to_array().map(one))
+}

@@ -1,0 +1,106 @@
+//! Sources: Lambert, "Photometria", 1760; Valve's half Lambert; Green, GPU Gems, 2004, chapter 16
+//! (wrap); Oren and Nayar, 1994 (qualitative model); Burley, 2012, section 5.3; Portsmouth, Kutz and
+//! Hill, 2025 (EON); Hill's fit in MaterialX, 2021; Khronos Group,
+//! KHR_materials_diffuse_transmission, 2024.
+
+use super::{Arguments, Entry, Expected};
+use glam::DVec3;
+use std::f64::consts::{FRAC_1_PI, PI};
+
+pub const REFERENCES: Entry = Entry {
+    module: "brdf::diffuse",
+    functions: &[
+        ("lambert", |a| lambert(a.vec3(), a.vec3()).into()),
+        ("half_lambert", |a| (0.5 * a.vec3().dot(a.vec3()) + 0.5).powi(2).into()),
+        ("wrap", wrap),
+        ("oren_nayar", oren_nayar),
+        ("burley", burley),
+        ("eon_g", |a| (eon_g(a.f64()) / PI).into()),
+        ("eon_albedo", |a| eon_albedo(a.f64(), a.f64()).min(1.0).into()),
+        ("eon", eon),
+        ("burley_albedo", burley_albedo),
+        ("diffuse_transmission", diffuse_transmission),
+    ],
+};
+
+/// max(n.l, 0).
+pub fn lambert(n: DVec3, l: DVec3) -> f64 {
+    n.dot(l).max(0.0)
+}
+
+fn wrap(a: &mut Arguments<'_>) -> Expected {
+    let (cosine, w) = (a.vec3().dot(a.vec3()), a.f64().max(0.0));
+    ((cosine + w) / (1.0 + w)).max(0.0).into()
+}
+
+/// cos(tl)*(A + B*max(cos(phi), 0)*sin(max(tl, tv))*tan(min(tl, tv))), from angles.
+fn oren_nayar(a: &mut Arguments<'_>) -> Expected {
+    let (n, l, v, sigma) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
+    let (nl, nv) = (n.dot(l), n.dot(v).max(0.0));
+    if nl <= 0.0 {
+        return 0.0.into();
+    }
+    let (s2, tl, tv) = (sigma * sigma, nl.min(1.0).acos(), nv.min(1.0).acos());
+    let (across_l, across_v) = (l - n * nl, v - n * n.dot(v));
+    let cos_phi = across_l.normalize_or_zero().dot(across_v.normalize_or_zero()).max(0.0);
+    let (rough, slope) = (1.0 - 0.5 * s2 / (s2 + 0.33), 0.45 * s2 / (s2 + 0.09));
+    (nl * (rough + slope * cos_phi * tl.max(tv).sin() * tl.min(tv).tan())).into()
+}
+
+fn burley(a: &mut Arguments<'_>) -> Expected {
+    let (nl, nv, lh, roughness) = (a.f64(), a.f64(), a.f64(), a.f64());
+    let f90 = 0.5 + 2.0 * roughness * lh * lh;
+    let rise = |cosine: f64| 1.0 + (f90 - 1.0) * (1.0 - cosine.clamp(0.0, 1.0)).powi(5);
+    (rise(nl) * rise(nv) * FRAC_1_PI).into()
+}
+
+/// G of the published polynomial, over powers of 1 - mu.
+fn eon_g(mu: f64) -> f64 {
+    let m = 1.0 - mu.clamp(0.0, 1.0);
+    let terms = [0.0571085289, 0.491881867, -0.332181442, 0.0714429953];
+    PI * terms.iter().zip(1..).map(|(term, power)| term * m.powi(power)).sum::<f64>()
+}
+
+/// The constants c1 and c2 of the model.
+const C1: f64 = 0.5 - 2.0 / (3.0 * PI);
+const C2: f64 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
+
+/// E = A*(1 + r*G/pi) with A = 1/(1 + c1*r).
+fn eon_albedo(mu: f64, roughness: f64) -> f64 {
+    let r = roughness.clamp(0.0, 1.0);
+    (1.0 + r * eon_g(mu) / PI) / (1.0 + C1 * r)
+}
+
+/// The single-scattering lobe, and rho_ms/pi*(1 - E_o)*(1 - E_i)/(1 - E_avg).
+fn eon(a: &mut Arguments<'_>) -> Expected {
+    let (albedo, roughness) = (a.vec3().clamp(DVec3::ZERO, DVec3::ONE), a.f64().clamp(0.0, 1.0));
+    let (nl, nv, lv) = (a.f64(), a.f64(), a.f64());
+    if nl <= 0.0 || nv <= 0.0 {
+        return DVec3::ZERO.into();
+    }
+    let level = 1.0 / (1.0 + C1 * roughness);
+    let s = lv - nl * nv;
+    let rim = if s > 0.0 { s / nl.max(nv).max(f64::from(1e-6f32)) } else { s };
+    let single = albedo * FRAC_1_PI * level * (1.0 + roughness * rim).max(0.0);
+    let average = level * (1.0 + C2 * roughness);
+    if roughness == 0.0 {
+        return single.into();
+    }
+    let lost = |mu: f64| (1.0 - eon_albedo(mu, roughness)).max(0.0);
+    let colour = albedo * albedo * average / (1.0 - albedo * (1.0 - average));
+    (single + colour * FRAC_1_PI * lost(nl) * lost(nv) / (1.0 - average)).into()
+}
+
+/// From the smooth to the rough end: a fifth power, and a cubic.
+fn burley_albedo(a: &mut Arguments<'_>) -> Expected {
+    let (x, r) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
+    let smooth = 0.97619 - 0.488095 * (1.0 - x).powi(5);
+    let rough = 1.55754 - 2.02221 * x + 2.56283 * x * x - 1.06244 * x * x * x;
+    ((1.0 - r) * smooth + r * rough).into()
+}
+
+/// Lambert's cosine on either side, by their shares.
+fn diffuse_transmission(a: &mut Arguments<'_>) -> Expected {
+    let (nl, share) = (a.f64(), a.f64().clamp(0.0, 1.0));
+    (((1.0 - share) * nl.max(0.0) + share * (-nl).max(0.0)) * FRAC_1_PI).into()
+}

@@ -1,0 +1,85 @@
+//! Sources: Fresnel's equations, for a real and for a complex index (Born, Wolf, Principles of
+//! Optics, sections 1.5 and 14.2); Kutz, Hašan, Edmondson, 2021; Jakob et al., 2014.
+
+use super::{Arguments, Entry, Expected};
+use glam::{DVec2, DVec3};
+
+pub const REFERENCES: Entry = Entry {
+    module: "brdf::fresnel",
+    functions: &[
+        ("f0_from_ior", |a| dielectric(1.0, a.f64().max(0.0)).into()),
+        ("ior_from_f0", |a| ior_from_f0(a.f64()).into()),
+        ("f_dielectric", |a| dielectric(a.f64(), a.f64()).into()),
+        ("f_conductor", f_conductor),
+        ("f_conductor_channel", |a| conductor(a.f64(), a.f64(), a.f64()).into()),
+        ("f_schlick_f82", f_schlick_f82),
+        ("f_average_schlick", f_average_schlick),
+    ],
+};
+
+/// Both amplitudes from the angles, by Snell's law; total reflection where there is no angle.
+pub fn dielectric(mu: f64, eta: f64) -> f64 {
+    let (cos_i, eta) = (mu.clamp(0.0, 1.0), eta.clamp(0.0, 1e9));
+    if eta == 1.0 {
+        return 0.0;
+    }
+    let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
+    if eta == 0.0 || sin2_t >= 1.0 {
+        return 1.0;
+    }
+    let cos_t = (1.0 - sin2_t).sqrt();
+    let across = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    let along = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    (across * across + along * along) / 2.0
+}
+
+/// (1 + s)/(1 - s), s the root of a reflectance of at most what f32 has for 0.9999.
+fn ior_from_f0(f0: f64) -> f64 {
+    let s = f0.clamp(0.0, f64::from(0.9999f32)).sqrt();
+    (1.0 + s) / (1.0 - s)
+}
+
+fn mul(a: DVec2, b: DVec2) -> DVec2 {
+    DVec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
+}
+
+fn div(a: DVec2, b: DVec2) -> DVec2 {
+    mul(a, DVec2::new(b.x, -b.y)) / b.length_squared()
+}
+
+/// The root with a positive real part.
+fn sqrt(z: DVec2) -> DVec2 {
+    let size = z.length();
+    let imaginary = ((size - z.x).max(0.0) / 2.0).sqrt();
+    DVec2::new(((size + z.x).max(0.0) / 2.0).sqrt(), imaginary.copysign(z.y))
+}
+
+/// The amplitudes with the complex index n + ik: w = eta*cos_t = sqrt(eta^2 - sin^2).
+pub fn conductor(c: f64, n: f64, k: f64) -> f64 {
+    let eta2 = mul(DVec2::new(n, k), DVec2::new(n, k));
+    let w = sqrt(eta2 - DVec2::new(1.0 - c * c, 0.0));
+    let share = |a: DVec2, b: DVec2| div(a - b, a + b).length_squared();
+    (share(DVec2::new(c, 0.0), w) + share(eta2 * c, w)) / 2.0
+}
+
+/// Three wavelengths, their parameters held to the range that the documentation names.
+fn f_conductor(a: &mut Arguments<'_>) -> Expected {
+    let (mu, n, k) = (a.f64(), a.vec3(), a.vec3());
+    let [least, thin, most] = [1e-7f32, 1e-4, 1e4].map(f64::from);
+    let one = |n: f64, k: f64| conductor(mu.clamp(least, 1.0), n.clamp(thin, most), k.clamp(0.0, most));
+    DVec3::new(one(n.x, k.x), one(n.y, k.y), one(n.z, k.z)).into()
+}
+
+/// Schlick's approximation, and the term that gives the tint at the cosine of 1/7.
+fn f_schlick_f82(a: &mut Arguments<'_>) -> Expected {
+    let (f0, tint, mu) = (a.vec3(), a.vec3(), a.f64().clamp(0.0, 1.0));
+    let schlick = |mu: f64| f0 + (1.0 - f0) * (1.0 - mu).powi(5);
+    let lobe = |mu: f64| mu * (1.0 - mu).powi(6);
+    let m = 1.0 / 7.0;
+    (schlick(mu) - lobe(mu) / lobe(m) * schlick(m) * (1.0 - tint)).max(DVec3::ZERO).into()
+}
+
+fn f_average_schlick(a: &mut Arguments<'_>) -> Expected {
+    let (f0, f90) = (a.vec3(), a.vec3());
+    (f0 + (f90 - f0) / 21.0).into()
+}

@@ -1,0 +1,79 @@
+//! Sources: Estevez and Kulla, 2017; Neubelt and Pettineo, 2013; Khronos Group,
+//! KHR_materials_sheen, 2020; the fit of the albedo: MaterialX shader library, 2020.
+
+use super::{Arguments, Entry, Expected};
+use std::f64::consts::PI;
+
+pub const REFERENCES: Entry = Entry {
+    module: "brdf::sheen",
+    functions: &[
+        ("d_charlie", |a| d_charlie(a.f64(), a.f64()).into()),
+        ("v_neubelt", v_neubelt),
+        ("charlie_exponent", |a| exponent(a.f64(), a.f64()).into()),
+        ("charlie_lambda", |a| lambda(a.f64(), a.f64()).into()),
+        ("v_charlie", v_charlie),
+        ("sheen_albedo", |a| sheen_albedo(a.f64(), a.f64()).into()),
+        ("sheen_scale", sheen_scale),
+    ],
+};
+
+/// (2 + 1/alpha)*sin^(1/alpha)/(2*pi).
+pub fn d_charlie(nh: f64, alpha: f64) -> f64 {
+    let (power, cosine) = (1.0 / alpha.max(f64::from(0.001f32)), nh.clamp(0.0, 1.0));
+    (2.0 + power) * cosine.acos().sin().powf(power) / (2.0 * PI)
+}
+
+fn v_neubelt(a: &mut Arguments<'_>) -> Expected {
+    let (nl, nv) = (a.f64(), a.f64());
+    if nl <= 0.0 || nv <= 0.0 {
+        return 0.0.into();
+    }
+    (1.0 / (4.0 * (nl + nv - nl * nv).max(f64::from(1e-6f32)))).into()
+}
+
+/// The fitted curve, its five coefficients for roughness 0 and 1 mixed by the weight.
+fn exponent(x: f64, weight: f64) -> f64 {
+    let smooth = [25.3245, 3.32435, 0.16801, -1.27393, -4.85967];
+    let rough = [21.5473, 3.82987, 0.19823, -1.97760, -4.32054];
+    let mixed: Vec<f64> =
+        smooth.iter().zip(rough).map(|(smooth, rough)| weight * smooth + (1.0 - weight) * rough).collect();
+    let [a, b, c, d, e] = mixed[..] else { return f64::NAN };
+    a / (1.0 + b * x.powf(c)) + d * x + e
+}
+
+/// Mirrored at 1/2 above it.
+fn lambda(mu: f64, alpha: f64) -> f64 {
+    let x = mu.clamp(f64::from(1e-6f32), f64::from(0.999999f32));
+    let weight = (1.0 - alpha.clamp(0.0, 1.0)).powi(2);
+    let power = if x < 0.5 {
+        exponent(x, weight)
+    } else {
+        2.0 * exponent(0.5, weight) - exponent(1.0 - x, weight)
+    };
+    power.exp()
+}
+
+fn v_charlie(a: &mut Arguments<'_>) -> Expected {
+    let (nl, nv, alpha) = (a.f64(), a.f64(), a.f64());
+    if nl <= 0.0 || nv <= 0.0 {
+        return 0.0.into();
+    }
+    let shown = 1.0 / (1.0 + lambda(nv, alpha) + lambda(nl, alpha));
+    (shown / (4.0 * (nl * nv).max(f64::from(1e-12f32)))).into()
+}
+
+/// A quotient of two quadratics in the cosine and alpha.
+fn sheen_albedo(nv: f64, alpha: f64) -> f64 {
+    let (x, y) = (nv.clamp(0.0, 1.0), alpha.clamp(0.0, 1.0));
+    let terms = [1.0, x, y, x * y, x * x, y * y];
+    let sum = |by: [f64; 6]| terms.iter().zip(by).map(|(term, by)| term * by).sum::<f64>();
+    let over = sum([13.67300, -68.78018, 799.08825, -905.00061, 60.28956, 1086.96473]);
+    let under = sum([1.0, 61.57746, 442.78211, 2597.49308, 121.81241, 3045.55075]);
+    (over / under).clamp(0.0, 1.0)
+}
+
+fn sheen_scale(a: &mut Arguments<'_>) -> Expected {
+    let (color, ev, el) = (a.vec3(), a.f64(), a.f64());
+    let left = |albedo: f64| 1.0 - color.max_element() * albedo;
+    left(ev).min(left(el)).clamp(0.0, 1.0).into()
+}

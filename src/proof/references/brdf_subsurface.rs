@@ -1,0 +1,36 @@
+//! Source: Christensen and Burley, 2015, equations 3, 5 and 11.
+
+use super::{Arguments, Entry, Expected};
+use std::f64::consts::PI;
+
+pub const REFERENCES: Entry = Entry {
+    module: "brdf::subsurface",
+    functions: &[
+        ("diffusion_profile", |a| profile(a.f64(), a.f64()).into()),
+        ("diffusion_cdf", |a| cdf(a.f64() * a.f64()).into()),
+        ("diffusion_s", diffusion_s),
+    ],
+};
+
+/// s*(exp(-s*r) + exp(-s*r/3))/(8*pi*r), with r at least 1e-4/s.
+pub fn profile(r: f64, s: f64) -> f64 {
+    let s = s.clamp(0.0, 1e6);
+    if s == 0.0 {
+        return 0.0;
+    }
+    let r = r.max(f64::from(1e-4f32) / s);
+    s * ((-s * r).exp() + (-s * r / 3.0).exp()) / (8.0 * PI * r)
+}
+
+/// 1 - exp(-x)/4 - 3*exp(-x/3)/4, without cancellation.
+pub fn cdf(x: f64) -> f64 {
+    let x = x.max(0.0);
+    -0.25 * (-x).exp_m1() - 0.75 * (-x / 3.0).exp_m1()
+}
+
+fn diffusion_s(a: &mut Arguments<'_>) -> Expected {
+    Expected::words(a.vec3().to_array().map(|albedo| {
+        let albedo = albedo.clamp(0.0, 1.0);
+        1.85 - albedo + 7.0 * (albedo - 0.8).abs().powi(3)
+    }))
+}

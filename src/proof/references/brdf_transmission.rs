@@ -1,0 +1,64 @@
+//! Sources: Khronos Group, KHR_materials_specular, _ior, _volume, _transmission and _dispersion,
+//! 2021 to 2024; Beer's and Snell's laws; Walter et al., 2007, equations 33 and 34.
+
+use super::brdf_fresnel::dielectric;
+use super::{Arguments, Entry, Expected};
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+
+pub const REFERENCES: Entry = Entry {
+    module: "brdf::transmission",
+    functions: &[
+        ("specular_f0", specular_f0),
+        ("volume_transmittance", volume_transmittance),
+        ("refract_exit", refract_exit),
+        ("transmission_roughness", |a| (a.f64() * (2.0 * a.f64() - 2.0).clamp(0.0, 1.0)).into()),
+        ("btdf_thin", btdf_thin),
+        ("dispersion_ior", dispersion_ior),
+    ],
+};
+
+fn specular_f0(a: &mut Arguments<'_>) -> Expected {
+    let (f0, weight) = (dielectric(1.0, a.f64().max(0.0)), a.f64().clamp(0.0, 1.0));
+    ((f0 * a.vec3()).clamp(DVec3::ZERO, DVec3::ONE) * weight).into()
+}
+
+/// exp(-x*sigma) with sigma = -ln(color)/d.
+fn volume_transmittance(a: &mut Arguments<'_>) -> Expected {
+    let (color, x, d) = (a.vec3(), a.f64(), a.f64());
+    if x <= 0.0 || d <= 0.0 {
+        return DVec3::ONE.into();
+    }
+    let ways = (x / d).min(1e6);
+    let one = |color: f64| if color <= 0.0 { 0.0 } else { (ways * color.min(1.0).ln()).exp() };
+    Expected::words(color.to_array().map(one))
+}
+
+/// From Snell's law: the part along the surface shrinks by the index, the rest points inwards.
+fn refract_exit(a: &mut Arguments<'_>) -> Expected {
+    let (v, n, ior, thickness) = (a.vec3(), a.vec3(), a.f64().max(1.0), a.f64());
+    let along = -(v - n * n.dot(v)) / ior;
+    let sine2 = (1.0 - n.dot(v).powi(2)) / (ior * ior);
+    ((along - n * (1.0 - sine2).max(0.0).sqrt()) * thickness).into()
+}
+
+/// D*G1(l)*G1(v)/(4*nl*nv) of the light on the viewer's side.
+fn btdf_thin(a: &mut Arguments<'_>) -> Expected {
+    let (n, l, v, alpha) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
+    let l = l - 2.0 * n.dot(l) * n;
+    let (nl, nv) = (n.dot(l), n.dot(v));
+    if nl <= 0.0 || nv <= 0.0 || alpha == 0.0 {
+        return 0.0.into();
+    }
+    let h = (l + v).normalize();
+    let (a2, cos2) = (alpha * alpha, n.dot(h).powi(2));
+    let d = a2 / (PI * (n.cross(h).length_squared() + cos2 * a2).powi(2));
+    let side = |cosine: f64| cosine + (a2 + (1.0 - a2) * cosine * cosine).sqrt();
+    (d / (side(nl) * side(nv)).max(f64::from(1e-12f32))).into()
+}
+
+fn dispersion_ior(a: &mut Arguments<'_>) -> Expected {
+    let ends = DVec2::new(a.f64().max(1.0), a.f64().max(0.0));
+    let half_spread = (ends.x - 1.0) * 0.025 * ends.y;
+    DVec3::new((ends.x - half_spread).max(1.0), ends.x, ends.x + half_spread).into()
+}

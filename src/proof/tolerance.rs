@@ -1,0 +1,144 @@
+//! Error models: how far a result may be off, as a sum of terms.
+//!
+//! With u = 2^-23, y the expected component:
+//!
+//! | term | allows |
+//! |---|---|
+//! | `ulp = k` | k units in the last place of y |
+//! | `abs = a` | a |
+//! | `rel = r` | r*\|y\| |
+//! | `pow = { base, exponent, ulp }` | what WGSL allows `pow(x, s)`: \|y\|*(s*ln2*2^-21 + \|t\|*ln2*u + (3 + 2\|t\|)*u + s*ulp*u/2), t = s*log2(x); `ulp` is the error of the base, 2 by default |
+//! | `scaled = { by, ulp }` | ulp*u*\|by\|: for sums, `by` is the sum of the terms' magnitudes |
+//!
+//! A table may name one part of a struct's result with `for`; terms without it go for all.
+
+use super::formula::{Formula, Scope};
+use crate::diagnostic::Diagnostic;
+use crate::execute::kernel::Shape;
+
+const U: f64 = 1.0 / 8_388_608.0;
+
+/// A kind of term.
+pub struct Kind {
+    pub name: &'static str,
+    /// Keys whose values are formulas.
+    pub formulas: &'static [&'static str],
+    /// Coefficient where none is given.
+    pub default: f64,
+    /// Allowed error from coefficient, formulas' values and expected component.
+    allowed: fn(f64, &[f64], f64) -> f64,
+}
+
+/// Every kind, by name.
+pub const TERMS: &[Kind] = &[
+    Kind { name: "ulp", formulas: &[], default: 1.0, allowed: |k, _, y| k * ulp(y) },
+    Kind { name: "abs", formulas: &[], default: 0.0, allowed: |a, _, _| a },
+    Kind { name: "rel", formulas: &[], default: 0.0, allowed: |r, _, y| r * y.abs() },
+    Kind { name: "pow", formulas: &["base", "exponent"], default: 2.0, allowed: pow },
+    Kind {
+        name: "scaled",
+        formulas: &["by"],
+        default: 1.0,
+        allowed: |k, of, _| k * U * of[0].abs(),
+    },
+];
+
+/// One term of a case; `F` is a text, then a formula.
+#[derive(Debug, Clone)]
+pub struct Term<F> {
+    pub kind: &'static Kind,
+    pub coefficient: f64,
+    pub formulas: Vec<F>,
+    /// Path of the part of the result it goes for.
+    pub only: Option<String>,
+}
+
+impl std::fmt::Debug for Kind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// The kind of that name.
+pub fn find(name: &str) -> Option<&'static Kind> {
+    TERMS.iter().find(|kind| kind.name == name)
+}
+
+/// A term over a function's parameters, with the result words it goes for.
+#[derive(Debug)]
+pub struct Bound {
+    term: Term<Formula>,
+    words: std::ops::Range<usize>,
+}
+
+/// Binds the formulas of a case's terms.
+pub fn bind(
+    terms: &[Term<super::cases::Text>],
+    scope: &Scope<'_>,
+    result: &[Shape],
+) -> Result<Vec<Bound>, Diagnostic> {
+    let all: u32 = result.iter().map(Shape::words).sum();
+    let bound = terms.iter().map(|term| {
+        let words = match &term.only {
+            Some(path) => part(path, result).ok_or_else(|| {
+                let message = format!("the result has no part `{path}`");
+                Diagnostic::error(crate::diagnostic::codes::CASE_INVALID, message)
+            })?,
+            None => 0..all as usize,
+        };
+        let formulas =
+            term.formulas.iter().map(|text| text.bind(scope)).collect::<Result<_, _>>()?;
+        Ok(Bound {
+            term: Term {
+                kind: term.kind,
+                coefficient: term.coefficient,
+                formulas,
+                only: term.only.clone(),
+            },
+            words,
+        })
+    });
+    bound.collect()
+}
+
+fn part(path: &str, result: &[Shape]) -> Option<std::ops::Range<usize>> {
+    let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
+    let (first, shape) = result.first()?.part(&parts)?;
+    Some(first as usize..(first + shape.words()) as usize)
+}
+
+/// The values of the terms' formulas over a row, which do not depend on the component.
+pub fn values(terms: &[Bound], row: &[f64]) -> Vec<f64> {
+    terms.iter().flat_map(|bound| &bound.term.formulas).map(|formula| formula.scalar(row)).collect()
+}
+
+/// What the terms allow one component of a row's result, with the row's [`values`].
+pub fn allowed(terms: &[Bound], values: &[f64], word: usize, expected: f64) -> f64 {
+    let (mut sum, mut rest) = (0.0, values);
+    for Bound { term, words } in terms {
+        let (own, others) = rest.split_at(term.formulas.len().min(rest.len()));
+        rest = others;
+        let allowed = (term.kind.allowed)(term.coefficient, own, expected);
+        if words.contains(&word) && !allowed.is_nan() {
+            sum += allowed;
+        }
+    }
+    sum
+}
+
+/// Distance from the f32 nearest to `y` to its neighbour away from zero.
+pub fn ulp(y: f64) -> f64 {
+    let y = (y as f32).abs().clamp(f32::MIN_POSITIVE, f32::MAX.next_down());
+    f64::from(y.next_up()) - f64::from(y)
+}
+
+/// `exp2(s*log2(x))` as the WGSL specification bounds it, with the base's own error.
+fn pow(ulps: f64, of: &[f64], y: f64) -> f64 {
+    let (x, s) = (of[0], of[1].abs());
+    if x <= 0.0 {
+        return 0.0;
+    }
+    let t = (s * x.log2()).abs();
+    let ln2 = std::f64::consts::LN_2;
+    y.abs() * (s * ln2 * 4.0 * U + t * ln2 * U + (3.0 + 2.0 * t) * U + s * ulps * U / 2.0)
+}

@@ -1,0 +1,82 @@
+//! External programs that judge outputs or make them ready to run.
+
+use std::ffi::OsStr;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A program and the Debian package that brings it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Tool {
+    pub program: &'static str,
+    pub package: &'static str,
+}
+
+pub const GLSLANG: Tool = Tool { program: "glslangValidator", package: "glslang-tools" };
+pub const SPIRV_VAL: Tool = Tool { program: "spirv-val", package: "spirv-tools" };
+pub const SPIRV_OPT: Tool = Tool { program: "spirv-opt", package: "spirv-tools" };
+pub const CLANG: Tool = Tool { program: "clang++", package: "clang" };
+pub const NODE: Tool = Tool { program: "node", package: "nodejs" };
+
+impl Tool {
+    /// Where it is, if it is installed.
+    pub fn path(self) -> Option<PathBuf> {
+        let folders = std::env::var_os("PATH")?;
+        let files = std::env::split_paths(&folders).map(|folder| folder.join(self.program));
+        files.into_iter().find(|file| file.is_file())
+    }
+
+    /// What to tell someone on whose machine it is missing.
+    pub fn missing(self) -> String {
+        let Self { program, package } = self;
+        format!("`{program}` is not installed\ninstall it with: apt-get install {package}")
+    }
+
+    /// What it calls itself, in one line: another version judges otherwise.
+    pub fn version(self) -> String {
+        let said = Command::new(self.program).arg("--version").stdin(Stdio::null()).output();
+        said.map_or(String::new(), |said| String::from_utf8_lossy(&said.stdout).replace('\n', " "))
+    }
+
+    /// Runs it on bytes; gives what it wrote.
+    ///
+    /// # Errors
+    /// Its words where it refuses the bytes, or why it could not be run.
+    pub fn pipe(self, arguments: &[&str], input: &[u8]) -> Result<Vec<u8>, String> {
+        let failed = |error: io::Error| format!("`{}` could not be run: {error}", self.program);
+        if self.path().is_none() {
+            return Err(self.missing());
+        }
+        let mut child = Command::new(self.program)
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map_err(failed)?;
+        let stdin = child.stdin.take();
+        let said = std::thread::scope(|scope| {
+            // The program may write before it has read everything, or stop reading.
+            scope.spawn(|| stdin.map(|mut stdin| stdin.write_all(input)));
+            child.wait_with_output()
+        });
+        let said = said.map_err(failed)?;
+        if said.status.success() { Ok(said.stdout) } else { Err(words(&said)) }
+    }
+
+    /// Runs it on files.
+    pub fn run(
+        self,
+        arguments: &[impl AsRef<OsStr>],
+        files: impl IntoIterator<Item = impl AsRef<Path>>,
+    ) -> io::Result<Output> {
+        let files = files.into_iter().map(|file| file.as_ref().as_os_str().to_owned());
+        Command::new(self.program).args(arguments).args(files).stdin(Stdio::null()).output()
+    }
+}
+
+/// All that a program said.
+pub fn words(said: &Output) -> String {
+    let all = [said.stdout.as_slice(), said.stderr.as_slice()].concat();
+    String::from_utf8_lossy(&all).trim().to_owned()
+}

@@ -1,0 +1,116 @@
+//! The fenced blocks of a page.
+//!
+//! | info string | the block is |
+//! |---|---|
+//! | `LANGUAGE file=PATH` | a file that the commands after it find at that path |
+//! | `LANGUAGE made=PATH` | what a command before it wrote to that path |
+//! | `console` | commands after `$ ` (continued after `> `), each with its output |
+//! | `console exit=N` | the same; the last command ends with that exit code |
+//! | `text` | text that is not run: a grammar, a diagram |
+
+use std::ops::Range;
+
+use libtest_mimic::Failed;
+
+/// A block and the lines of the page between its fences.
+pub struct Block {
+    pub kind: Kind,
+    /// Lines of the page, from 0.
+    pub lines: Range<usize>,
+}
+
+pub enum Kind {
+    /// To be written before the commands after it.
+    File(String),
+    /// To be compared with what the commands before it wrote.
+    Made(String),
+    /// The exit code of the last command, and all commands.
+    Console(i32, Vec<Command>),
+    /// Not run.
+    Text,
+}
+
+/// A command of a console block.
+pub struct Command {
+    pub text: String,
+    /// The lines of the page that show its output.
+    pub output: Range<usize>,
+}
+
+const FENCE: &str = "```";
+
+/// The blocks of a page, in order.
+pub fn read(lines: &[&str]) -> Result<Vec<Block>, Failed> {
+    let mut blocks = Vec::new();
+    let mut at = 0;
+    while at < lines.len() {
+        let Some(info) = opening(lines[at]) else {
+            at += 1;
+            continue;
+        };
+        let fence = &lines[at][..lines[at].len() - info.len()];
+        let length = lines[at + 1..].iter().position(|line| *line == fence);
+        let length = length.ok_or_else(|| format!("line {}: the block never ends", at + 1))?;
+        let inner = at + 1..at + 1 + length;
+        let kind = kind(info, lines, inner.clone())
+            .and_then(|kind| named(kind, &lines[..at]))
+            .map_err(|reason| format!("line {}: {reason}", at + 1))?;
+        at = inner.end + 1;
+        blocks.push(Block { kind, lines: inner });
+    }
+    Ok(blocks)
+}
+
+/// The info string of a line that opens a block. Four backticks allow three of them within.
+fn opening(line: &str) -> Option<&str> {
+    line.starts_with(FENCE).then(|| line.trim_start_matches('`'))
+}
+
+fn kind(info: &str, lines: &[&str], inner: Range<usize>) -> Result<Kind, String> {
+    let mut words = info.split_whitespace();
+    let language = words.next().unwrap_or_default();
+    let attributes: Vec<(&str, &str)> =
+        words.map(|word| word.split_once('=').unwrap_or((word, ""))).collect();
+    match (language, attributes.as_slice()) {
+        ("text", []) => Ok(Kind::Text),
+        ("console", []) => Ok(Kind::Console(0, commands(lines, inner)?)),
+        ("console", [("exit", code)]) => {
+            let code = code.parse().map_err(|_| format!("`{code}` is no exit code"))?;
+            Ok(Kind::Console(code, commands(lines, inner)?))
+        }
+        (_, [("file", path)]) => Ok(Kind::File((*path).to_owned())),
+        (_, [("made", path)]) => Ok(Kind::Made((*path).to_owned())),
+        _ => Err(format!(
+            "`{info}` is no form of a block: use `console`, `file=PATH`, `made=PATH` or `text`"
+        )),
+    }
+}
+
+/// A reader does not see the info string: the text above a file tells its name.
+fn named(kind: Kind, above: &[&str]) -> Result<Kind, String> {
+    let (Kind::File(path) | Kind::Made(path)) = &kind else { return Ok(kind) };
+    let name = format!("`{path}`");
+    match above.iter().rev().find(|line| !line.is_empty()) {
+        Some(line) if line.contains(&name) => Ok(kind),
+        _ => Err(format!("the line above does not name {name}")),
+    }
+}
+
+fn commands(lines: &[&str], inner: Range<usize>) -> Result<Vec<Command>, String> {
+    let mut commands: Vec<Command> = Vec::new();
+    for at in inner {
+        let line = lines[at];
+        match (line.strip_prefix("$ "), commands.last_mut()) {
+            (Some(text), _) => {
+                commands.push(Command { text: text.to_owned(), output: at + 1..at + 1 })
+            }
+            (None, Some(last)) if last.output.is_empty() && line.starts_with("> ") => {
+                last.text += &format!("\n{}", &line[2..]);
+                last.output = at + 1..at + 1;
+            }
+            (None, Some(last)) => last.output.end = at + 1,
+            (None, None) => return Err("a console block starts with `$ `".to_owned()),
+        }
+    }
+    if commands.is_empty() { Err("a console block has a command".to_owned()) } else { Ok(commands) }
+}

@@ -1,0 +1,274 @@
+//! What the guide and the crate say of each other: titles, links, lists of keys.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use lamplight::diagnostic::guide;
+use lamplight::proof::{formula, laws, tolerance};
+use libtest_mimic::{Failed, Trial};
+
+use super::{folder, generated, pages, stem, title};
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("guide contents list every page", contents),
+        Trial::test("guide links lead somewhere", links),
+        Trial::test("guide every code has a page", codes),
+        Trial::test("guide every command names a page", commands),
+        Trial::test("guide errors on a terminal name a page", errors),
+        Trial::test("guide lists are whole", lists),
+        Trial::test("guide limits are those of the crate", limits),
+    ]
+}
+
+/// The pages by file name, with their texts.
+fn texts() -> Result<BTreeMap<String, String>, Failed> {
+    let read =
+        |path: &std::path::PathBuf| Ok((format!("{}.md", stem(path)), fs::read_to_string(path)?));
+    pages().iter().map(read).collect()
+}
+
+/// `SUMMARY.md` names each page once, by its title.
+fn contents() -> Result<(), Failed> {
+    let summary = fs::read_to_string(folder().join("SUMMARY.md"))?;
+    let listed: Vec<(String, String)> = targets(&summary);
+    for (file, text) in texts()? {
+        let of_page: Vec<&(String, String)> =
+            listed.iter().filter(|(_, target)| *target == file).collect();
+        let expected = title(&text)?;
+        match of_page[..] {
+            [(label, _)] if label == expected => {}
+            _ => return Err(format!("{file}: `{expected}` is listed as {of_page:?}").into()),
+        }
+    }
+    Ok(())
+}
+
+/// Relative links name pages and headings that there are.
+fn links() -> Result<(), Failed> {
+    let texts = texts()?;
+    let mut broken = Vec::new();
+    for (file, text) in &texts {
+        for (_, target) in targets(text) {
+            if target.contains("://") {
+                continue;
+            }
+            let (page, anchor) = target.split_once('#').unwrap_or((&target, ""));
+            let page = if page.is_empty() { file } else { page };
+            let there = match texts.get(page) {
+                Some(text) => anchor.is_empty() || anchors(text).contains(anchor),
+                None => anchor.is_empty() && folder().join(page).is_file(),
+            };
+            if !there {
+                broken.push(format!("{file}: {target}"));
+            }
+        }
+    }
+    if broken.is_empty() { Ok(()) } else { Err(broken.join("\n").into()) }
+}
+
+/// Label and target of each Markdown link outside of code.
+fn targets(text: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let mut in_code = false;
+    for line in text.lines() {
+        in_code ^= line.starts_with("```");
+        let mut rest = if in_code { "" } else { line };
+        while let Some((before, after)) = rest.split_once("](") {
+            let label = before.rsplit('[').next().unwrap_or_default();
+            let Some((target, after)) = after.split_once(')') else { break };
+            found.push((label.to_owned(), target.to_owned()));
+            rest = after;
+        }
+    }
+    found
+}
+
+/// What headings are called in links, as mdBook and forges make it.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    headings
+        .map(|line| {
+            let name = line.trim_start_matches('#').trim().to_lowercase();
+            let kept = name.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+            kept.collect::<String>().replace(' ', "-")
+        })
+        .collect()
+}
+
+/// Every code has a page, once, and the page has the title that the table says.
+fn codes() -> Result<(), Failed> {
+    let homeless = generated::homeless();
+    if !homeless.is_empty() {
+        return Err(format!("src/diagnostic/guide.rs lacks {homeless:?}").into());
+    }
+    let mut seen = BTreeSet::new();
+    for page in guide::PAGES {
+        let text = fs::read_to_string(folder().join(page.file))?;
+        if title(&text)? != page.title {
+            return Err(format!("{} is not called `{}`", page.file, page.title).into());
+        }
+        if let Some(twice) = page.codes.iter().find(|code| !seen.insert(code.name)) {
+            return Err(format!("`{}` has two pages", twice.name).into());
+        }
+    }
+    let told = lamplight(&["explain", "unknown-axis"])?;
+    let ending = "\nGuide: Axes, constraints and the manifest\n";
+    if told.ends_with(ending) { Ok(()) } else { Err(told.into()) }
+}
+
+/// Each command's help ends with the title of a page.
+fn commands() -> Result<(), Failed> {
+    let texts = texts()?;
+    let titles: Vec<&str> = texts.values().map(|text| title(text)).collect::<Result<_, _>>()?;
+    let help = lamplight(&["--help"])?;
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let names: Vec<&str> = listed
+        .take_while(|line| !line.is_empty())
+        .filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next())
+        .filter(|name| *name != "help")
+        .collect();
+    for name in names {
+        let help = lamplight(&[name, "--help"])?;
+        let named = help.lines().rev().find_map(|line| line.strip_prefix("Guide: "));
+        if !named.is_some_and(|named| titles.contains(&named)) {
+            return Err(format!("`lamplight {name} --help` names {named:?}").into());
+        }
+    }
+    Ok(())
+}
+
+/// A person at a terminal is told what to read; a program is not.
+fn errors() -> Result<(), Failed> {
+    let line = "more: lamplight explain unreadable; guide: A package of your own";
+    let arguments = ["compose", "missing.wesl"];
+    let piped = run(Path::new("."), &arguments)?;
+    if String::from_utf8_lossy(&piped.stderr).contains("guide:") {
+        return Err("a program is told to read the guide".into());
+    }
+    // `script` gives its command a terminal.
+    let command = [&[env!("CARGO_BIN_EXE_lamplight")], &arguments[..]].concat().join(" ");
+    let output = Command::new("script").args(["-qec", &command, "/dev/null"]).output()?;
+    let told = String::from_utf8_lossy(&output.stdout);
+    if told.lines().any(|told| told == line) { Ok(()) } else { Err(told.into_owned().into()) }
+}
+
+/// What the crate knows by name stands in the page that explains it.
+fn lists() -> Result<(), Failed> {
+    let names = |names: &[&'static str]| names.iter().map(|name| (*name).to_owned()).collect();
+    let functions: Vec<&str> = formula::FUNCTIONS.iter().map(|function| function.name).collect();
+    let laws: Vec<&str> = laws::KINDS.iter().map(|kind| kind.name).collect();
+    let terms: Vec<&str> = tolerance::TERMS.iter().map(|kind| kind.name).collect();
+    let targets: Vec<&str> =
+        lamplight::bundle::Target::ALL.iter().map(|target| target.name()).collect();
+    let known: [(&str, Vec<String>); 11] = [
+        ("cases.md", names(&functions)),
+        ("cases.md", names(&laws)),
+        ("cases.md", names(&terms)),
+        ("targets.md", names(&targets)),
+        ("manifest.md", noted("m.toml", "[program.a]\nx = 1", "variants --manifest m.toml")?),
+        ("manifest.md", noted("m.toml", AXIS, "variants --manifest m.toml")?),
+        ("manifest.md", noted("m.toml", CONSTRAINT, "variants --manifest m.toml")?),
+        ("manifest.md", noted("m.toml", MODE, "variants --manifest m.toml")?),
+        ("cases.md", noted("m.toml", "[[case]]\nfunction = \"f\"\nx = 1", "check m.toml")?),
+        ("cases.md", noted("m.toml", DOMAIN, "check m.toml")?),
+        ("report.md", columns()?),
+    ];
+    let mut missing = Vec::new();
+    for (page, names) in known {
+        let text = fs::read_to_string(folder().join(page))?;
+        if names.is_empty() {
+            return Err(format!("{page}: nothing to look for").into());
+        }
+        let lacks = |name: &&String| !text.contains(&format!("`{name}`"));
+        missing.extend(names.iter().filter(lacks).map(|name| format!("{page} lacks `{name}`")));
+    }
+    if missing.is_empty() { Ok(()) } else { Err(missing.join("\n").into()) }
+}
+
+/// The limits that are numbers of the crate's interface.
+fn limits() -> Result<(), Failed> {
+    let (sources, texts) = (lamplight::source::LIMITS, lamplight::validate::LIMITS);
+    let rows = [
+        ("bytes of one file", mebibytes(sources.file_bytes)),
+        ("tokens of one file", thousands(sources.tokens)),
+        ("brackets, blocks and conditions within each other", thousands(sources.nesting)),
+        ("files of one composition", thousands(sources.files)),
+        ("files open at once by `#include`", thousands(sources.include_depth)),
+        ("bytes of one composed text", mebibytes(sources.expansion_bytes)),
+        ("bytes of a composed text that is compiled", mebibytes(texts.bytes)),
+        ("brackets in it", thousands(texts.nesting)),
+        ("operators of one expression in it", thousands(texts.operators)),
+        ("functions and structs in it", thousands(texts.bodies)),
+        ("axes of a program, values of an axis", thousands(lamplight::permute::axis::MAX)),
+        ("permutations of a program", thousands(sources.permutations) + ", or its `limit`"),
+        (
+            "rounds of all loops of one call, on `eval`",
+            thousands(lamplight::eval::LOOP_LIMIT as usize),
+        ),
+        ("scalars in memory, on `eval`", thousands(lamplight::eval::MAX_SLOTS as usize)),
+    ];
+    let text = fs::read_to_string(folder().join("limits.md"))?;
+    let lacks = |(name, value): &&(&str, String)| !text.contains(&format!("| {name} | {value} |"));
+    let missing: Vec<String> =
+        rows.iter().filter(lacks).map(|(name, value)| format!("{name}: {value}")).collect();
+    if missing.is_empty() { Ok(()) } else { Err(missing.join("\n").into()) }
+}
+
+fn mebibytes(bytes: usize) -> String {
+    format!("{} MiB", bytes >> 20)
+}
+
+/// With a comma between groups of three digits.
+fn thousands(number: usize) -> String {
+    match number / 1000 {
+        0 => number.to_string(),
+        more => format!("{},{:03}", thousands(more), number % 1000),
+    }
+}
+
+const AXIS: &str = "[program.a]\nwesl = \"a.wesl\"\n[program.a.axis]\nb = { x = 1, values = [1] }";
+const MODE: &str =
+    "[program.a]\nwesl = \"a.wesl\"\n[program.a.axis]\nb = { mode = \"x\", values = [1] }";
+const CONSTRAINT: &str = "[program.a]\nwesl = \"a.wesl\"\n[[program.a.constraint]]\nx = 1";
+const DOMAIN: &str = "[[case]]\nfunction = \"f\"\ninputs = { x = [{ nonsense = 1 }] }";
+
+/// The names that the note of an error lists.
+fn noted(file: &str, text: &str, line: &str) -> Result<Vec<String>, Failed> {
+    let folder = tempfile::tempdir()?;
+    fs::write(folder.path().join(file), text)?;
+    fs::write(folder.path().join("m.wesl"), "fn f() {}\n")?;
+    let arguments = line.split_whitespace().chain(["--diagnostics", "json"]);
+    let output = run(folder.path(), &arguments.collect::<Vec<_>>())?;
+    let told = String::from_utf8(output.stderr)?;
+    const HEADS: [&str; 4] = ["known keys: ", "known are ", "domains are ", "modes: "];
+    for line in told.lines() {
+        let error: serde_json::Value = serde_json::from_str(line)?;
+        let notes =
+            error["notes"].as_array().into_iter().flatten().filter_map(|note| note.as_str());
+        for note in notes {
+            if let Some(list) = HEADS.iter().find_map(|head| note.strip_prefix(head)) {
+                return Ok(list.split(", ").map(str::to_owned).collect());
+            }
+        }
+    }
+    Err(format!("`{line}` lists nothing: {told}").into())
+}
+
+/// The columns of a check's table.
+fn columns() -> Result<Vec<String>, Failed> {
+    let table = lamplight(&["check", "lighting::spot"])?;
+    let head = table.lines().next().unwrap_or_default();
+    Ok(head.split("  ").map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect())
+}
+
+fn lamplight(arguments: &[&str]) -> Result<String, Failed> {
+    Ok(String::from_utf8(run(Path::new("."), arguments)?.stdout)?)
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Result<std::process::Output, Failed> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+    Ok(command.current_dir(folder).args(arguments).output()?)
+}

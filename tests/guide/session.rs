@@ -1,0 +1,155 @@
+//! One shell session over the files and commands of a page.
+
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use libtest_mimic::Failed;
+
+use crate::snapshot;
+
+/// The most that the commands of one page may take together, on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Starts the line that ends a command's output.
+const MARK: &str = "guide-command-ended-with";
+
+/// What one step of the session is.
+pub enum Step<'a> {
+    /// Writes a file.
+    File { path: &'a str, text: String },
+    /// Runs a command.
+    Command(&'a str),
+}
+
+/// What one command did.
+pub struct Outcome {
+    /// Both streams, as a terminal shows them, without blanks at the ends of lines.
+    pub lines: Vec<String>,
+    pub code: i32,
+}
+
+/// A session that is over.
+pub struct Session {
+    stage: tempfile::TempDir,
+    /// One for each command.
+    pub outcomes: Vec<Outcome>,
+}
+
+impl Session {
+    /// Runs the steps in an empty folder.
+    pub fn run(steps: &[Step<'_>]) -> Result<Self, Failed> {
+        let stage = tempfile::tempdir()?;
+        let script = script(stage.path(), steps)?;
+        let printed = execute(stage.path(), &script)?;
+        let outcomes = outcomes(&printed)?;
+        let commands = steps.iter().filter(|step| matches!(step, Step::Command(_))).count();
+        if outcomes.len() != commands {
+            return Err(format!("the shell stopped early:\n{printed}").into());
+        }
+        Ok(Self { stage, outcomes })
+    }
+
+    /// A file that the commands wrote.
+    pub fn made(&self, path: &str) -> Result<String, Failed> {
+        let path = work(self.stage.path()).join(path);
+        fs::read_to_string(&path).map_err(|error| format!("`{}`: {error}", path.display()).into())
+    }
+}
+
+/// The folder that the commands run in.
+fn work(stage: &Path) -> PathBuf {
+    stage.join("work")
+}
+
+/// Writes the files of the steps aside, and a script that puts them in place and runs the commands.
+fn script(stage: &Path, steps: &[Step<'_>]) -> Result<String, Failed> {
+    fs::create_dir_all(work(stage))?;
+    let mut script = String::from("exec 2>&1\n");
+    for (index, step) in steps.iter().enumerate() {
+        match step {
+            Step::File { path, text } => {
+                let folder = stage.join(format!("step-{index}"));
+                let file = folder.join(path);
+                fs::create_dir_all(file.parent().unwrap_or(&folder))?;
+                fs::write(file, text)?;
+                writeln!(script, "cp -R \"$STAGE/step-{index}/.\" \"$STAGE/work\"")?;
+            }
+            Step::Command(text) => {
+                fs::write(stage.join(format!("step-{index}.sh")), format!("{text}\n"))?;
+                writeln!(script, ". \"$STAGE/step-{index}.sh\"")?;
+                writeln!(script, "printf '\\n{MARK} %s\\n' $?")?;
+            }
+        }
+    }
+    Ok(script)
+}
+
+/// What the shell printed. To a file: a command that is left in the background must not hold a
+/// pipe open.
+fn execute(stage: &Path, script: &str) -> Result<String, Failed> {
+    let (path, printed) = (stage.join("script.sh"), stage.join("printed"));
+    fs::write(&path, script)?;
+    cargo_config(stage)?;
+    let mut command = Command::new("sh");
+    command.arg(&path).current_dir(work(stage));
+    command.stdin(Stdio::null()).stdout(File::create(&printed)?);
+    environment(&mut command, stage);
+    wait(command.spawn()?)?;
+    Ok(String::from_utf8_lossy(&fs::read(&printed)?).into_owned())
+}
+
+/// The same on every machine: no colours, a narrow terminal, nothing of the user's.
+fn environment(command: &mut Command, stage: &Path) {
+    let binaries = Path::new(env!("CARGO_BIN_EXE_lamplight")).parent().map(Path::to_path_buf);
+    let known = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(binaries.into_iter().chain(std::env::split_paths(&known)));
+    command.env("PATH", path.unwrap_or_else(|_| OsString::from(&known)));
+    command.env("STAGE", stage).env("XDG_CACHE_HOME", stage.join("cache"));
+    command.env("COLUMNS", "80").env("NO_COLOR", "1").env("LC_ALL", "C.UTF-8");
+}
+
+/// Pages that use cargo find this repository in place of the registry, and need no network.
+fn cargo_config(stage: &Path) -> Result<(), Failed> {
+    let root = snapshot::root();
+    let target = root.join("target/tmp/guide");
+    let text = format!(
+        "[patch.crates-io]\nlamplight = {{ path = {root:?} }}\n[net]\noffline = true\n[build]\ntarget-dir = {target:?}\n[profile.dev]\ndebug = false\n"
+    );
+    fs::create_dir_all(stage.join(".cargo"))?;
+    fs::write(stage.join(".cargo/config.toml"), text)?;
+    fs::copy(root.join("Cargo.lock"), work(stage).join("Cargo.lock"))?;
+    Ok(())
+}
+
+fn wait(mut child: Child) -> Result<(), Failed> {
+    let start = Instant::now();
+    while child.try_wait()?.is_none() {
+        if start.elapsed() > PATIENCE {
+            child.kill()?;
+            child.wait()?;
+            return Err(format!("the page takes more than {PATIENCE:?}").into());
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    Ok(())
+}
+
+/// Cuts what the shell printed into what each command printed.
+fn outcomes(printed: &str) -> Result<Vec<Outcome>, Failed> {
+    let (mut outcomes, mut lines) = (Vec::new(), Vec::new());
+    for line in printed.lines() {
+        let Some(code) = line.strip_prefix(MARK) else {
+            lines.push(line.trim_end().to_owned());
+            continue;
+        };
+        while lines.last().is_some_and(String::is_empty) {
+            lines.pop();
+        }
+        outcomes.push(Outcome { lines: std::mem::take(&mut lines), code: code.trim().parse()? });
+    }
+    Ok(outcomes)
+}

@@ -1,0 +1,302 @@
+//! The repository itself: folders of `src/` without cycles, a map in ARCHITECTURE.md that is true,
+//! short paths, and nothing that a run left behind.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use libtest_mimic::{Failed, Trial};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// Files of `src/` that are no stage: they only declare the others.
+const ROOTS: [&str; 2] = ["lib.rs", "main.rs"];
+
+/// For each folder (or single file) of `src/` those it names, and a file that does.
+type Graph = BTreeMap<String, BTreeMap<String, PathBuf>>;
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("house::no_cycles", no_cycles),
+        Trial::test("house::map", map_is_in_order),
+        Trial::test("house::detects", cycles_are_found),
+        Trial::test("house::leftovers", nothing_is_left_behind),
+        Trial::test("house::leftovers_are_seen", leftovers_are_seen),
+        Trial::test("house::paths", paths_are_short),
+        Trial::test("house::needs_of_executors", needs_are_installed),
+    ]
+}
+
+/// `cargo xtask test` installs what executors need.
+fn needs_are_installed() -> Result<(), Failed> {
+    let machine = std::fs::read_to_string(Path::new(ROOT).join("xtask/src/machine.rs"))?;
+    for entry in lamplight::execute::executors::ALL {
+        let is_missing = |need: &&&str| !machine.contains(&format!("package: \"{need}\""));
+        if let Some(need) = entry.needs.iter().find(is_missing) {
+            return Err(format!("xtask/src/machine.rs does not install `{need}`").into());
+        }
+    }
+    Ok(())
+}
+
+/// No folder of `src/` uses one that uses it, however long the way round.
+fn no_cycles() -> Result<(), Failed> {
+    match cycle(&graph()?) {
+        Some(cycle) => Err(cycle.into()),
+        None => Ok(()),
+    }
+}
+
+/// The table of folders in ARCHITECTURE.md lists each folder once, behind those that it uses.
+fn map_is_in_order() -> Result<(), Failed> {
+    let text = std::fs::read_to_string(Path::new(ROOT).join("ARCHITECTURE.md"))?;
+    let listed: Vec<&str> = text
+        .lines()
+        .skip_while(|line| !line.starts_with("| folder |"))
+        .skip(2)
+        .map_while(|line| line.strip_prefix("| `")?.split_once('`').map(|(name, _)| name))
+        .map(|name| name.trim_end_matches('/').trim_end_matches(".rs"))
+        .collect();
+    let graph = graph()?;
+    let mut problems = Vec::new();
+    for (index, name) in listed.iter().enumerate() {
+        match graph.get(*name) {
+            None => problems.push(format!("there is no `src/{name}`")),
+            Some(_) if listed[..index].contains(name) => problems.push(format!("`{name}` twice")),
+            Some(uses) => problems.extend(
+                uses.iter().filter(|(used, _)| !listed[..index].contains(&used.as_str())).map(
+                    |(used, file)| {
+                        format!("`{name}` stands above `{used}`, which {} uses", file.display())
+                    },
+                ),
+            ),
+        }
+    }
+    let missing = graph.keys().filter(|name| !listed.contains(&name.as_str()));
+    problems.extend(missing.map(|name| format!("`src/{name}` is not listed")));
+    match problems.is_empty() {
+        true => Ok(()),
+        false => Err(format!("the map of ARCHITECTURE.md:\n{}", problems.join("\n")).into()),
+    }
+}
+
+/// The search finds what it should find, and reads every form of a path.
+fn cycles_are_found() -> Result<(), Failed> {
+    let text = "use crate::{b::X, c::{Y, d::Z}};\nfn f() { crate::e::g() } // crate::no\n";
+    let names = named(text, 1);
+    if names != BTreeSet::from(["b", "c", "e"].map(str::to_owned)) {
+        return Err(format!("read {names:?}").into());
+    }
+    if named("use super::super::b::X;\nuse super::c;", 2) != BTreeSet::from(["b".to_owned()]) {
+        return Err("`super::super` of a file two folders deep is the crate".into());
+    }
+    let edge = |to: &str| BTreeMap::from([(to.to_owned(), PathBuf::from("file.rs"))]);
+    let graph: Graph =
+        [("a", "b"), ("b", "c"), ("c", "b")].map(|(a, b)| (a.to_owned(), edge(b))).into();
+    match cycle(&graph) {
+        Some(words) if words.starts_with("b -> c -> b") => Ok(()),
+        other => Err(format!("{other:?}").into()),
+    }
+}
+
+/// What stands in the root of the repository, and nothing else.
+const ROOT_FILES: [&str; 12] = [
+    ".gitignore",
+    "ARCHITECTURE.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+    "build.rs",
+    "clippy.toml",
+    "rustfmt.toml",
+];
+
+/// How names end of what editors, tools and failed tests leave.
+const LEFTOVERS: [&str; 10] =
+    [".new", ".orig", ".rej", ".bak", ".tmp", ".log", ".swp", ".profraw", ".spv", "~"];
+
+/// Files that are no text: pictures, and inputs that are wrong on purpose.
+const BINARIES: [&str; 2] = [".png", "tests/regressions/bundle/valid"];
+
+/// Most characters of a path: Windows stops at 260, of which a folder above takes its part.
+const LONGEST: usize = 120;
+
+/// The repository holds nothing that a run left behind.
+fn nothing_is_left_behind() -> Result<(), Failed> {
+    let files = git(&["ls-files", "-z"])?;
+    let ignored = git(&["ls-files", "-z", "--cached", "--ignored", "--exclude-standard"])?;
+    let mut found: Vec<String> =
+        ignored.iter().map(|path| format!("{path} is ignored and yet committed")).collect();
+    for path in &files {
+        let bytes = std::fs::read(Path::new(ROOT).join(path));
+        // A file that is deleted and not yet committed as such is no leftover.
+        found.extend(bytes.ok().and_then(|bytes| leftover(path, &bytes)));
+    }
+    match found.is_empty() {
+        true => Ok(()),
+        false => Err(found.join("\n").into()),
+    }
+}
+
+/// Why a file does not belong into the repository.
+fn leftover(path: &str, bytes: &[u8]) -> Option<String> {
+    let is_named_so = LEFTOVERS.iter().any(|end| path.ends_with(end));
+    let may_be_binary = BINARIES.iter().any(|end| path.ends_with(end));
+    if !path.contains('/') && !ROOT_FILES.contains(&path) {
+        Some(format!("{path} does not belong into the root; or list it in tests/house.rs"))
+    } else if is_named_so || !may_be_binary && std::str::from_utf8(bytes).is_err() {
+        Some(format!("{path} was left behind by a run"))
+    } else {
+        None
+    }
+}
+
+fn leftovers_are_seen() -> Result<(), Failed> {
+    let wrong: [(&str, &[u8]); 4] = [
+        ("vert.spv", b""),
+        ("notes.txt", b""),
+        ("snapshots/emit/a.snap.new", b"text"),
+        ("tests/emit/frag", b"\x03\x02\x23\x07\xff"),
+    ];
+    let right: [(&str, &[u8]); 3] =
+        [("README.md", b"text"), ("docs/a.png", b"\x89PNG"), ("src/a.rs", b"text")];
+    for (path, bytes) in wrong {
+        leftover(path, bytes).ok_or_else(|| format!("{path} is not seen"))?;
+    }
+    match right.iter().find_map(|(path, bytes)| leftover(path, bytes)) {
+        Some(wrong) => Err(wrong.into()),
+        None => Ok(()),
+    }
+}
+
+/// Paths are short enough for every system.
+fn paths_are_short() -> Result<(), Failed> {
+    let files = git(&["ls-files", "-z"])?;
+    let long: Vec<String> =
+        files.into_iter().filter(|path| path.chars().count() >= LONGEST).collect();
+    match long.is_empty() {
+        true => Ok(()),
+        false => Err(format!("{LONGEST} characters or more:\n{}", long.join("\n")).into()),
+    }
+}
+
+/// What git lists, separated by zeros.
+fn git(arguments: &[&str]) -> Result<Vec<String>, Failed> {
+    let output = Command::new("git").args(arguments).current_dir(ROOT).output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+    }
+    let text = String::from_utf8(output.stdout)?;
+    Ok(text.split('\0').filter(|path| !path.is_empty()).map(str::to_owned).collect())
+}
+
+fn graph() -> Result<Graph, Failed> {
+    let source = Path::new(ROOT).join("src");
+    let mut files = Vec::new();
+    rust_files(&source, &mut files)?;
+    let mut graph = Graph::new();
+    for file in &files {
+        let path = file.strip_prefix(&source)?;
+        let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+        let name = parts[0].trim_end_matches(".rs");
+        if parts.len() == 1 && ROOTS.contains(&&*parts[0]) {
+            continue;
+        }
+        // Modules between this file's items and the crate.
+        let depth = parts.len() - usize::from(parts.last().is_some_and(|last| last == "mod.rs"));
+        let uses = graph.entry(name.to_owned()).or_default();
+        for used in named(&std::fs::read_to_string(file)?, depth) {
+            uses.entry(used).or_insert_with(|| Path::new("src").join(path));
+        }
+    }
+    let known: BTreeSet<String> = graph.keys().cloned().collect();
+    for (name, uses) in &mut graph {
+        uses.retain(|used, _| used != name && known.contains(used));
+    }
+    Ok(graph)
+}
+
+fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            rust_files(&path, files)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(())
+}
+
+/// The first names of the crate's paths in a text whose items are `depth` modules deep.
+fn named(text: &str, depth: usize) -> BTreeSet<String> {
+    let code: String =
+        text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+    let above = "super::".repeat(depth);
+    let mut names = BTreeSet::new();
+    for (prefix, before) in [("crate::", "$"), (above.as_str(), ":")] {
+        for (at, _) in code.match_indices(prefix) {
+            let follows = |letter: char| letter.is_alphanumeric() || letter == '_';
+            if code[..at].ends_with(|letter| follows(letter) || before.contains(letter)) {
+                continue;
+            }
+            names.extend(heads(&code[at + prefix.len()..]));
+        }
+    }
+    names
+}
+
+/// The first names of what follows `crate::`: one, or those of a list in braces.
+fn heads(rest: &str) -> Vec<String> {
+    let word = |text: &str| -> String {
+        text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+    };
+    let Some(list) = rest.strip_prefix('{') else { return vec![word(rest)] };
+    let (mut depth, mut found) = (0_usize, vec![word(list)]);
+    for (at, letter) in list.char_indices() {
+        match letter {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => found.push(word(&list[at + 1..])),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The first cycle, spelt out with a file for each step.
+fn cycle(graph: &Graph) -> Option<String> {
+    graph.keys().find_map(|start| {
+        let mut way = vec![start.as_str()];
+        back(graph, &mut way, &mut BTreeSet::new()).then(|| {
+            let steps: Vec<String> = way
+                .windows(2)
+                .map(|step| format!("{} uses {}", graph[step[0]][step[1]].display(), step[1]))
+                .collect();
+            format!("{}\n{}", way.join(" -> "), steps.join("\n"))
+        })
+    })
+}
+
+/// Whether the way leads back to where it starts; then it is that way.
+fn back<'a>(graph: &'a Graph, way: &mut Vec<&'a str>, seen: &mut BTreeSet<&'a str>) -> bool {
+    let Some(uses) = way.last().and_then(|last| graph.get(*last)) else { return false };
+    for used in uses.keys() {
+        let is_start = way.first().is_some_and(|first| first == used);
+        if !is_start && !seen.insert(used) {
+            continue;
+        }
+        way.push(used);
+        if is_start || back(graph, way, seen) {
+            return true;
+        }
+        way.pop();
+    }
+    false
+}

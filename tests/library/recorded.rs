@@ -1,0 +1,262 @@
+//! What all permutations of the library gave when they were last accepted: one hash for each
+//! program, stage and target in a snapshot, and the outputs themselves to compare with, where they
+//! can be had again.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use lamplight::bundle::{Bundle, Contents, EntryContents, Language, Target, Unit, write_file};
+use lamplight::generate::{Request, in_memory};
+use lamplight::project;
+use lamplight::source::SourceSet;
+use libtest_mimic::Failed;
+use similar::TextDiff;
+
+use super::readable;
+use crate::snapshot;
+
+/// Keys whose texts are shown, and lines of each difference.
+const SHOWN: usize = 3;
+const LINES: usize = 40;
+
+/// The snapshot: `FOLDER/NAME.snap`.
+const FOLDER: &str = "shaderlib/programs";
+const NAME: &str = "hashes";
+
+/// Compares with the recorded table; a difference names the first keys, with their texts.
+pub fn check(contents: &Contents) -> Result<(), Failed> {
+    let (found, recorded) = (table(contents)?, recorded());
+    if found == recorded {
+        return Ok(keep(contents, &found)?);
+    }
+    // Accepts the table where that is asked for, and says so to `cargo insta` where not.
+    if snapshot::check(FOLDER, NAME, &found).is_ok() {
+        return Ok(keep(contents, &found)?);
+    }
+    let rows = differing_rows(&recorded, &found);
+    let texts = match accepted(&recorded)? {
+        Some(accepted) => difference(&accepted, contents)?,
+        None => format!(
+            "The outputs of the recorded state are not at hand: the change is not in `shaderlib/` \
+             alone. Run this trial at the commit that recorded them, which keeps them in `{}`.",
+            folder().display()
+        ),
+    };
+    Err(format!("outputs differ from snapshots/{FOLDER}/{NAME}.snap:\n{rows}\n{texts}").into())
+}
+
+/// The recorded table; empty where there is none yet.
+fn recorded() -> String {
+    let path = snapshot::root().join(format!("snapshots/{FOLDER}/{NAME}.snap"));
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    // The text follows insta's header.
+    text.splitn(3, "---\n").last().unwrap_or_default().to_owned()
+}
+
+/// One line for each entry point, with a hash over the outputs of all its keys for each target.
+fn table(contents: &Contents) -> Result<String, Failed> {
+    let targets: BTreeSet<&str> =
+        entries(contents).values().flat_map(|entry| targets(entry)).collect();
+    let mut text = format!("{:32}", "program, language, stage");
+    targets.iter().try_for_each(|target| write!(text, " {target:12}"))?;
+    text = text.trim_end().to_owned() + "\n";
+    for ((program, language, stage), entry) in entries(contents) {
+        let name = format!("{program} {} {stage}", word(language));
+        write!(text, "{name:32}")?;
+        for target in &targets {
+            write!(text, " {:12}", hash(entry, target))?;
+        }
+        text = text.trim_end().to_owned() + "\n";
+    }
+    Ok(text)
+}
+
+/// Program, language and entry point.
+type Name<'c> = (&'c str, Language, &'c str);
+
+fn entries<'c>(contents: &'c Contents) -> BTreeMap<Name<'c>, &'c EntryContents> {
+    let programs = contents.programs.iter();
+    programs
+        .flat_map(|(program, found)| {
+            found.languages.iter().flat_map(move |(language, entries)| {
+                let named = move |(stage, entry): (&'c String, &'c EntryContents)| {
+                    ((program.as_str(), *language, stage.as_str()), entry)
+                };
+                entries.iter().map(named)
+            })
+        })
+        .collect()
+}
+
+fn word(language: Language) -> &'static str {
+    match language {
+        Language::Wesl => "wesl",
+        Language::Glsl => "glsl",
+    }
+}
+
+fn targets(entry: &EntryContents) -> Vec<&str> {
+    let unit = entry.units.values().next();
+    unit.map(|unit| unit.targets.keys().map(String::as_str).collect()).unwrap_or_default()
+}
+
+fn unit<'c>(entry: &'c EntryContents, key: &str) -> Option<&'c Unit> {
+    entry.units.get(entry.keys.get(key)?)
+}
+
+fn hash(entry: &EntryContents, target: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for key in entry.keys.keys() {
+        hasher.update(key.as_bytes());
+        let artifact = unit(entry, key).and_then(|unit| unit.targets.get(target));
+        let bytes = artifact.map(|artifact| blake3::hash(&artifact.bytes));
+        hasher.update(bytes.as_ref().map_or(&[], |hash| hash.as_bytes().as_slice()));
+    }
+    hasher.finalize().to_hex()[..12].to_owned()
+}
+
+/// The lines of a table that differ, old and new.
+fn differing_rows(old: &str, new: &str) -> String {
+    let old: BTreeSet<&str> = old.lines().collect();
+    let header = new.lines().next().unwrap_or_default();
+    let rows = new.lines().filter(|line| !old.contains(line) || *line == header);
+    rows.map(|line| format!("{line}\n")).collect()
+}
+
+/// Where accepted outputs are kept.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("accepted")
+}
+
+fn file(table: &str) -> PathBuf {
+    let hash = blake3::hash(table.as_bytes()).to_hex();
+    folder().join(format!("{}.lamplight", &hash[..16]))
+}
+
+/// Keeps accepted outputs, in place of older ones, for the next difference.
+fn keep(contents: &Contents, table: &str) -> Result<(), String> {
+    let file = file(table);
+    if file.is_file() {
+        return Ok(());
+    }
+    // A folder that is not there is as good as empty.
+    let _ = std::fs::remove_dir_all(folder());
+    std::fs::create_dir_all(folder()).map_err(|error| error.to_string())?;
+    write_file(contents, &file).map_err(|error| error.to_string())
+}
+
+/// The outputs that a table was recorded of: kept ones, or those of the library that is committed.
+fn accepted(recorded: &str) -> Result<Option<Contents>, Failed> {
+    if let Ok(bundle) = Bundle::open(file(recorded)) {
+        return Ok(Some(bundle.contents()?));
+    }
+    let committed = committed_library();
+    Ok(committed.filter(|contents| table(contents).is_ok_and(|table| table == recorded)))
+}
+
+/// What the library of the last commit gives. `None` where git does not know it.
+fn committed_library() -> Option<Contents> {
+    let folder = tempfile::tempdir().ok()?;
+    let mut archive = Command::new("git")
+        .args(["archive", "HEAD", "shaderlib"])
+        .current_dir(snapshot::root())
+        .stdout(Stdio::piped())
+        .spawn()
+        .ok()?;
+    let unpacked = Command::new("tar")
+        .args(["-x", "-C"])
+        .arg(folder.path())
+        .stdin(archive.stdout.take()?)
+        .status()
+        .ok()?;
+    if !archive.wait().ok()?.success() || !unpacked.success() {
+        return None;
+    }
+    let mut sources = SourceSet::default();
+    let path = folder.path().join("shaderlib/lamplight.toml");
+    let (manifest, packages) = project::declared(&path, &mut sources).ok()?;
+    let made = in_memory(&mut sources, &packages, &manifest, &Request::default(), &|_| {});
+    made.ok().map(|made| made.contents)
+}
+
+/// How many keys of each entry point differ, and the first of them with their texts.
+pub fn difference(old: &Contents, new: &Contents) -> Result<String, Failed> {
+    let (old, new) = (entries(old), entries(new));
+    let names: BTreeSet<&Name<'_>> = old.keys().chain(new.keys()).collect();
+    let (mut text, mut shown) = (String::new(), 0);
+    let empty = EntryContents::default();
+    for name @ (program, language, stage) in names {
+        let (old, new) =
+            (old.get(name).copied().unwrap_or(&empty), new.get(name).copied().unwrap_or(&empty));
+        let keys: BTreeSet<&String> = old.keys.keys().chain(new.keys.keys()).collect();
+        let all = keys.len();
+        let differing: Vec<(&String, Difference<'_>)> = keys
+            .into_iter()
+            .filter_map(|key| Some((key, Difference::new(unit(old, key), unit(new, key))?)))
+            .collect();
+        if differing.is_empty() {
+            continue;
+        }
+        writeln!(text, "{program} {} {stage}: {} of {all} keys", word(*language), differing.len())?;
+        for (key, difference) in differing.iter().take(SHOWN - shown.min(SHOWN)) {
+            shown += 1;
+            writeln!(
+                text,
+                "\n{program} [{key}] {} {stage}: {}",
+                word(*language),
+                difference.text()?
+            )?;
+        }
+    }
+    Ok(text)
+}
+
+/// How the outputs of one key differ.
+enum Difference<'c> {
+    New,
+    Gone,
+    /// In these targets: name, bytes before, bytes now.
+    Changed(Vec<(&'c str, &'c [u8], &'c [u8])>),
+}
+
+impl<'c> Difference<'c> {
+    /// `None` where nothing differs.
+    fn new(old: Option<&'c Unit>, new: Option<&'c Unit>) -> Option<Self> {
+        let (old, new) = match (old, new) {
+            (Some(old), Some(new)) => (old, new),
+            (None, Some(_)) => return Some(Self::New),
+            (Some(_), None) => return Some(Self::Gone),
+            (None, None) => return None,
+        };
+        let changed = new.targets.iter().filter_map(|(target, now)| {
+            let before = old.targets.get(target).map_or(&[][..], |artifact| &artifact.bytes);
+            (before != &*now.bytes).then_some((target.as_str(), before, &*now.bytes))
+        });
+        let changed: Vec<_> = changed.collect();
+        (!changed.is_empty()).then_some(Self::Changed(changed))
+    }
+
+    /// The names of the targets, and the difference of the text of the first that is text.
+    fn text(&self) -> Result<String, Failed> {
+        let changed = match self {
+            Self::New => return Ok("the key is new".to_owned()),
+            Self::Gone => return Ok("the key is gone".to_owned()),
+            Self::Changed(changed) => changed,
+        };
+        let names: Vec<&str> = changed.iter().map(|(target, ..)| *target).collect();
+        let is_text = |(target, ..): &&(&str, _, _)| *target != Target::SPIRV.name();
+        let (target, before, now) =
+            changed.iter().find(is_text).or(changed.first()).ok_or("nothing differs")?;
+        let target = *Target::ALL
+            .iter()
+            .find(|known| known.name() == *target)
+            .ok_or("a target that there is not")?;
+        let (before, now) = (readable(target, before)?, readable(target, now)?);
+        let diff = TextDiff::from_lines(&before, &now);
+        let diff = diff.unified_diff().context_radius(2).header("recorded", "now").to_string();
+        let lines: Vec<&str> = diff.lines().take(LINES).collect();
+        Ok(format!("{} differ; {target}:\n{}", names.join(" "), lines.join("\n")))
+    }
+}

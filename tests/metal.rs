@@ -1,0 +1,179 @@
+//! Metal's language on the CPU: what its judge refuses and accepts, and whether its functions and
+//! textures give what they should.
+//!
+//! `metal/refused/*.metal` start with the line and the words of the mistake that they have;
+//! `metal/functions/*.metal` are tried against `metal/references.rs`; `metal/lookups/*.wgsl`
+//! against the evaluator. `metal/accepted/*.wgsl` are emitted and must be accepted; `frames` draws permutations of `forward` from the MSL of a bundle.
+
+mod accepted;
+mod expectations;
+mod frames;
+mod lookups;
+mod references;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use lamplight::metal::request::{Bound, Fragment};
+use lamplight::metal::{Program, judge};
+use libtest_mimic::{Failed, Trial};
+use references::{REFERENCES, Reference};
+
+type Outcome = Result<(), Failed>;
+
+pub fn trials() -> Vec<Trial> {
+    let mut trials = frames::trials();
+    trials.extend([
+        Trial::test("metal::mistakes_are_refused", mistakes),
+        Trial::test("metal::outputs_are_accepted", accepted::outputs),
+        Trial::test("metal::expectations", expectations::hold),
+        Trial::test("metal::functions", functions),
+        Trial::test("metal::lookups", || lookups::compare(&files("lookups"))),
+        Trial::test("metal::crashes_are_told", crashes),
+    ]);
+    trials
+}
+
+fn files(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/metal").join(folder);
+    let mut files: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+fn told(wrong: &[String]) -> Outcome {
+    if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n").into()) }
+}
+
+fn mistakes() -> Outcome {
+    let files = files("refused");
+    let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+    let views: Vec<&str> = texts.iter().map(String::as_str).collect();
+    let refusals = judge(&views, &|_| ()).map_err(|missing| missing.reason)?;
+    let mut wrong = Vec::new();
+    for (index, text) in texts.iter().enumerate() {
+        let expected = text.lines().next().unwrap().strip_prefix("// mistake in line ").unwrap();
+        let (line, words) = expected.split_once(": ").unwrap();
+        let found = refusals.iter().find(|refusal| refusal.index == index);
+        let errors = found.map_or("accepted", |refusal| &refusal.errors);
+        if !errors.starts_with(&format!("{line}:")) || !errors.contains(words) {
+            wrong.push(format!("{}: {errors}", files[index].display()));
+        }
+    }
+    told(&wrong)
+}
+
+/// Quads of each text.
+const QUADS: u32 = 64;
+
+fn functions() -> Outcome {
+    let files = files("functions");
+    let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+    let views: Vec<&str> = texts.iter().map(String::as_str).collect();
+    let mut program = Program::build(&views).map_err(|missing| missing.reason)?;
+    let mut wrong = Vec::new();
+    for (index, file) in files.iter().enumerate() {
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        let known = REFERENCES.iter().find(|(known, _)| *known == name);
+        let (_, reference) = known.ok_or_else(|| format!("no reference for {name}"))?;
+        match tried(&mut program, index, reference) {
+            Ok(()) => {}
+            Err(error) => wrong.push(format!("{name}: {error}")),
+        }
+    }
+    if files.len() != REFERENCES.len() {
+        wrong.push(format!("{} texts, {} references", files.len(), REFERENCES.len()));
+    }
+    told(&wrong)
+}
+
+fn tried(program: &mut Program, text: usize, reference: &Reference) -> Result<(), String> {
+    let quads: Vec<[Fragment; 4]> = (0..QUADS)
+        .map(|quad| [0, 1, 2, 3].map(|lane| fragment(reference, 4 * quad + lane)))
+        .collect();
+    let shaded = program.quads(text, &Bound::default(), &quads)?;
+    for (fragment, shaded) in quads.iter().flatten().zip(shaded.iter().flatten()) {
+        let words: [u32; 12] = std::array::from_fn(|i| fragment.locations[i / 4][i % 4]);
+        compare(reference, &words, &shaded.targets.concat())?;
+    }
+    Ok(())
+}
+
+fn fragment(reference: &Reference, row: u32) -> Fragment {
+    let word = |place: u32| {
+        let bits = scrambled(12 * row + place);
+        match reference {
+            Reference::Words(_) => bits,
+            Reference::Numbers { from, to, .. } => {
+                let share = f64::from(bits) / f64::from(u32::MAX);
+                ((from + (to - from) * share) as f32).to_bits()
+            }
+        }
+    };
+    let location = |first: u32| std::array::from_fn(|i| word(first + i as u32));
+    Fragment { locations: vec![location(0), location(4), location(8)], ..Fragment::default() }
+}
+
+/// A word that looks random.
+pub fn scrambled(index: u32) -> u32 {
+    let mut word = index.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
+    for step in [(16, 0x85eb_ca6bu32), (13, 0xc2b2_ae35), (16, 1)] {
+        word = (word ^ word >> step.0).wrapping_mul(step.1);
+    }
+    word
+}
+
+fn compare(reference: &Reference, words: &[u32; 12], found: &[u32]) -> Result<(), String> {
+    match reference {
+        Reference::Words(expected) => {
+            let expected = expected(words);
+            if expected == found {
+                return Ok(());
+            }
+            Err(format!("{words:08x?} gives {found:08x?} instead of {expected:08x?}"))
+        }
+        Reference::Numbers { share, least, expected, .. } => {
+            let numbers = words.map(|word| f64::from(f32::from_bits(word)));
+            let expected = expected(&numbers);
+            let found: Vec<f64> =
+                found.iter().map(|word| f64::from(f32::from_bits(*word))).collect();
+            let is_off = |(found, expected): (&f64, &f64)| {
+                !((found - expected).abs() <= share * expected.abs() + least)
+            };
+            match found.iter().zip(&expected).position(is_off) {
+                None if found.len() == expected.len() => Ok(()),
+                place => {
+                    Err(format!("{numbers:?} gives {found:?} instead of {expected:?}, {place:?}"))
+                }
+            }
+        }
+    }
+}
+
+/// A shader that crashes is told of, and the next one runs.
+fn crashes() -> Outcome {
+    let text = |body: &str| {
+        format!(
+            "#include <metal_stdlib>\nstruct Output {{ metal::float4 to [[color(0)]]; }};\n\
+             fragment Output main_(metal::float4 at [[position]]) {{\n{body}\n}}\n"
+        )
+    };
+    let crash = text(
+        "int zero = static_cast<int>(at.x); metal::float4 list[4]; volatile int* p = nullptr; *p = zero; return Output { list[zero] };",
+    );
+    let sound = text("return Output { at };");
+    let mut program = Program::build(&[&crash, &sound]).map_err(|missing| missing.reason)?;
+    let quads = [std::array::from_fn(|_| Fragment { position: [1.0; 4], ..Fragment::default() })];
+    let Err(error) = program.quads(0, &Bound::default(), &quads) else {
+        return Err("a crash was not noticed".into());
+    };
+    if !error.contains("the program ended") {
+        return Err(error.into());
+    }
+    let shaded = program.quads(1, &Bound::default(), &quads)?;
+    if shaded[0][3].targets[0] != [1.0f32.to_bits(); 4] {
+        return Err(format!("{shaded:?}").into());
+    }
+    Ok(())
+}

@@ -1,0 +1,197 @@
+//! Permutations of `forward`, drawn on the CPU from the MSL that a bundle holds, and sampled
+//! fragments computed again by the evaluator from the composed text.
+
+use std::collections::BTreeMap;
+
+use lamplight::bundle::{Bundle, Language, Target};
+use lamplight::eval::Program;
+use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
+use lamplight::execute::raster::{Compiled, Shipped};
+use lamplight::permute::axis::ValueSet;
+use lamplight::permute::{Assignment, Space, cover};
+use lamplight::picture::frame::Composed;
+use libtest_mimic::{Failed, Trial};
+use naga::{Binding, BuiltIn};
+
+use crate::fragments::{self, Tally, Watched};
+use crate::frames::{Scene, Sources, bundle};
+
+/// Permutations of each language, with all pairs of values among them.
+const LEAST_POINTS: usize = 200;
+/// Pixels from left to right, and from top to bottom.
+const SIZE: [u32; 2] = [128, 64];
+/// One quad in so many is computed again.
+const STEP: usize = 29;
+/// Least fragments of a permutation.
+const LEAST: usize = 200;
+/// Largest share of open fragments of a permutation.
+const OPEN: f64 = 0.01;
+/// Stages that are compiled together.
+const BATCH: usize = 64;
+
+pub fn trials() -> Vec<Trial> {
+    [("wesl", Language::Wesl), ("glsl", Language::Glsl)]
+        .map(|(name, language)| {
+            Trial::test(format!("metal::frames::forward::{name}"), move || {
+                drawn(language).map_err(Failed::from)
+            })
+        })
+        .into()
+}
+
+fn drawn(language: Language) -> Result<(), String> {
+    let sources = Sources::load(language)?;
+    let points = points(&sources.space);
+    let bundle = bundle(&sources, &points, Target::MSL)?;
+    let (mut total, mut failures) = (Tally::default(), Vec::new());
+    for points in points.chunks(BATCH) {
+        let scenes =
+            points.iter().map(|point| sources.scene(point)).collect::<Result<Vec<_>, _>>()?;
+        let keys: Vec<String> =
+            points.iter().map(|point| sources.space.key(point).to_string()).collect();
+        let mut stages = Stages::default();
+        let pairs = scenes
+            .iter()
+            .zip(&keys)
+            .map(|(scene, key)| stages.pair(&bundle, language, scene, key))
+            .collect::<Result<Vec<_>, _>>()?;
+        let compiled = Compiled::new(stages.shipped).map_err(|missing| missing.reason)?;
+        for ((scene, key), pair) in scenes.iter().zip(&keys).zip(pairs) {
+            match agrees(&compiled, pair, scene) {
+                Ok(tally) => total.add(&tally),
+                Err(error) => failures.push(format!("[{key}] {error}")),
+            }
+        }
+    }
+    println!("{language:?} as MSL on the CPU: {} permutations, {total}", points.len());
+    if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
+}
+
+/// All pairs of values, and more points until there are enough.
+fn points(space: &Space) -> Vec<Assignment> {
+    let mut points = cover::pairwise(space).points;
+    let mut seed = 1;
+    while points.len() < LEAST_POINTS {
+        let choose = |axis: usize, allowed: ValueSet| {
+            seed += 1;
+            let turn = super::scrambled(seed + axis as u32) as usize % allowed.len();
+            allowed.iter().nth(turn).unwrap_or_default()
+        };
+        match space.pick_valid(&[], choose) {
+            Some(point) if !points.contains(&point) => points.push(point),
+            Some(_) => {}
+            None => break,
+        }
+    }
+    points
+}
+
+/// Distinct stages of some permutations.
+#[derive(Default)]
+struct Stages {
+    shipped: Vec<Shipped>,
+}
+
+impl Stages {
+    /// The indices of both stages of a permutation.
+    fn pair(
+        &mut self,
+        bundle: &Bundle,
+        language: Language,
+        scene: &Scene,
+        key: &str,
+    ) -> Result<[usize; 2], String> {
+        let mut index = |entry: &str| -> Result<usize, String> {
+            let found = bundle
+                .program("forward")
+                .and_then(|program| program.entry(language, entry)?.get(key, Target::MSL))
+                .map_err(|error| error.to_string())?;
+            let text = String::from_utf8(found.bytes).map_err(|error| error.to_string())?;
+            if let Some(known) = self.shipped.iter().position(|stage| stage.text == text) {
+                return Ok(known);
+            }
+            let (native, reflection) = ((*found.native).clone(), (*found.reflection).clone());
+            self.shipped.push(Shipped { text, native, reflection });
+            Ok(self.shipped.len() - 1)
+        };
+        // The entry points of GLSL are all called `main`: a bundle calls them by their stage.
+        match language {
+            Language::Wesl => Ok([index(scene.vertex.entry)?, index(scene.fragment.entry)?]),
+            Language::Glsl => Ok([index("vertex")?, index("fragment")?]),
+        }
+    }
+}
+
+fn agrees(compiled: &Compiled, pair: [usize; 2], scene: &Scene) -> Result<Tally, String> {
+    let Scene { vertex, fragment, mesh, buffers, fixtures, .. } = scene;
+    let drawing = Drawing {
+        vertex: stage(vertex),
+        fragment: Some(stage(fragment)),
+        targets: 1,
+        items: &[Item { mesh, buffers }],
+        views: &[Buffers::new()],
+        buffers: &Buffers::new(),
+        plain: &[],
+        fixtures,
+        levels: &BTreeMap::new(),
+        size: SIZE,
+        state: State::default(),
+    };
+    let [first, second] = pair;
+    let frames = compiled.draw_watched(first, second, &drawing);
+    let frame = frames.map_err(|problem| problem.message)?.remove(0);
+    let targets = in_order(fragment, &frame.targets)?;
+    let resources = fragments::resources(buffers.clone(), fixtures, &BTreeMap::new());
+    let watched = Watched { size: SIZE, targets: &targets };
+    let mut tally = Tally::default();
+    fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
+    match tally {
+        Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
+        Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => {
+            Err(format!("{open} of {tried} fragments are open"))
+        }
+        tally => Ok(tally),
+    }
+}
+
+fn stage(composed: &Composed) -> EntryPoint<'_> {
+    EntryPoint { module: &composed.validated.module, entry: composed.entry }
+}
+
+/// The colour, and the inputs as the evaluator's function takes them, one word after another.
+fn in_order(stage: &Composed, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, String> {
+    let (Some(colour), Some((front, rest))) = (targets.first(), targets.split_last()) else {
+        return Err("there are no targets".to_owned());
+    };
+    let (position, locations) = rest[1..].split_last().ok_or("there is no position")?;
+    let program = Program::new(&stage.validated.module, &stage.validated.info)
+        .map_err(|error| error.to_string())?;
+    let (_, function) = program
+        .functions()
+        .filter(|(_, function)| function.name == stage.entry)
+        .last()
+        .ok_or("no entry point")?;
+    let (mut inputs, mut seen) = (Vec::new(), Vec::new());
+    for binding in &function.inputs {
+        let component = seen.iter().filter(|other| *other == binding).count();
+        seen.push(binding.clone());
+        let target = match binding {
+            Some(Binding::Location { location, .. }) => {
+                locations.get(*location as usize).ok_or("a location is not taken")?
+            }
+            Some(Binding::BuiltIn(BuiltIn::Position { .. })) => position,
+            Some(Binding::BuiltIn(BuiltIn::FrontFacing)) => front,
+            other => return Err(format!("nothing is known of {other:?}")),
+        };
+        inputs.push((target, component));
+    }
+    let mut ordered = vec![colour.clone()];
+    for four in inputs.chunks(4) {
+        let pixels = 0..colour.len() / 4;
+        let word = |pixel: usize, i: usize| {
+            four.get(i).map_or(0, |(target, component)| target[4 * pixel + component])
+        };
+        ordered.push(pixels.flat_map(|pixel| (0..4).map(move |i| word(pixel, i))).collect());
+    }
+    Ok(ordered)
+}

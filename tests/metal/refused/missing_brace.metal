@@ -1,0 +1,13 @@
+// mistake in line 15: expected '}'
+#include <metal_stdlib>
+#include <simd/simd.h>
+
+using metal::uint;
+
+struct Output {
+    metal::float4 color [[color(0)]];
+};
+fragment Output main_(
+  metal::float4 position [[position]]
+) {
+    return Output { position };

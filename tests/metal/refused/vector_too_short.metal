@@ -1,0 +1,15 @@
+// mistake in line 13: cannot initialize a variable of type 'metal::float3'
+#include <metal_stdlib>
+#include <simd/simd.h>
+
+using metal::uint;
+
+struct Output {
+    metal::float4 color [[color(0)]];
+};
+fragment Output main_(
+  metal::float4 position [[position]]
+) {
+    metal::float3 half_way = position.xy;
+    return Output { metal::float4(half_way, 1.0) };
+}

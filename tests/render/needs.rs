@@ -1,0 +1,76 @@
+//! What pictures take from axes is complete: a value without a row and a uniform without a number
+//! are errors that name it.
+
+use lamplight::bundle::{Binding, Kind, Member};
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::picture::frame::pack;
+use lamplight::picture::needs::Table;
+use libtest_mimic::{Failed, Trial};
+
+use super::library;
+
+/// A change of `pictures.toml`, and what is said of it.
+const MISTAKES: &[(&str, &str, &str)] = &[
+    ("evsm]", "evms]", "axis `shadow` has no value `evms`"),
+    ("exp2 = { background = \"haze\" }", "", "no row for `fog=exp2`"),
+    ("[program.forward.axis.fog]", "[program.forward.axis.mist]", "`forward` has no axis `mist`"),
+    ("[program.depth_view]", "[program.depth_vie]", "there is no program `depth_vie`"),
+    ("\"linear_radius\"", "\"cubic\"", "unknown variant `cubic`"),
+    ("unlit = true", "unlit = true, lit = false", "unknown field `lit`"),
+];
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("render/needs/rows_are_demanded", rows_are_demanded),
+        Trial::test("render/needs/numbers_are_demanded", numbers_are_demanded),
+    ]
+}
+
+fn rows_are_demanded() -> Result<(), Failed> {
+    let right = std::fs::read_to_string("shaderlib/pictures.toml")?;
+    for (from, to, expected) in MISTAKES {
+        let wrong = right.replace(from, to);
+        let mut texts = library().programs.texts();
+        let id = texts.add("pictures.toml", wrong.as_str());
+        let problems = Table::parse(&texts, id, library().programs.manifest()).err();
+        let said = problems.map(|problems| render(&texts, &problems, Form::Short));
+        match said {
+            Some(said) if wrong != right && said.contains(expected) => {}
+            other => return Err(format!("`{from}` as `{to}`: {other:?}").into()),
+        }
+    }
+    Ok(())
+}
+
+fn numbers_are_demanded() -> Result<(), Failed> {
+    let member = |name: &str, offset| Member {
+        name: name.to_owned(),
+        ty: "vec3<f32>".to_owned(),
+        offset,
+        size: 12,
+        stride: None,
+        members: Vec::new(),
+    };
+    let binding = Binding {
+        group: 0,
+        binding: 0,
+        name: "haze".to_owned(),
+        kind: Kind::Uniform,
+        ty: "Haze".to_owned(),
+        size: Some(32),
+        writable: false,
+        members: vec![member("color", 0), member("tint", 16)],
+    };
+    let numbers = |count: usize| {
+        move |path: &str| (count > 0 || path == "haze.color").then(|| vec![1.0; count.max(3)])
+    };
+    let unknown = pack(&binding, &numbers(0)).err().ok_or("a field is left 0")?;
+    let enough = pack(&binding, &numbers(3)).map_err(|problem| problem.message)?;
+    let short = pack(&binding, &|_| Some(vec![1.0; 2])).err().ok_or("a component is left 0")?;
+    let is_one = |at: usize| enough[at..at + 4] == 1.0_f32.to_le_bytes();
+    let is_packed = is_one(8) && is_one(24) && enough[12..16] == [0; 4];
+    match unknown.message.contains("haze.tint") && short.message.contains("2 of 3") && is_packed {
+        true => Ok(()),
+        false => Err(format!("{}; {}; {enough:?}", unknown.message, short.message).into()),
+    }
+}

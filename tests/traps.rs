@@ -1,0 +1,528 @@
+//! Every command that writes, beside every kind of thing that is not ours. What is there stays as
+//! it is, or is written to where it is a stream; nothing is deleted; the exit code says so.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::fs::{FileTypeExt, symlink};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use libtest_mimic::{Failed, Trial};
+use tempfile::TempDir;
+
+type Outcome = Result<(), Failed>;
+
+/// A command that writes; `OUT` stands for the place.
+struct Writer {
+    name: &'static str,
+    arguments: &'static [&'static str],
+    /// Files that it writes, where finding out by running it would take too long.
+    files: &'static [&'static str],
+    /// It does not end by itself: its first line says that it wrote.
+    endless: bool,
+}
+
+const fn writer(name: &'static str, arguments: &'static [&'static str]) -> Writer {
+    Writer { name, arguments, files: &[], endless: false }
+}
+
+/// Commands that write into a folder.
+const FOLDERS: &[Writer] = &[
+    writer("gen", &["gen", "--no-cache", "-o", "OUT"]),
+    Writer { endless: true, ..writer("watch", &["watch", "--no-cache", "-o", "OUT"]) },
+    writer("merge", &["merge", "OUT", "ready"]),
+    writer(
+        "compile",
+        &["compile", "main.wesl", "--set", "tint=red", "--target", "wgsl", "-o", "OUT"],
+    ),
+    writer("export", &["export", "OUT"]),
+    writer("export_npm", &["export", "OUT", "--form", "npm"]),
+    writer("catalogue", &["catalogue", "-o", "OUT"]),
+    writer("report", &["check", "half.toml", "--report", "OUT"]),
+    Writer {
+        files: &["README.md", "hpg_4_spot.png"],
+        ..writer(
+            "gallery",
+            &["render", "--all", "--executor", "eval", "--size", "8x8", "-o", "OUT"],
+        )
+    },
+    writer("cache", &["gen", "--cache", "OUT", "-o", "other"]),
+];
+
+/// Commands that write one file.
+const FILES: &[Writer] = &[
+    writer("gen", &["gen", "--no-cache", "-o", "OUT.lamplight"]),
+    writer("merge", &["merge", "OUT.lamplight", "ready"]),
+    writer("pack", &["bundle", "pack", "ready", "-o", "OUT"]),
+    writer(
+        "get",
+        &["bundle", "get", "ready", "small", "fs_main", "default", "--target", "wgsl", "-o", "OUT"],
+    ),
+    writer("render", &["render", "hpg_4_spot", "--executor", "eval", "--size", "8x8", "-o", "OUT"]),
+    writer("keys_rust", &["keys", "--manifest", "lamplight.toml", "--lang", "rust", "-o", "OUT"]),
+    writer("keys_c", &["keys", "--manifest", "lamplight.toml", "--lang", "c", "-o", "OUT"]),
+    writer("keys_ts", &["keys", "--manifest", "lamplight.toml", "--lang", "ts", "-o", "OUT"]),
+];
+
+type FolderTrap = (&'static str, fn(&Writer, &str) -> Outcome);
+type FileTrap = (&'static str, fn(&Writer) -> Outcome);
+
+/// Traps at the place of a file below a folder.
+const FOLDER_TRAPS: &[FolderTrap] = &[
+    ("foreign_file", folder_foreign_file),
+    ("link_to_a_file", folder_link_to_file),
+    ("link_to_a_folder", folder_link_to_folder),
+    ("pipe", folder_pipe),
+    ("folder_in_the_way", folder_in_the_way),
+];
+
+/// Traps at the place of the file that the user names.
+const FILE_TRAPS: &[FileTrap] = &[
+    ("foreign_file", file_foreign),
+    ("own_file", file_own),
+    ("link_to_a_foreign_file", file_link_to_foreign),
+    ("link_to_an_own_file", file_link_to_own),
+    ("link_to_nowhere", file_link_to_nowhere),
+    ("pipe", file_pipe),
+    ("device", file_device),
+    ("folder", file_folder),
+];
+
+pub fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for writer in FOLDERS {
+        for (trap, run) in FOLDER_TRAPS {
+            let name = format!("traps::folder::{}::{trap}", writer.name);
+            trials.push(Trial::test(name, move || each_place(writer, *run)));
+        }
+        if writer.files.is_empty() {
+            let name = format!("traps::folder::{}::neighbours", writer.name);
+            trials.push(Trial::test(name, move || neighbours(writer)));
+        }
+    }
+    for writer in FILES {
+        for (trap, run) in FILE_TRAPS {
+            let name = format!("traps::file::{}::{trap}", writer.name);
+            trials.push(Trial::test(name, move || run(writer)));
+        }
+    }
+    trials.push(Trial::test("traps::standard_output", standard_output));
+    trials.push(Trial::test("traps::blobs_of_a_foreign_folder", foreign_blobs));
+    trials.push(Trial::test("traps::parts_of_a_bundle", parts));
+    trials.push(Trial::test("traps::incomplete_merge", incomplete_merge));
+    trials
+}
+
+const MANIFEST: &str = "[program.small]\nwesl = \"main.wesl\"\ntargets = [\"wgsl\", \"glsl330\"]\n\
+    [program.small.axis]\ntint = { values = [\"none\", \"red\", \"green\"] }\n";
+const MAIN: &str = "@fragment fn fs_main(@location(0) x: f32) -> @location(0) vec4f {
+    @if(tint == red) { return vec4f(x, 0.0, 0.0, 1.0); }
+    @elif(tint == green) { return vec4f(0.0, x, 0.0, 1.0); }
+    @else { return vec4f(x); }
+}\n";
+const HALF: &str = "fn half(x: f32) -> f32 { return 0.5 * x; }\n";
+const CASES: &str = "[[case]]\nfunction = \"half\"\nformula = \"0.5 * x\"\n\
+    [case.inputs]\nx = [1.0, 2.0]\n";
+const MINE: &[u8] = b"{ \"mine\": true }\n";
+
+/// A package and a bundle of it.
+struct Place(TempDir);
+
+impl Place {
+    fn new(writer: &Writer) -> Result<Self, Failed> {
+        let place = Self(tempfile::tempdir()?);
+        for (name, text) in [
+            ("lamplight.toml", MANIFEST),
+            ("main.wesl", MAIN),
+            ("half.wesl", HALF),
+            ("half.toml", CASES),
+        ] {
+            fs::write(place.at(name), text)?;
+        }
+        if writer.arguments.contains(&"ready") {
+            place.succeeds(&Self::command_line(&FOLDERS[0], "ready", false), false)?;
+        }
+        Ok(place)
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command_line(writer: &Writer, out: &str, force: bool) -> Vec<String> {
+        let words = writer.arguments.iter().map(|word| word.replace("OUT", out));
+        words.chain(force.then(|| "--force".to_owned())).collect()
+    }
+
+    /// Exit code and what was said; an endless command is over when it has said something.
+    fn run(&self, words: &[String], endless: bool) -> Result<(i32, String), Failed> {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+        command.args(words).current_dir(self.0.path()).stdin(Stdio::null());
+        if !endless {
+            let output = command.output()?;
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            return Ok((output.status.code().unwrap_or(-1), said));
+        }
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().ok_or("no output")?).read_line(&mut line)?;
+        if !line.is_empty() {
+            child.kill()?;
+            child.wait()?;
+            return Ok((0, line));
+        }
+        let output = child.wait_with_output()?;
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        Ok((output.status.code().unwrap_or(-1), said))
+    }
+
+    fn succeeds(&self, words: &[String], endless: bool) -> Outcome {
+        match self.run(words, endless)? {
+            (0, _) => Ok(()),
+            (code, said) => Err(format!("{words:?}: {code}: {said}").into()),
+        }
+    }
+
+    /// Ends with exit code 1 and names the place.
+    fn refuses(&self, words: &[String], endless: bool) -> Outcome {
+        match self.run(words, endless)? {
+            (1, said) if said.contains("cannot write") && said.contains("help: ") => Ok(()),
+            (code, said) => Err(format!("{words:?} should refuse: {code}: {said}").into()),
+        }
+    }
+}
+
+/// Everything below a folder: files with their bytes, and what else there is. Links aside.
+fn listed(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next)? {
+            let entry = entry?;
+            let name = entry.path().strip_prefix(folder)?.to_string_lossy().into_owned();
+            let kind = entry.file_type()?;
+            if kind.is_dir() {
+                folders.push(entry.path());
+            }
+            let bytes = if kind.is_file() { fs::read(entry.path())? } else { Vec::new() };
+            found.insert(name, bytes);
+        }
+    }
+    Ok(found)
+}
+
+fn ensure(holds: bool, message: impl Into<String>) -> Outcome {
+    if holds { Ok(()) } else { Err(message.into().into()) }
+}
+
+/// A few files that the command writes: the first and last of each folder.
+fn places(writer: &Writer) -> Result<Vec<String>, Failed> {
+    if !writer.files.is_empty() {
+        return Ok(writer.files.iter().map(|name| (*name).to_owned()).collect());
+    }
+    let place = Place::new(writer)?;
+    place.succeeds(&Place::command_line(writer, "out", false), writer.endless)?;
+    let out = place.at("out");
+    let mut by_folder: BTreeMap<PathBuf, Vec<String>> = BTreeMap::new();
+    for (name, _) in listed(&out)? {
+        let is_own = name.starts_with(".lamplight") || name.contains("CACHEDIR");
+        if out.join(&name).is_file() && !is_own {
+            let folder = Path::new(&name).parent().unwrap_or(Path::new("")).to_owned();
+            by_folder.entry(folder).or_default().push(name);
+        }
+    }
+    ensure(!by_folder.is_empty(), "it wrote nothing")?;
+    let mut places: Vec<String> = Vec::new();
+    for (_, names) in by_folder.into_iter().take(3) {
+        places.extend(names.first().cloned());
+        places.extend(names.last().filter(|_| names.len() > 1).cloned());
+    }
+    Ok(places)
+}
+
+fn each_place(writer: &Writer, trap: fn(&Writer, &str) -> Outcome) -> Outcome {
+    for name in places(writer)? {
+        trap(writer, &name).map_err(|failed| format!("`{name}`: {failed:?}"))?;
+    }
+    Ok(())
+}
+
+/// The cache is no result: what cannot be kept costs time and nothing else.
+fn is_cache(writer: &Writer) -> bool {
+    writer.name == "cache"
+}
+
+fn refused(place: &Place, writer: &Writer, force: bool) -> Outcome {
+    let words = Place::command_line(writer, "out", force);
+    match is_cache(writer) {
+        true => place.succeeds(&words, writer.endless),
+        false => place.refuses(&words, writer.endless),
+    }
+}
+
+fn folder_foreign_file(writer: &Writer, name: &str) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at("out").join(name);
+    fs::create_dir_all(path.parent().ok_or("no folder")?)?;
+    fs::write(&path, MINE)?;
+    let before = listed(&place.at("out"))?;
+    refused(&place, writer, false)?;
+    ensure(fs::read(&path)? == MINE, "it was overwritten")?;
+    if is_cache(writer) || !writer.files.is_empty() {
+        return Ok(());
+    }
+    ensure(listed(&place.at("out"))? == before, "something was written all the same")?;
+    place.succeeds(&Place::command_line(writer, "out", true), writer.endless)?;
+    ensure(fs::read(&path)? != MINE, "`--force` did not replace it")
+}
+
+fn folder_link_to_file(writer: &Writer, name: &str) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at("out").join(name);
+    fs::create_dir_all(path.parent().ok_or("no folder")?)?;
+    fs::write(place.at("victim"), MINE)?;
+    symlink(place.at("victim"), &path)?;
+    for force in [false, true] {
+        refused(&place, writer, force)?;
+        ensure(fs::read(place.at("victim"))? == MINE, "the link was followed")?;
+        ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")?;
+    }
+    Ok(())
+}
+
+fn folder_link_to_folder(writer: &Writer, name: &str) -> Outcome {
+    let Some(folder) = Path::new(name).parent().filter(|folder| folder != &Path::new("")) else {
+        return Ok(());
+    };
+    let place = Place::new(writer)?;
+    let path = place.at("out").join(folder);
+    fs::create_dir_all(path.parent().ok_or("no folder")?)?;
+    fs::create_dir(place.at("victims"))?;
+    for victim in ["notes.txt", "0000000000000000.wgsl", ".tmp-1-1"] {
+        fs::write(place.at("victims").join(victim), MINE)?;
+    }
+    symlink(place.at("victims"), &path)?;
+    let before = listed(&place.at("victims"))?;
+    for force in [false, true] {
+        refused(&place, writer, force)?;
+        ensure(listed(&place.at("victims"))? == before, "the link was followed")?;
+    }
+    Ok(())
+}
+
+fn folder_pipe(writer: &Writer, name: &str) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at("out").join(name);
+    fs::create_dir_all(path.parent().ok_or("no folder")?)?;
+    pipe(&path)?;
+    for force in [false, true] {
+        refused(&place, writer, force)?;
+        ensure(fs::symlink_metadata(&path)?.file_type().is_fifo(), "the pipe was replaced")?;
+    }
+    Ok(())
+}
+
+fn folder_in_the_way(writer: &Writer, name: &str) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at("out").join(name);
+    fs::create_dir_all(&path)?;
+    fs::write(path.join("notes.txt"), MINE)?;
+    for force in [false, true] {
+        refused(&place, writer, force)?;
+        ensure(fs::read(path.join("notes.txt"))? == MINE, "it was removed")?;
+    }
+    Ok(())
+}
+
+/// What a user puts beside our files stays; what a killed run left goes.
+fn neighbours(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    let out = place.at("out");
+    place.succeeds(&Place::command_line(writer, "out", false), writer.endless)?;
+    let mut kept = Vec::new();
+    for folder in places(writer)?.iter().filter_map(|name| Path::new(name).parent()) {
+        for name in ["notes.txt", ".tmp-1-1", "0123456789abcdef.wgsl"] {
+            kept.push(out.join(folder).join(name));
+        }
+    }
+    kept.push(out.join(".lamplight-0123456789abcdef/precious"));
+    kept.push(out.join(".lamplight-fedcba9876543210/mark"));
+    for path in &kept {
+        fs::create_dir_all(path.parent().ok_or("no folder")?)?;
+        fs::write(path, MINE)?;
+    }
+    let left = out.join(".lamplight-00000000000000ff");
+    fs::create_dir(&left)?;
+    fs::write(left.join("mark"), "Lamplight: files of a run that is not over.")?;
+    fs::write(left.join("half"), "half of a file")?;
+    fs::write(place.at("main.wesl"), MAIN.replace("vec4f(x)", "vec4f(0.5 * x)"))?;
+    fs::write(place.at("half.toml"), CASES.replace("2.0", "3.0"))?;
+    place.succeeds(&Place::command_line(writer, "out", false), writer.endless)?;
+    for path in &kept {
+        ensure(fs::read(path).is_ok_and(|found| found == MINE), format!("{path:?} is gone"))?;
+    }
+    ensure(!left.exists(), "what a killed run left is still there")
+}
+
+/// The name that a file command writes to for `out`.
+fn file_name(writer: &Writer) -> &'static str {
+    if writer.arguments.contains(&"OUT.lamplight") { "out.lamplight" } else { "out" }
+}
+
+fn file_foreign(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at(file_name(writer));
+    fs::write(&path, MINE)?;
+    place.refuses(&Place::command_line(writer, "out", false), false)?;
+    ensure(fs::read(&path)? == MINE, "it was overwritten")?;
+    place.succeeds(&Place::command_line(writer, "out", true), false)?;
+    ensure(fs::read(&path)? != MINE, "`--force` did not replace it")
+}
+
+/// An empty file, then its own, then its own again.
+fn file_own(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    fs::write(place.at(file_name(writer)), b"")?;
+    for _ in 0..2 {
+        place.succeeds(&Place::command_line(writer, "out", false), false)?;
+    }
+    let left = listed(place.0.path())?;
+    let left = left.keys().find(|name| name.starts_with(".lamplight"));
+    ensure(left.is_none(), format!("{left:?} was left"))
+}
+
+fn file_link_to_foreign(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at(file_name(writer));
+    fs::write(place.at("victim"), MINE)?;
+    symlink(place.at("victim"), &path)?;
+    place.refuses(&Place::command_line(writer, "out", false), false)?;
+    ensure(fs::read(place.at("victim"))? == MINE, "it was overwritten")?;
+    ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")
+}
+
+fn file_link_to_own(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at(file_name(writer));
+    fs::create_dir(place.at("elsewhere"))?;
+    fs::write(place.at("elsewhere/file"), b"")?;
+    symlink(place.at("elsewhere/file"), &path)?;
+    place.succeeds(&Place::command_line(writer, "out", false), false)?;
+    ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")?;
+    ensure(!fs::read(place.at("elsewhere/file"))?.is_empty(), "nothing was written")
+}
+
+fn file_link_to_nowhere(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    symlink(place.at("nowhere"), place.at(file_name(writer)))?;
+    for force in [false, true] {
+        place.refuses(&Place::command_line(writer, "out", force), false)?;
+        ensure(!place.at("nowhere").exists(), "the link was followed")?;
+    }
+    Ok(())
+}
+
+fn file_pipe(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at(file_name(writer));
+    pipe(&path)?;
+    let reader = std::thread::spawn({
+        let path = path.clone();
+        move || {
+            let mut bytes = Vec::new();
+            fs::File::open(path).and_then(|mut pipe| pipe.read_to_end(&mut bytes)).map(|_| bytes)
+        }
+    });
+    place.succeeds(&Place::command_line(writer, "out", false), false)?;
+    let read = reader.join().map_err(|_| "the reader stopped")??;
+    ensure(!read.is_empty(), "nothing came through the pipe")?;
+    ensure(fs::symlink_metadata(&path)?.file_type().is_fifo(), "the pipe was replaced")
+}
+
+/// Through a link, so that a mistake costs a link and no device.
+fn file_device(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at(file_name(writer));
+    symlink("/dev/null", &path)?;
+    place.succeeds(&Place::command_line(writer, "out", false), false)?;
+    ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")?;
+    ensure(fs::metadata("/dev/null")?.file_type().is_char_device(), "the device was replaced")
+}
+
+fn file_folder(writer: &Writer) -> Outcome {
+    let place = Place::new(writer)?;
+    let path = place.at(file_name(writer));
+    fs::create_dir(&path)?;
+    fs::write(path.join("notes.txt"), MINE)?;
+    for force in [false, true] {
+        place.refuses(&Place::command_line(writer, "out", force), false)?;
+        ensure(fs::read(path.join("notes.txt"))? == MINE, "it was removed")?;
+    }
+    Ok(())
+}
+
+fn pipe(path: &Path) -> Outcome {
+    let made = Command::new("mkfifo").arg(path).status()?;
+    ensure(made.success(), "mkfifo failed")
+}
+
+/// `-o /dev/stdout` goes to standard output, wherever that leads.
+fn standard_output() -> Outcome {
+    let writer = FILES.iter().find(|writer| writer.name == "get").ok_or("no such command")?;
+    let place = Place::new(writer)?;
+    let words = Place::command_line(writer, "/dev/stdout", false);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+    command.args(&words).current_dir(place.0.path());
+    let piped = command.output()?;
+    ensure(piped.status.success() && !piped.stdout.is_empty(), "nothing was written")?;
+    let file = place.at("redirected");
+    fs::write(&file, "before\n")?;
+    let status = command.stdout(fs::OpenOptions::new().append(true).open(&file)?).status()?;
+    let found = fs::read(&file)?;
+    ensure(status.success() && found == [b"before\n".as_slice(), &piped.stdout].concat(), "lost")
+}
+
+/// The issue as it was seen: `blobs` is a folder of somebody else's.
+fn foreign_blobs() -> Outcome {
+    let place = Place::new(&FOLDERS[0])?;
+    fs::create_dir_all(place.at("app/blobs"))?;
+    fs::write(place.at("app/blobs/picture.png"), MINE)?;
+    fs::write(place.at("app/manifest.json"), "{ \"name\": \"An app\", \"icons\": [] }")?;
+    let before = listed(&place.at("app"))?;
+    place.refuses(&Place::command_line(&FOLDERS[0], "app", false), false)?;
+    ensure(listed(&place.at("app"))? == before, "something changed")?;
+    place.succeeds(&Place::command_line(&FOLDERS[0], "app", true), false)?;
+    ensure(fs::read(place.at("app/blobs/picture.png"))? == MINE, "`--force` deleted a file")
+}
+
+/// One permutation does not replace all of them unless it is told to.
+fn parts() -> Outcome {
+    let place = Place::new(&FOLDERS[0])?;
+    place.succeeds(&Place::command_line(&FOLDERS[0], "out", false), false)?;
+    let before = listed(&place.at("out"))?;
+    for part in [&["--only", "tint=red"][..], &["--shard", "1/2"], &["--target", "wgsl"]] {
+        let words = |force| {
+            let mut words = Place::command_line(&FOLDERS[0], "out", force);
+            words.extend(part.iter().map(|word| (*word).to_owned()));
+            words
+        };
+        let (code, said) = place.run(&words(false), false)?;
+        ensure(code == 1 && said.contains("this run would"), format!("{part:?}: {code} {said}"))?;
+        ensure(listed(&place.at("out"))? == before, "something changed")?;
+    }
+    Ok(())
+}
+
+/// `merge --manifest` looks before it writes.
+fn incomplete_merge() -> Outcome {
+    let place = Place::new(&FOLDERS[0])?;
+    place.succeeds(&Place::command_line(&FOLDERS[0], "whole", false), false)?;
+    let shard = ["gen", "--no-cache", "--shard", "1/3", "-o", "part"].map(str::to_owned);
+    place.succeeds(&shard, false)?;
+    let before = listed(&place.at("whole"))?;
+    let merge = ["merge", "whole", "part", "--manifest", "lamplight.toml"].map(str::to_owned);
+    let (code, said) = place.run(&merge, false)?;
+    ensure(code == 3 && said.contains("a shard is missing"), format!("{code} {said}"))?;
+    ensure(listed(&place.at("whole"))? == before, "something was written")
+}
