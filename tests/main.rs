@@ -30,6 +30,7 @@ mod keys;
 mod library;
 mod link;
 mod link_compare;
+mod link_random;
 mod metal;
 mod mutate;
 mod packages;
@@ -72,6 +73,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     keys::trials,
     library::trials,
     link::trials,
+    link_random::trials,
     metal::trials,
     mutate::trials,
     packages::trials,

@@ -172,9 +172,10 @@ pub struct Native {
     pub buffer_sizes: Option<BufferSizes>,
 }
 
-/// How a target takes the value of an override: in WGSL as the pipeline constant of its `@id` or
-/// else its name, in SPIR-V as the specialisation constant `id`, in MSL as the function constant
-/// `id`, elsewhere as the macro `symbol`, defined before the text (in GLSL after `#version`).
+/// How a target takes the value of an override: in WGSL as the pipeline constant of its `@id`, or
+/// else `symbol` where it was given another name, or else its name; in SPIR-V as the specialisation
+/// constant `id`, in MSL as the function constant `id`, elsewhere as the macro `symbol`, defined
+/// before the text (in GLSL after `#version`).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Choice {
     /// As in the reflection.

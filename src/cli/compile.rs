@@ -49,7 +49,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let Ready { project, composed, context } = arguments.input.compose(form)?;
     let files = validate(&composed).and_then(|validated| {
         warn(&project.sources, &context.own(validate::lint(&composed, &validated)), form);
-        emit::check(&composed, &validated)?;
+        emit::check(&composed, &validated, &arguments.target)?;
         files(&validated, &arguments)
     });
     let files = files

@@ -3,7 +3,9 @@
 use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
 use naga::proc::BoundsCheckPolicies;
 
+use super::lacks;
 use super::reflect::place;
+use super::rename;
 use super::slots::{EXPLICIT_LIMIT, Numbering, assign, native};
 use super::{Emitted, Source};
 use crate::bundle::{Combined, Kind, Native};
@@ -14,6 +16,11 @@ pub fn write(
     version: Version,
     numbering: Numbering,
 ) -> Result<Emitted, String> {
+    if let Some(reason) = lacks::first(source.module, version) {
+        return Err(reason);
+    }
+    let changed = rename::renamed(source.module, &is_taken);
+    let source = &Source { module: changed.as_ref().unwrap_or(source.module), ..*source };
     let options = options(source, version, numbering)?;
     let pipeline = PipelineOptions {
         shader_stage: source.stage,
@@ -35,6 +42,37 @@ pub fn write(
     text = text.replacen("#extension ARB_", "#extension GL_ARB_", 1);
     name_blocks(source, &mut text, &mut info);
     Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &info, numbering) })
+}
+
+/// Words of extensions that compilers of GLSL keep whether they are asked for or not, and naga
+/// does not.
+const WORDS: &[&str] = &[
+    "devicecoherent",
+    "fcoopmatNV",
+    "icoopmatNV",
+    "nonprivate",
+    "pervertexEXT",
+    "pervertexNV",
+    "queuefamilycoherent",
+    "samplerExternalOES",
+    "shadercallcoherent",
+    "subgroupcoherent",
+    "ucoopmatNV",
+    "workgroupcoherent",
+];
+
+/// How types of sized numbers begin, and what follows.
+const SIZED: &[&str] = &["f16", "f32", "f64", "i16", "i32", "i64", "i8", "u16", "u32", "u64", "u8"];
+const KINDS: &[&str] = &["image", "mat", "sampler", "subpass", "texture", "vec"];
+
+fn is_taken(name: &str) -> bool {
+    let behind = |start: &&str| name.strip_prefix(*start);
+    let is_sized =
+        SIZED.iter().filter_map(behind).any(|rest| KINDS.iter().any(|kind| rest.starts_with(kind)));
+    let number = ["uint", "int", "float"].iter().find_map(behind);
+    let is_number = number.is_some_and(|bits| matches!(bits, "8_t" | "16_t" | "32_t" | "64_t"));
+    // A second one of that name would be `gl_1`.
+    is_sized || is_number || WORDS.contains(&name) || name.trim_end_matches('_') == "gl"
 }
 
 fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Result<Options, String> {

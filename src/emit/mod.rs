@@ -12,8 +12,11 @@
 mod glsl;
 mod header;
 mod isolate;
+mod lacks;
+mod lists;
 mod names;
 mod reflect;
+mod rename;
 mod slots;
 mod specialise;
 pub mod spirv;
@@ -22,12 +25,12 @@ pub use header::is_header_line;
 pub use isolate::isolate;
 pub use names::type_name;
 pub use reflect::reflect;
-pub use specialise::check;
 
 use naga::ShaderStage;
 
 use crate::bundle::{self, Native, Target};
-use crate::diagnostic::{Diagnostic, codes};
+use crate::compose::Composed;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::{Validated, guard, on_large_stack};
 
 /// An output language.
@@ -71,6 +74,20 @@ pub struct Emitted {
     pub bytes: Vec<u8>,
     /// Its entry point's name, slots and combined samplers.
     pub native: Native,
+}
+
+/// Refuses what targets have no place or no word for, before anything is written: defaults of
+/// overrides that are not numbers, and functions that are newer than a target's language.
+///
+/// # Errors
+/// `dependent-override`, `emit-failed`; in the author's places where `composed` knows them.
+pub fn check(
+    composed: &Composed,
+    validated: &Validated,
+    targets: &[Target],
+) -> Result<(), Diagnostics> {
+    specialise::check(composed, validated)?;
+    lacks::check(composed, &validated.module, targets)
 }
 
 /// Writes one entry point for one target. Overrides stay open: [`Native::choices`] says how each

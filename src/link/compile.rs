@@ -75,7 +75,8 @@ fn compile_whole(
     let whole = || validate(text.composed);
     // The lean text is quick to read; the whole one knows where its mistakes are.
     let validated = validate(text.lean).or_else(|_| whole())?;
-    emit::check(text.lean, &validated).or_else(|_| emit::check(text.composed, &whole()?))?;
+    emit::check(text.lean, &validated, targets)
+        .or_else(|_| emit::check(text.composed, &whole()?, targets))?;
     let unit = unit(&validated, entry, targets).map_err(|error| vec![error])?;
     // The lean text has no places to tell of.
     let warnings = if validate::has_lints(&validated) { lint(text)? } else { Vec::new() };

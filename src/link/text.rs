@@ -69,32 +69,27 @@ fn length(text: &str) -> Option<usize> {
 
 fn declaration(text: &str) -> Result<Declared<'_>, String> {
     let head = head(text);
-    let has = |word: &str| head.words.contains(&word);
-    let last = || head.words.last().copied();
+    // Where the name comes last, it may be a word of another language.
+    let (last, before) =
+        head.words.split_last().map_or((None, &[][..]), |(last, all)| (Some(*last), all));
+    let has = |word: &str| before.contains(&word);
     let (kind, name) = match head.stop {
         _ if has("struct") || has("cbuffer") => {
             let kind = if has("struct") { Kind::Type } else { Kind::Global };
-            (
-                kind,
-                head.words
-                    .iter()
-                    .skip_while(|word| !matches!(**word, "struct" | "cbuffer"))
-                    .nth(1)
-                    .copied(),
-            )
+            (kind, last)
         }
-        _ if has("typedef") || has("alias") => (Kind::Type, last()),
-        b'(' => (Kind::Function, last()),
+        _ if has("typedef") || has("alias") => (Kind::Type, last),
+        b'(' => (Kind::Function, last),
         // A block of uniforms is called by the name of its instance.
         b'{' if has("uniform") || has("buffer") => {
             (Kind::Global, words(text).last().map(|word| word.text))
         }
         b'{' | b' ' => (Kind::Global, None),
-        _ if has("const") && !head.words.iter().any(|word| word.starts_with("Sampler")) => {
-            (Kind::Constant, last())
+        _ if has("const") && !before.iter().any(|word| word.starts_with("Sampler")) => {
+            (Kind::Constant, last)
         }
-        _ if has("constant") => (Kind::Constant, last()),
-        _ => (Kind::Global, last()),
+        _ if has("constant") => (Kind::Constant, last),
+        _ => (Kind::Global, last),
     };
     let name = name.ok_or_else(|| {
         format!("a declaration without a name: {}", text.chars().take(60).collect::<String>())

@@ -14,6 +14,8 @@ use naga::back::hlsl::{
 
 use crate::bundle::{HeapSampler, Kind, Native, SamplerHeap, Semantic, Target};
 use crate::emit::reflect::inputs;
+use crate::emit::lists;
+use crate::emit::rename;
 use crate::emit::slots::{Numbering, assign, native};
 use crate::emit::{Emitted, Entry, Source};
 
@@ -34,12 +36,35 @@ const INDEX_SPACE: u8 = u8::MAX;
 const HEAPS: [(&str, Kind); 2] =
     [("nagaSamplerHeap", Kind::Sampler), ("nagaComparisonSamplerHeap", Kind::ComparisonSampler)];
 
+/// Words of HLSL that naga does not keep from authors.
+const WORDS: &[&str] = &[
+    "SubpassInput",
+    "SubpassInputMS",
+    "layout",
+    "sampler1D",
+    "sampler2D",
+    "sampler3D",
+    "samplerCUBE",
+];
+
+/// How functions and types begin that naga adds: it does not keep such names from authors. What
+/// begins with `naga_` it does.
+const PREFIXES: &[&str] =
+    &["Construct", "GetMat", "Naga", "SetMat", "ZeroValue", "nagaComparison", "nagaGroup", "nagaSampler", "ret_"];
+
+fn is_taken(name: &str) -> bool {
+    WORDS.contains(&name) || PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+}
+
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let options = options(source)?;
-    let pipeline = PipelineOptions { entry_point: Some((source.stage, source.entry.to_owned())) };
+    let changed = rename::renamed(source.module, &is_taken);
+    let module = changed.as_ref().unwrap_or(source.module);
+    let entry = module.entry_points.get(source.index).ok_or("there is no entry point")?;
+    let pipeline = PipelineOptions { entry_point: Some((source.stage, entry.name.clone())) };
     let mut text = String::new();
     let info = Writer::new(&mut text, &options, &pipeline)
-        .write(source.module, source.info, None)
+        .write(module, source.info, None)
         .map_err(|error| error.to_string())?;
     let name = info
         .entry_point_names
@@ -47,7 +72,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         .next()
         .ok_or("no entry point was written")?
         .map_err(|error| error.to_string())?;
-    let text = with_plain_zeros(&text);
+    let text = with_plain_zeros(&lists::with_plain_constants(&text));
     Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &name, &options) })
 }
 

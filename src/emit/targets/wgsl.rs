@@ -12,10 +12,35 @@ pub const TARGET: Entry = Entry { target: Target::WGSL, extension: "wgsl", binar
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let text = write_string(source.module, source.info, WriterFlags::empty()).map_err(|error| error.to_string())?;
-    let mut native = native(source, source.entry, Numbering::Author);
+    // naga says not what it calls things: it adds to names that end with a digit.
+    let entry = named(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;
+    let mut native = native(source, entry, Numbering::Author);
     let overrides = source.module.overrides.iter().map(|(_, constant)| constant);
-    native.choices = overrides
-        .filter_map(|constant| Some(Choice { name: constant.name.clone()?, id: constant.id.map(u32::from), symbol: None }))
-        .collect();
+    native.choices = overrides.zip(named(&text, "override", None)).filter_map(choice).collect();
     Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+fn choice((constant, written): (&naga::Override, &str)) -> Option<Choice> {
+    let name = constant.name.clone()?;
+    let symbol = (name != written).then(|| written.to_owned());
+    Some(Choice { name, id: constant.id.map(u32::from), symbol })
+}
+
+/// The names of declarations that begin with a word, in the order of the text; of those behind a
+/// line that begins with `after`, if that is given.
+fn named<'t>(
+    text: &'t str,
+    word: &'static str,
+    after: Option<&'static str>,
+) -> impl Iterator<Item = &'t str> {
+    let before = std::iter::once("").chain(text.lines());
+    let lines = before.zip(text.lines()).filter(move |(before, _)| {
+        after.is_none_or(|after| before.starts_with(after))
+    });
+    lines.filter_map(move |(_, line)| {
+        // An override may have its number in front.
+        let line = line.strip_prefix("@id(").and_then(|line| line.split_once(") ")).map_or(line, |(_, line)| line);
+        let rest = line.strip_prefix(word)?.strip_prefix(' ')?;
+        rest.split(['(', ':', ' ']).next()
+    })
 }

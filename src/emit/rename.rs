@@ -1,0 +1,70 @@
+//! Names of an author's that a writer takes for its own.
+
+use naga::{Function, Module, Type, TypeInner};
+
+/// The module with other names in the place of those that are taken; `None` where there are none.
+/// The name of the entry point is changed too.
+pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Module> {
+    if !names(module).any(is_taken) {
+        return None;
+    }
+    let mut module = module.clone();
+    let change = |name: &mut String| {
+        if is_taken(name) {
+            // As naga does where it knows better.
+            name.insert_str(0, "gen_");
+        }
+    };
+    let new = |name: &mut Option<String>| name.iter_mut().for_each(change);
+    let types: Vec<_> = module.types.iter().map(|(handle, ty)| (handle, ty.clone())).collect();
+    for (handle, Type { mut name, mut inner }) in types {
+        new(&mut name);
+        if let TypeInner::Struct { members, .. } = &mut inner {
+            members.iter_mut().for_each(|member| new(&mut member.name));
+        }
+        let changed = Type { name, inner };
+        // naga takes a type in the place of another, and not in its own.
+        if module.types[handle] != changed {
+            module.types.replace(handle, changed);
+        }
+    }
+    module.constants.iter_mut().for_each(|(_, constant)| new(&mut constant.name));
+    module.global_variables.iter_mut().for_each(|(_, variable)| new(&mut variable.name));
+    let change_function = |function: &mut Function| {
+        new(&mut function.name);
+        function.arguments.iter_mut().for_each(|argument| new(&mut argument.name));
+        function.local_variables.iter_mut().for_each(|(_, local)| new(&mut local.name));
+        function.named_expressions.values_mut().for_each(change);
+    };
+    module.functions.iter_mut().for_each(|(_, function)| change_function(function));
+    for point in &mut module.entry_points {
+        change(&mut point.name);
+        change_function(&mut point.function);
+    }
+    Some(module)
+}
+
+/// Every name of a module.
+fn names(module: &Module) -> impl Iterator<Item = &str> {
+    let members = module.types.iter().flat_map(|(_, ty)| match &ty.inner {
+        TypeInner::Struct { members, .. } => members.as_slice(),
+        _ => &[],
+    });
+    let types = module.types.iter().map(|(_, ty)| &ty.name);
+    let constants = module.constants.iter().map(|(_, constant)| &constant.name);
+    let variables = module.global_variables.iter().map(|(_, variable)| &variable.name);
+    let points = module.entry_points.iter();
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let functions = functions.chain(points.clone().map(|point| &point.function));
+    let declared = types.chain(members.map(|member| &member.name)).chain(constants);
+    let declared = declared.chain(variables).filter_map(Option::as_deref);
+    declared.chain(functions.flat_map(of_function)).chain(points.map(|point| point.name.as_str()))
+}
+
+fn of_function(function: &Function) -> impl Iterator<Item = &str> {
+    let arguments = function.arguments.iter().map(|argument| &argument.name);
+    let locals = function.local_variables.iter().map(|(_, local)| &local.name);
+    let declared = std::iter::once(&function.name).chain(arguments).chain(locals);
+    let values = function.named_expressions.values().map(String::as_str);
+    declared.filter_map(Option::as_deref).chain(values)
+}

@@ -1,0 +1,231 @@
+//! Random programs: their outputs depend on sources, settings and target alone, every judge takes
+//! them, and they compute what the evaluator computes.
+//!
+//! `seed -> program -> outputs, made in several ways and compared -> judges -> executors`
+//!
+//! `cargo xtask fuzz link` runs the trial `link::random` with another seed and more programs.
+
+mod body;
+mod draft;
+mod judge;
+mod names;
+mod numbers;
+mod outside;
+mod program;
+mod random;
+mod shrink;
+mod stages;
+mod statements;
+mod types;
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+
+use judge::{Finding, Output, Verdict};
+use lamplight::bundle::Target;
+use libtest_mimic::{Failed, Trial};
+use program::Program;
+use random::Random;
+
+/// How many programs the tests make, and from which seed on.
+const PROGRAMS: u64 = 200;
+const SEED: u64 = 1;
+/// The judges beside the crate see one program in so many.
+const JUDGED: u64 = 4;
+/// Programs whose outputs are judged together.
+const BATCH: u64 = 64;
+/// Programs of a hundred that the crate may refuse, since the generator does not know everything.
+const REFUSED: usize = 10;
+
+pub fn trials() -> Vec<Trial> {
+    vec![Trial::test("link::random", random_programs)]
+}
+
+/// A number from the environment.
+fn number(name: &str, usual: u64) -> Result<u64, Failed> {
+    match std::env::var(name) {
+        Ok(text) => Ok(text.parse().map_err(|_| format!("{name} is not a number"))?),
+        Err(_) => Ok(usual),
+    }
+}
+
+fn random_programs() -> Result<(), Failed> {
+    let programs = number("LAMPLIGHT_LINK_PROGRAMS", PROGRAMS)?;
+    let seed = number("LAMPLIGHT_LINK_SEED", SEED)?;
+    if std::env::var_os("LAMPLIGHT_LINK_PRINT").is_some() {
+        let program = Program::new(seed);
+        println!("{}\n{}", program.manifest, program.text);
+    }
+    let every = number("LAMPLIGHT_LINK_JUDGED", JUDGED)?.max(1);
+    let mut tally = Tally::default();
+    let mut next = seed;
+    while next < seed + programs {
+        let end = (next + BATCH).min(seed + programs);
+        batch(next..end, every, &mut tally)?;
+        next = end;
+        if programs > PROGRAMS {
+            println!("{tally}");
+        }
+    }
+    println!("{tally}");
+    for (kind, found) in &tally.findings {
+        told(kind, found)?;
+    }
+    let refused: usize = tally.refused.values().sum();
+    if refused * 100 > REFUSED * tally.programs {
+        return Err(format!("the crate refuses {refused} programs: {:?}", tally.refused).into());
+    }
+    match tally.findings.is_empty() {
+        true => Ok(()),
+        false => Err(format!("{tally}").into()),
+    }
+}
+
+/// What became of the programs.
+#[derive(Default)]
+struct Tally {
+    programs: usize,
+    outputs: usize,
+    judged: usize,
+    /// By the words of the first error.
+    refused: BTreeMap<String, usize>,
+    /// Compiled as a whole, by reason and target: how many, and the seed of the first.
+    whole: BTreeMap<String, (usize, u64)>,
+    /// By kind: how many, and the first.
+    findings: BTreeMap<String, Found>,
+}
+
+struct Found {
+    count: usize,
+    seed: u64,
+    finding: Finding,
+}
+
+impl Tally {
+    fn find(&mut self, seed: u64, finding: Finding) {
+        let first = || Found { count: 0, seed, finding: finding.clone() };
+        self.findings.entry(finding.kind.clone()).or_insert_with(first).count += 1;
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { programs, outputs, judged, .. } = self;
+        write!(f, "{programs} programs, {outputs} outputs, {judged} judged by others")?;
+        let refused: usize = self.refused.values().sum();
+        write!(f, "; {refused} refused; as a whole: {:?}; findings:", self.whole)?;
+        for (kind, Found { count, seed, .. }) in &self.findings {
+            write!(f, "\n  {count} x {kind} (seed {seed})")?;
+        }
+        if self.findings.is_empty() { f.write_str(" none") } else { Ok(()) }
+    }
+}
+
+fn batch(seeds: std::ops::Range<u64>, every: u64, tally: &mut Tally) -> Result<(), Failed> {
+    let (mut outputs, mut owners): (Vec<Output>, Vec<u64>) = Default::default();
+    for seed in seeds {
+        tally.programs += 1;
+        match judged(seed) {
+            Err(finding) => tally.find(seed, finding),
+            Ok(Verdict::Refused(words)) => {
+                if std::env::var_os("LAMPLIGHT_LINK_REFUSED").is_some() {
+                    std::fs::create_dir_all(findings())?;
+                    let file = findings().join(format!("refused_{seed}.txt"));
+                    std::fs::write(file, format!("{words}\n{}", Program::new(seed).text))?;
+                }
+                *tally.refused.entry(first_words(&words)).or_default() += 1;
+            }
+            Ok(Verdict::Sound(sound)) => {
+                tally.outputs += sound.outputs.len();
+                for (target, reason) in &sound.whole {
+                    let place = format!("{reason:?} in {target}");
+                    tally.whole.entry(place).or_insert((0, seed)).0 += 1;
+                }
+                if seed % every == 0 {
+                    owners.extend(sound.outputs.iter().map(|_| seed));
+                    outputs.extend(sound.outputs);
+                }
+            }
+        }
+    }
+    tally.judged += outputs.len();
+    let views: Vec<&Output> = outputs.iter().collect();
+    for (index, words) in outside::refused(&views)? {
+        tally.find(owners[index], refusal(&outputs[index], &words));
+    }
+    Ok(())
+}
+
+fn refusal(output: &Output, words: &str) -> Finding {
+    let text = match output.target == Target::SPIRV {
+        false => String::from_utf8_lossy(&output.artifact.bytes).into_owned(),
+        true => String::new(),
+    };
+    let line = words.lines().find(|line| line.to_lowercase().contains("error"));
+    let said: String =
+        line.unwrap_or_default().chars().filter(|letter| !letter.is_ascii_digit()).collect();
+    let kind = format!("{} is refused: {said}", output.target);
+    Finding::new(kind, format!("{words}\n{text}"))
+}
+
+/// The start of an error, without the place and the names in it.
+fn first_words(words: &str) -> String {
+    let line = words.lines().next().unwrap_or_default();
+    let message = line.split_once("error").map_or(line, |(_, message)| message);
+    message.chars().filter(|c| !c.is_ascii_digit()).take(60).collect()
+}
+
+/// A panic is a finding too.
+fn judged(seed: u64) -> Result<Verdict, Finding> {
+    let program = Program::new(seed);
+    guarded(&program, seed)
+}
+
+fn guarded(program: &Program, seed: u64) -> Result<Verdict, Finding> {
+    let judged = || judge::judge(program, &mut Random(seed ^ 0x5eed));
+    catch_unwind(AssertUnwindSafe(judged))
+        .unwrap_or_else(|_| Err(Finding::new("panic", program.text.clone())))
+}
+
+/// Writes the first program of a kind of finding, as small as it can be made.
+fn told(kind: &str, found: &Found) -> Result<(), Failed> {
+    let folder = findings();
+    std::fs::create_dir_all(&folder)?;
+    let program = Program::new(found.seed);
+    let (mut small, mut about) = (program.clone(), found.finding.about.clone());
+    if std::env::var_os("LAMPLIGHT_LINK_SHRINK").is_some() {
+        let has = |program: &Program| again(program, found.seed, kind).is_some();
+        small = shrink::shrunk(&program, &has);
+        about = again(&small, found.seed, kind).map_or(about, |finding| finding.about);
+    }
+    let mut text = format!("seed {}: {kind}\n\n{}\n{}\n", found.seed, small.manifest, small.text);
+    let _ = write!(text, "\n{about}\n");
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
+    let name: String = kind.chars().map(plain).take(60).collect();
+    let file = folder.join(format!("{name}_{}.txt", found.seed));
+    println!("{}", file.display());
+    Ok(std::fs::write(file, text)?)
+}
+
+/// Where findings are left.
+fn findings() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("target/fuzz/link")
+}
+
+/// What is wrong with a program, if it is of that kind.
+fn again(program: &Program, seed: u64, kind: &str) -> Option<Finding> {
+    match guarded(program, seed) {
+        Err(finding) => (finding.kind == kind).then_some(finding),
+        Ok(Verdict::Refused(_)) => None,
+        Ok(Verdict::Sound(sound)) => {
+            let is_wanted = |output: &&Output| kind.starts_with(output.target.name());
+            let views: Vec<&Output> = sound.outputs.iter().filter(is_wanted).collect();
+            let refused = outside::refused(&views).ok()?;
+            let findings = refused.iter().map(|(index, words)| refusal(views[*index], words));
+            let mut same = findings.filter(|finding| finding.kind == kind);
+            same.next()
+        }
+    }
+}

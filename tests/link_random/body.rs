@@ -1,0 +1,354 @@
+//! Bodies of functions: who is in scope, and what expressions are made of.
+
+use std::collections::BTreeSet;
+
+use super::draft::{Draft, Texture, TextureKind};
+use super::types::{FLOAT, INT, Scalar, Type, UINT, When};
+
+/// A variable in scope.
+#[derive(Debug, Clone)]
+pub struct Local {
+    pub name: String,
+    pub ty: Type,
+    pub is_mutable: bool,
+}
+
+/// A function while it is written.
+pub struct Body<'d> {
+    pub draft: &'d mut Draft,
+    pub locals: Vec<Local>,
+    /// Textures that are parameters.
+    pub textures: Vec<Texture>,
+    /// Lines so far.
+    pub lines: Vec<String>,
+    /// The lines are there only then.
+    pub given: Option<When>,
+    /// Declarations that are named in it.
+    pub used: BTreeSet<String>,
+    /// Functions that may be called: those before so many.
+    pub callable: usize,
+}
+
+impl Local {
+    /// Its name without what makes a value of a pointer.
+    pub fn plain(&self) -> &str {
+        self.name.trim_matches(['(', '*', ')'])
+    }
+}
+
+/// Paths through a value are followed so far.
+const REACH: usize = 3;
+
+impl<'d> Body<'d> {
+    pub fn new(draft: &'d mut Draft, given: Option<When>) -> Self {
+        let callable = draft.functions.len();
+        Self {
+            draft,
+            locals: Vec::new(),
+            textures: Vec::new(),
+            lines: Vec::new(),
+            given,
+            used: BTreeSet::new(),
+            callable,
+        }
+    }
+
+    /// Whether a name of the module means something else here.
+    pub fn hides(&self, name: &str) -> bool {
+        self.locals.iter().any(|local| local.plain() == name)
+            || self.textures.iter().any(|texture| texture.name == name || texture.sampler == name)
+    }
+
+    /// Whether a function of the language may be called by its name.
+    pub fn has(&mut self, name: &'static str) -> bool {
+        let is_free = !self.draft.names.is_declared(name) && !self.hides(name);
+        if is_free {
+            self.draft.built_ins.insert(name);
+        }
+        is_free
+    }
+
+    /// A name that nothing has that is in scope or was named before.
+    pub fn name(&mut self) -> String {
+        let mut taken = self.used.clone();
+        taken.extend(self.locals.iter().map(|local| local.plain().to_owned()));
+        taken.extend(self.textures.iter().flat_map(|one| [one.name.clone(), one.sampler.clone()]));
+        let draft = &mut *self.draft;
+        taken.extend(draft.structs.iter().map(|one| one.name.clone()));
+        taken.extend(draft.aliases.iter().map(|(name, _)| name.clone()));
+        taken.extend(draft.built_ins.iter().map(|name| (*name).to_owned()));
+        let built_in = ["modf", "frexp", "abs", "max", "min", "select", "clamp", "mix", "dot"];
+        taken.extend(built_in.map(str::to_owned));
+        draft.names.local(&mut draft.random, &taken)
+    }
+
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.draft.random.below(bound)
+    }
+
+    fn glsl(&self) -> bool {
+        self.draft.spelling.is_glsl()
+    }
+
+    /// Everything of a type that can be named.
+    pub fn paths(&mut self, ty: &Type, is_written: bool) -> Vec<String> {
+        let mut found = Vec::new();
+        let index = self.index();
+        for local in self.locals.iter().filter(|local| local.is_mutable || !is_written) {
+            self.reach(&local.name, &local.ty, ty, &index, REACH, &mut found);
+        }
+        for value in self.draft.values.iter().filter(|value| value.is_mutable || !is_written) {
+            let is_there = value.when.is_none() || value.when == self.given;
+            if is_there && !self.hides(&value.root) {
+                self.reach(&value.path, &value.ty, ty, &index, REACH, &mut found);
+            }
+        }
+        found
+    }
+
+    /// Something to index with: a number that is not known before the shader runs, if there is one.
+    fn index(&mut self) -> Option<String> {
+        let counts = self.locals.iter().filter(|local| local.ty == UINT).map(|local| &local.name);
+        let counts: Vec<String> = counts.cloned().collect();
+        let has_min = self.has("min");
+        (!counts.is_empty() && has_min && self.draft.random.chance(50))
+            .then(|| self.draft.random.pick(&counts).clone())
+    }
+
+    fn reach(
+        &self,
+        path: &str,
+        ty: &Type,
+        wanted: &Type,
+        index: &Option<String>,
+        depth: usize,
+        found: &mut Vec<String>,
+    ) {
+        if ty == wanted && !path.is_empty() {
+            found.push(path.to_owned());
+        }
+        if depth == 0 {
+            return;
+        }
+        let at = |size: usize| match index {
+            Some(index) => format!("[min({index}, {}u)]", size - 1),
+            None => format!("[{}]", size - 1),
+        };
+        let mut deeper = |path: String, ty: &Type| {
+            self.reach(&path, ty, wanted, index, depth - 1, found);
+        };
+        match ty {
+            Type::Scalar(_) => {}
+            Type::Vector(size, scalar) => {
+                let scalar = Type::Scalar(*scalar);
+                deeper(format!("{path}.{}", ["x", "y", "z", "w"][size - 1]), &scalar);
+                deeper(format!("{path}.x"), &scalar);
+                deeper(format!("{path}{}", at(*size)), &scalar);
+            }
+            // naga's GLSL takes no component of a column whose number is not known.
+            Type::Matrix(columns, rows) => {
+                let last = if self.glsl() { "[1]".to_owned() } else { at(*columns) };
+                deeper(format!("{path}{last}"), &Type::Vector(*rows, Scalar::Float));
+                deeper(format!("{path}[0]"), &Type::Vector(*rows, Scalar::Float));
+            }
+            Type::Array(of, size) => deeper(format!("{path}{}", at(*size)), of),
+            Type::Struct(number) => {
+                for member in &self.draft.structs[*number].members {
+                    if member.when.is_none() || member.when == self.given {
+                        deeper(format!("{path}.{}", member.name), &member.ty);
+                    }
+                }
+            }
+        }
+    }
+
+    /// An expression of a type.
+    pub fn value(&mut self, ty: &Type, depth: usize) -> String {
+        let is_leaf = depth == 0 || self.draft.random.chance(25);
+        if is_leaf || matches!(ty, Type::Struct(_) | Type::Array(..)) && self.below(3) > 0 {
+            let paths = self.paths(ty, false);
+            if !paths.is_empty() && self.draft.random.chance(90) {
+                let path = self.draft.random.pick(&paths).clone();
+                self.note(&path);
+                return path;
+            }
+        }
+        if !is_leaf
+            && self.draft.random.chance(25)
+            && let Some(result) = self.called(ty)
+        {
+            return result;
+        }
+        match ty {
+            Type::Scalar(_) if is_leaf => self.literal(ty),
+            Type::Scalar(Scalar::Float) => self.float(depth - 1),
+            Type::Scalar(scalar) => self.integer(*scalar, depth - 1),
+            Type::Vector(size, scalar) => self.vector(*size, *scalar, depth.saturating_sub(1)),
+            Type::Matrix(columns, rows) => self.matrix(*columns, *rows, depth.saturating_sub(1)),
+            Type::Array(of, size) => {
+                let parts: Vec<String> =
+                    (0..*size).map(|_| self.value(of, depth.saturating_sub(1))).collect();
+                let name = self.draft.spell(ty);
+                format!("{name}({})", parts.join(", "))
+            }
+            Type::Struct(number) => self.structure(*number, depth.saturating_sub(1)),
+        }
+    }
+
+    /// Remembers the declaration at the start of a path.
+    pub fn note(&mut self, path: &str) {
+        let name = path.split(['.', '[']).next().unwrap_or(path);
+        self.used.insert(name.to_owned());
+    }
+
+    pub fn literal(&mut self, ty: &Type) -> String {
+        match ty {
+            Type::Scalar(Scalar::Int) => self.draft.random.pick(&["1", "2", "3", "7"]).to_string(),
+            Type::Scalar(Scalar::Uint) => {
+                self.draft.random.pick(&["1u", "2u", "3u", "5u"]).to_string()
+            }
+            _ => self.draft.random.pick(&["0.5", "1.0", "0.25", "1.75", "2.0"]).to_string(),
+        }
+    }
+
+    /// A structure: its constructor, or a variable where members depend on an axis.
+    fn structure(&mut self, number: usize, depth: usize) -> String {
+        let of = self.draft.structs[number].clone();
+        if of.is_plain() {
+            let parts: Vec<String> =
+                of.members.iter().map(|member| self.value(&member.ty, depth)).collect();
+            let name = self.draft.spell(&Type::Struct(number));
+            return format!("{name}({})", parts.join(", "));
+        }
+        let name = self.name();
+        let ty = self.draft.spell(&Type::Struct(number));
+        let declared = self.draft.spelling.declared(&name, &ty);
+        let var = if self.glsl() { "" } else { "var " };
+        self.lines.push(format!("{var}{declared};"));
+        for member in &of.members {
+            let value = self.value(&member.ty, depth.min(1));
+            let line = format!("{name}.{} = {value};", member.name);
+            let line = match member.when {
+                Some(when) => self.draft.spelling.either(when, &line, None),
+                None => line,
+            };
+            self.lines.push(line);
+        }
+        self.locals.push(Local { name: name.clone(), ty: Type::Struct(number), is_mutable: true });
+        name
+    }
+
+    fn vector(&mut self, size: usize, scalar: Scalar, depth: usize) -> String {
+        let (ty, part) = (Type::Vector(size, scalar), Type::Scalar(scalar));
+        let name = self.draft.spell(&ty);
+        if depth == 0 {
+            let parts: Vec<String> = (0..size).map(|_| self.value(&part, 0)).collect();
+            return format!("{name}({})", parts.join(", "));
+        }
+        let one = self.value(&ty, depth);
+        match (scalar, self.below(9)) {
+            (_, 0) => {
+                let part = self.value(&part, depth);
+                format!("{name}({part})")
+            }
+            (Scalar::Float, 1) => {
+                let columns = 2 + self.below(3);
+                let matrix = self.value(&Type::Matrix(columns, size), depth);
+                let vector = self.value(&Type::Vector(columns, Scalar::Float), depth - 1);
+                format!("(({matrix} * {vector}) * 0.25)")
+            }
+            (Scalar::Float, 2) if self.has("mix") && self.has("clamp") => {
+                let other = self.value(&ty, depth);
+                format!("mix({one}, {other}, clamp({one}, {name}(0.0), {name}(1.0)))")
+            }
+            (Scalar::Float, 3) if !self.glsl() && self.has("modf") => format!("modf({one}).fract"),
+            (Scalar::Float, 4) if self.draft.is_modern && !self.glsl() && self.has("frexp") => {
+                format!("frexp({one}).fract")
+            }
+            (Scalar::Float, _) => {
+                let other = self.value(&ty, depth);
+                let operator = self.draft.random.pick(&["+", "-", "*"]);
+                format!("(({one} {operator} {other}) * 0.5)")
+            }
+            (_, 1) => {
+                let other = self.value(&Type::Vector(size, Scalar::Float), depth);
+                format!("{name}({other})")
+            }
+            (_, 2 | 3) => {
+                let other = self.value(&ty, depth);
+                let one_of = self.literal(&part);
+                let operator = self.draft.random.pick(&["/", "%"]);
+                format!("({one} {operator} ({other} | {name}({one_of})))")
+            }
+            (Scalar::Int, 4) => format!("(-{one})"),
+            (Scalar::Int, 5) if self.has("abs") => format!("abs({one})"),
+            _ => {
+                let other = self.value(&ty, depth);
+                let most = if scalar == Scalar::Uint { "31u" } else { "31" };
+                let operator = self.draft.random.pick(&["+", "^", "|", "&", "*"]);
+                format!("(({one} {operator} {other}) & {name}({most}))")
+            }
+        }
+    }
+
+    fn matrix(&mut self, columns: usize, rows: usize, depth: usize) -> String {
+        let ty = Type::Matrix(columns, rows);
+        if depth > 0 && self.draft.random.chance(30) && self.has("transpose") {
+            let other = self.value(&Type::Matrix(rows, columns), depth);
+            return format!("transpose({other})");
+        }
+        if depth > 0 && self.draft.random.chance(30) {
+            let one = self.value(&ty, depth - 1);
+            let by = self.value(&FLOAT, depth - 1);
+            return format!("({one} * {by})");
+        }
+        let column = Type::Vector(rows, Scalar::Float);
+        let parts: Vec<String> =
+            (0..columns).map(|_| self.value(&column, depth.saturating_sub(1))).collect();
+        let name = self.draft.spell(&ty);
+        format!("{name}({})", parts.join(", "))
+    }
+
+    pub fn condition(&mut self, depth: usize) -> String {
+        let ty = self.draft.random.pick(&[FLOAT, INT, UINT]).clone();
+        let (one, other) = (self.value(&ty, depth), self.value(&ty, depth));
+        let operator = self.draft.random.pick(&["<", ">", "<=", "!="]);
+        format!("({one} {operator} {other})")
+    }
+
+    /// A texture of the module or a parameter, and how it is sampled.
+    pub fn sampled(&mut self, depth: usize) -> Option<String> {
+        let hidden =
+            |texture: &&Texture| !self.hides(&texture.name) && !self.hides(&texture.sampler);
+        let mut all: Vec<Texture> = self.draft.textures.iter().filter(hidden).cloned().collect();
+        all.extend(self.textures.iter().cloned());
+        if all.is_empty() {
+            return None;
+        }
+        let texture = self.draft.random.pick(&all).clone();
+        let Texture { name, sampler, kind } = &texture;
+        let size = if *kind == TextureKind::Cube { 3 } else { 2 };
+        let at = self.value(&Type::Vector(size, Scalar::Float), depth);
+        self.used.extend([name.clone(), sampler.clone()]);
+        let glsl = self.glsl();
+        Some(match (kind, glsl) {
+            (TextureKind::Plain, false) if self.below(4) == 0 && self.has("textureLoad") => {
+                let size = format!("vec2i(textureDimensions({name}))");
+                format!("textureLoad({name}, {size} - vec2i(1), 0).x")
+            }
+            (TextureKind::Depth, false) => {
+                format!("textureSampleCompareLevel({name}, {sampler}, {at}, 0.5)")
+            }
+            (_, false) => format!("textureSampleLevel({name}, {sampler}, {at}, 0.0).y"),
+            (TextureKind::Plain, true) => {
+                format!("textureLod(sampler2D({name}, {sampler}), {at}, 0.0).y")
+            }
+            (TextureKind::Depth, true) => {
+                format!("textureLod(sampler2DShadow({name}, {sampler}), vec3({at}, 0.5), 0.0)")
+            }
+            (TextureKind::Cube, true) => {
+                format!("textureLod(samplerCube({name}, {sampler}), {at}, 0.0).y")
+            }
+        })
+    }
+}

@@ -1,0 +1,299 @@
+//! A random program: its manifest and its files.
+
+use std::fmt::Write as _;
+
+use lamplight::bundle::{Language, Target};
+
+use super::body::{Body, Local};
+use super::draft::{Draft, Parameter, Signature, Texture, TextureKind, Value};
+use super::random::Random;
+use super::types::{AXES, FLOAT, INT, Scalar, Spelling, Type, UINT, When};
+
+/// What is given to the crate.
+#[derive(Debug, Clone)]
+pub struct Program {
+    pub language: Language,
+    pub manifest: String,
+    pub targets: Vec<Target>,
+    /// The one file of it, by its name.
+    pub file: &'static str,
+    pub text: String,
+}
+
+impl Program {
+    /// The program of a seed.
+    pub fn new(seed: u64) -> Self {
+        let mut random = Random(seed);
+        let language = if random.chance(30) { Language::Glsl } else { Language::Wesl };
+        let mut draft = Draft::new(random, Spelling(language));
+        draft.declarations();
+        let (key, file) = match language {
+            Language::Wesl => {
+                draft.wesl_stages();
+                ("wesl = \"program.wesl\"", "program.wesl")
+            }
+            Language::Glsl if draft.random.chance(30) => {
+                draft.glsl_vertex();
+                ("glsl = { vertex = \"program.vert.glsl\" }", "program.vert.glsl")
+            }
+            Language::Glsl => {
+                draft.glsl_fragment();
+                ("glsl = { fragment = \"program.frag.glsl\" }", "program.frag.glsl")
+            }
+        };
+        let mut targets = Target::ALL.to_vec();
+        if draft.is_modern {
+            targets.retain(|target| !matches!(*target, Target::GLSL330 | Target::ESSL300));
+        }
+        let manifest = manifest(key, &targets, draft.axes);
+        let text = match language {
+            Language::Glsl => format!("#version 450\n{}", draft.items.concat()),
+            Language::Wesl => {
+                // The order of declarations means nothing in WGSL.
+                draft.random.shuffle(&mut draft.items);
+                draft.items.concat()
+            }
+        };
+        Self { language, manifest, targets, file, text }
+    }
+}
+
+fn manifest(files: &str, targets: &[Target], axes: usize) -> String {
+    let targets: Vec<&str> = targets.iter().map(|target| target.name()).collect();
+    let mut text =
+        format!("[program.random]\n{files}\ntargets = {targets:?}\n[program.random.axis]\n");
+    for (index, values) in AXES.iter().take(axes).enumerate() {
+        let values = match values.is_empty() {
+            true => "[false, true]".to_owned(),
+            false => format!("{values:?}"),
+        };
+        let _ = writeln!(text, "axis_{index} = {{ values = {values} }}");
+    }
+    text
+}
+
+impl Draft {
+    fn declarations(&mut self) {
+        for _ in 0..1 + self.random.below(3) {
+            self.structure();
+        }
+        for _ in 0..self.random.below(3) {
+            match self.spelling.is_glsl() {
+                true => {}
+                false => self.alias(),
+            }
+        }
+        for _ in 0..self.random.below(3) {
+            self.uniform();
+        }
+        for _ in 0..self.random.below(3) {
+            self.texture();
+        }
+        for _ in 0..1 + self.random.below(3) {
+            self.constant();
+        }
+        for _ in 0..self.random.below(3) {
+            self.private();
+        }
+    }
+
+    pub fn functions(&mut self) {
+        for _ in 0..1 + self.random.below(4) {
+            self.function();
+        }
+    }
+
+    /// A value that is known without running anything.
+    fn literal(&mut self, ty: &Type) -> String {
+        let some = match ty {
+            Type::Scalar(Scalar::Float) => {
+                return self.random.pick(&["0.5", "1.0", "0.25", "-1.5"]).to_string();
+            }
+            Type::Scalar(Scalar::Int) => {
+                return self.random.pick(&["1", "2", "-3", "7"]).to_string();
+            }
+            Type::Scalar(Scalar::Uint) => {
+                return self.random.pick(&["1u", "2u", "3u"]).to_string();
+            }
+            Type::Vector(size, scalar) => vec![Type::Scalar(*scalar); *size],
+            Type::Matrix(columns, rows) => vec![Type::Vector(*rows, Scalar::Float); *columns],
+            Type::Array(of, size) => vec![(**of).clone(); *size],
+            Type::Struct(index) => {
+                self.structs[*index].members.iter().map(|member| member.ty.clone()).collect()
+            }
+        };
+        let parts: Vec<String> = some.iter().map(|ty| self.literal(ty)).collect();
+        format!("{}({})", self.spell(ty), parts.join(", "))
+    }
+
+    /// Whether a value of the type can be written without asking an axis.
+    fn is_plain(&self, ty: &Type) -> bool {
+        match ty {
+            Type::Array(of, _) => self.is_plain(of),
+            Type::Struct(index) => {
+                let of = &self.structs[*index];
+                of.is_plain() && of.members.iter().all(|member| self.is_plain(&member.ty))
+            }
+            _ => true,
+        }
+    }
+
+    /// A type whose values are constants in both languages.
+    fn constant_type(&mut self) -> Type {
+        loop {
+            let ty = self.some_type();
+            let is_struct = match &ty {
+                Type::Struct(_) => true,
+                Type::Array(of, _) => matches!(**of, Type::Struct(_)),
+                _ => false,
+            };
+            if self.is_plain(&ty) && !(is_struct && self.spelling.is_glsl()) {
+                return ty;
+            }
+        }
+    }
+
+    fn constant(&mut self) {
+        let ty = self.constant_type();
+        let name = self.name();
+        let mut one = || {
+            let value = self.literal(&ty);
+            let spelt = self.spell(&ty);
+            let declared = self.spelling.declared(&name, &spelt);
+            match self.spelling.is_glsl() {
+                false if self.random.chance(50) && !matches!(ty, Type::Scalar(_)) => {
+                    format!("const {name} = {value};\n")
+                }
+                _ => format!("const {declared} = {value};\n"),
+            }
+        };
+        let (some, other) = (one(), one());
+        let (text, when) = match self.random.below(5) {
+            0 => {
+                let when = self.when();
+                (self.spelling.either(when, &some, Some(&other)), None)
+            }
+            1 => {
+                let when = self.when();
+                (self.spelling.either(when, &some, None), Some(when))
+            }
+            _ => (some, None),
+        };
+        self.items.push(text);
+        self.values.push(Value { root: name.clone(), path: name, ty, is_mutable: false, when });
+    }
+
+    fn private(&mut self) {
+        let ty = self.constant_type();
+        let (name, spelt) = (self.name(), self.spell(&ty));
+        let declared = self.spelling.declared(&name, &spelt);
+        let value = match self.random.chance(60) || self.spelling.is_glsl() {
+            true => format!(" = {}", self.literal(&ty)),
+            false => String::new(),
+        };
+        let var = if self.spelling.is_glsl() { "" } else { "var<private> " };
+        self.items.push(format!("{var}{declared}{value};\n"));
+        let (root, path) = (name.clone(), name);
+        self.values.push(Value { root, path, ty, is_mutable: true, when: None });
+    }
+
+    fn parameters(&mut self) -> Vec<Parameter> {
+        let count = self.random.below(4);
+        let mut one = || match self.random.below(8) {
+            0 if !self.textures.is_empty() && !self.spelling.is_glsl() => Parameter::Texture,
+            1 | 2 => Parameter::Pointer(self.some_type()),
+            _ => Parameter::Value(self.some_type()),
+        };
+        (0..count).map(|_| one()).collect()
+    }
+
+    fn function(&mut self) {
+        let (name, result) = (self.name(), self.some_type());
+        let parameters = self.parameters();
+        let plain = self.function_text(&name, &parameters, &result, None);
+        let (text, other) = match self.perhaps(40) {
+            None => (plain, None),
+            Some(when) => {
+                let others =
+                    if self.random.chance(50) { self.parameters() } else { parameters.clone() };
+                let some = self.function_text(&name, &others, &result, Some(when));
+                let other = (others != parameters).then_some((when, others));
+                (self.spelling.either(when, &some, Some(&plain)), other)
+            }
+        };
+        self.items.push(text);
+        self.functions.push(Signature { name, parameters, other, result });
+    }
+
+    fn function_text(
+        &mut self,
+        name: &str,
+        parameters: &[Parameter],
+        result: &Type,
+        given: Option<When>,
+    ) -> String {
+        let glsl = self.spelling.is_glsl();
+        let spelt = self.spell(result);
+        let mut body = Body::new(self, given);
+        let mut list = Vec::new();
+        // Its own name is not to be hidden: the text could be read as another.
+        body.used.insert(name.to_owned());
+        for parameter in parameters {
+            let name = body.name();
+            match parameter {
+                Parameter::Value(ty) => {
+                    let spelt = body.draft.spell(ty);
+                    list.push(body.draft.spelling.declared(&name, &spelt));
+                    body.locals.push(Local { name, ty: ty.clone(), is_mutable: glsl });
+                }
+                Parameter::Pointer(ty) => {
+                    let spelt = body.draft.spell(ty);
+                    let declared = body.draft.spelling.declared(&name, &spelt);
+                    list.push(match glsl {
+                        true => format!("inout {declared}"),
+                        false => format!("{name}: ptr<function, {spelt}>"),
+                    });
+                    let name = if glsl { name } else { format!("(*{name})") };
+                    body.locals.push(Local { name, ty: ty.clone(), is_mutable: true });
+                }
+                Parameter::Texture => {
+                    body.textures.push(Texture {
+                        name: name.clone(),
+                        sampler: String::new(),
+                        kind: TextureKind::Plain,
+                    });
+                    let sampler = body.name();
+                    list.push(format!("{name}: texture_2d<f32>, {sampler}: sampler"));
+                    body.textures.pop();
+                    body.textures.push(Texture { name, sampler, kind: TextureKind::Plain });
+                }
+            }
+        }
+        body.seeded();
+        body.statements(2);
+        let value = body.value(result, 2);
+        let lines = body.lines.join("\n");
+        let list = list.join(", ");
+        match glsl {
+            true => format!("{spelt} {name}({list}) {{\n{lines}\nreturn {value};\n}}\n"),
+            false => format!("fn {name}({list}) -> {spelt} {{\n{lines}\nreturn {value};\n}}\n"),
+        }
+    }
+}
+
+impl Body<'_> {
+    /// Variables of each kind of number, so that not everything is known beforehand.
+    pub fn seeded(&mut self) {
+        for ty in [FLOAT, INT, UINT] {
+            let is_it = |local: &Local| local.ty == ty;
+            if !self.locals.iter().any(is_it) {
+                let (name, value) = (self.name(), self.literal(&ty));
+                let spelt = self.draft.spelling.ty(&ty, &[]);
+                let declared = self.draft.spelling.declared(&name, &spelt);
+                let var = if self.draft.spelling.is_glsl() { "" } else { "var " };
+                self.lines.push(format!("{var}{declared} = {value};"));
+                self.locals.push(Local { name, ty, is_mutable: true });
+            }
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! Entry points, and what enters and leaves them.
+
+use std::fmt::Write as _;
+
+use super::body::{Body, Local};
+use super::draft::{Draft, Value};
+use super::types::{FLOAT, INT, Member, Scalar, Struct, Type, UINT, When};
+
+const FOUR: Type = Type::Vector(4, Scalar::Float);
+
+/// What goes from the vertex stage to the fragment stage.
+struct Between {
+    /// By location.
+    types: Vec<(Type, Option<When>)>,
+}
+
+impl Draft {
+    fn between(&mut self) -> Between {
+        let count = 1 + self.random.below(4);
+        let types = (0..count).map(|index| {
+            let ty = match self.random.below(6) {
+                0 => FLOAT,
+                1 => INT,
+                2 => UINT,
+                size => Type::Vector(size - 1, Scalar::Float),
+            };
+            (ty, if index > 0 { self.perhaps(25) } else { None })
+        });
+        Between { types: types.collect() }
+    }
+
+    /// A structure that is an interface: other functions may make and pass it too.
+    fn interface(&mut self, attributes: &[(String, Type, Option<When>)]) -> usize {
+        let name = self.name();
+        let mut text = format!("struct {name} {{\n");
+        let (mut members, mut used) = (Vec::new(), std::collections::BTreeSet::new());
+        for (attribute, ty, when) in attributes {
+            let member = self.names.local(&mut self.random, &used);
+            used.insert(member.clone());
+            let spelt = self.spell(ty);
+            let line = format!("{attribute} {member}: {spelt},");
+            match when {
+                None => text += &format!("{line}\n"),
+                // One attribute follows another.
+                Some(when) => text += &self.spelling.either(*when, &line, None),
+            }
+            members.push(Member { name: member, ty: ty.clone(), when: *when });
+        }
+        self.items.push(text + "}\n");
+        self.structs.push(Struct { name, members });
+        self.structs.len() - 1
+    }
+
+    /// A vertex and a fragment stage.
+    pub fn wesl_stages(&mut self) {
+        let between = self.between();
+        let located = between.types.iter().enumerate().map(|(location, (ty, when))| {
+            let flat = if is_flat(ty) { " @interpolate(flat)" } else { "" };
+            (format!("@location({location}){flat}"), ty.clone(), *when)
+        });
+        let located: Vec<_> = located.collect();
+        let position = ("@builtin(position)".to_owned(), FOUR, None);
+        let all: Vec<_> = std::iter::once(position).chain(located.clone()).collect();
+        let carried = self.interface(&all);
+        let given = if self.random.chance(40) { Some(self.interface(&located)) } else { None };
+        let drawn = self.drawn();
+        self.functions();
+        self.vertex_stage(carried);
+        let taken = given.unwrap_or(carried);
+        self.fragment_stage(taken, drawn);
+    }
+
+    /// What a fragment stage may return beside a colour.
+    fn drawn(&mut self) -> usize {
+        let mut targets = vec![("@location(0)".to_owned(), FOUR, None)];
+        for location in 1..1 + self.random.below(3) {
+            let size = 1 + self.random.below(4);
+            let ty = if size == 1 { FLOAT } else { Type::Vector(size, Scalar::Float) };
+            targets.push((format!("@location({location})"), ty, None));
+        }
+        if self.random.chance(15) {
+            targets.push(("@builtin(frag_depth)".to_owned(), FLOAT, None));
+        }
+        self.interface(&targets)
+    }
+
+    fn vertex_stage(&mut self, carried: usize) {
+        let name = self.name();
+        let mut body = Body::new(self, None);
+        body.used.insert(name.clone());
+        let mut list = Vec::new();
+        for (attribute, ty) in [
+            ("@location(0)", Type::Vector(3, Scalar::Float)),
+            ("@location(1)", FOUR),
+            ("@builtin(vertex_index)", UINT),
+        ] {
+            let (name, spelt) = (body.name(), body.draft.spelling.ty(&ty, &[]));
+            list.push(format!("{attribute} {name}: {spelt}"));
+            body.locals.push(Local { name, ty, is_mutable: false });
+        }
+        body.seeded();
+        body.statements(1);
+        let value = body.value(&Type::Struct(carried), 2);
+        let (lines, result) = (body.lines.join("\n"), self.spell(&Type::Struct(carried)));
+        let list = list.join(", ");
+        self.items.push(format!(
+            "@vertex fn {name}({list}) -> {result} {{\n{lines}\nreturn {value};\n}}\n"
+        ));
+    }
+
+    /// One that returns a colour or a structure, or one of them for some value of an axis.
+    fn fragment_stage(&mut self, taken: usize, drawn: usize) {
+        let name = self.name();
+        let colour = |draft: &mut Self, when| draft.fragment(&name, taken, None, when);
+        let many = |draft: &mut Self, when| draft.fragment(&name, taken, Some(drawn), when);
+        let text = match self.random.below(4) {
+            0 => colour(self, None),
+            1 => many(self, None),
+            _ => {
+                let when = self.when();
+                let (some, other) = (many(self, Some(when)), colour(self, None));
+                self.spelling.either(when, &some, Some(&other))
+            }
+        };
+        self.items.push(text);
+    }
+
+    fn fragment(
+        &mut self,
+        name: &str,
+        taken: usize,
+        drawn: Option<usize>,
+        given: Option<When>,
+    ) -> String {
+        let (input, result) = (self.spell(&Type::Struct(taken)), drawn.map(Type::Struct));
+        let mut body = Body::new(self, given);
+        body.used.insert(name.to_owned());
+        let argument = body.name();
+        let local = Local { name: argument.clone(), ty: Type::Struct(taken), is_mutable: false };
+        body.locals.push(local);
+        body.seeded();
+        body.statements(2);
+        let value = body.value(result.as_ref().unwrap_or(&FOUR), 3);
+        let lines = body.lines.join("\n");
+        let result = match result {
+            Some(ty) => self.spell(&ty),
+            None => format!("@location(0) {}", self.spell(&FOUR)),
+        };
+        format!(
+            "@fragment fn {name}({argument}: {input}) -> {result} {{\n{lines}\nreturn {value};\n}}\n"
+        )
+    }
+
+    /// Inputs of a GLSL stage, as values that every function can name.
+    fn glsl_inputs(&mut self, between: &Between) {
+        for (location, (ty, when)) in between.types.iter().enumerate() {
+            let (name, spelt) = (self.name(), self.spelling.ty(ty, &[]));
+            let flat = if is_flat(ty) { "flat " } else { "" };
+            let line = format!("layout(location = {location}) {flat}in {spelt} {name};");
+            let text = match when {
+                None => format!("{line}\n"),
+                Some(when) => self.spelling.either(*when, &line, None),
+            };
+            self.items.push(text);
+            let (root, path, ty) = (name.clone(), name, ty.clone());
+            self.values.push(Value { root, path, ty, is_mutable: false, when: *when });
+        }
+    }
+
+    /// Outputs of a GLSL stage.
+    fn glsl_outputs(&mut self, types: &[Type]) -> Vec<String> {
+        let mut names = Vec::new();
+        for (location, ty) in types.iter().enumerate() {
+            let (name, spelt) = (self.name(), self.spelling.ty(ty, &[]));
+            let flat = if is_flat(ty) { "flat " } else { "" };
+            let text = format!("layout(location = {location}) {flat}out {spelt} {name};\n");
+            self.items.push(text);
+            names.push(name);
+        }
+        names
+    }
+
+    fn built_in(&mut self, name: &str, path: &str, ty: Type) {
+        let (root, path) = (name.to_owned(), path.to_owned());
+        self.values.push(Value { root, path, ty, is_mutable: false, when: None });
+    }
+
+    /// A GLSL stage that writes some variables.
+    fn glsl_main(&mut self, outputs: &[(String, Type)]) {
+        let mut body = Body::new(self, None);
+        body.used.extend(outputs.iter().map(|(name, _)| name.clone()));
+        body.seeded();
+        body.statements(2);
+        let mut end = String::new();
+        for (name, ty) in outputs {
+            let value = body.value(ty, 3);
+            let _ = writeln!(end, "{name} = {value};");
+        }
+        let lines = body.lines.join("\n");
+        self.items.push(format!("void main() {{\n{lines}\n{end}}}\n"));
+    }
+
+    pub fn glsl_fragment(&mut self) {
+        let between = self.between();
+        self.glsl_inputs(&between);
+        if self.random.chance(40) {
+            self.built_in("gl_FragCoord", "gl_FragCoord", FOUR);
+        }
+        let mut types = vec![FOUR];
+        types.extend((0..self.random.below(2)).map(|_| Type::Vector(2, Scalar::Float)));
+        let names = self.glsl_outputs(&types);
+        self.functions();
+        let outputs: Vec<_> = names.into_iter().zip(types).collect();
+        self.glsl_main(&outputs);
+    }
+
+    pub fn glsl_vertex(&mut self) {
+        let between = self.between();
+        let given = vec![(Type::Vector(3, Scalar::Float), None), (FOUR, None)];
+        self.glsl_inputs(&Between { types: given });
+        self.built_in("gl_VertexIndex", "int(gl_VertexIndex)", INT);
+        let types: Vec<Type> = between.types.into_iter().map(|(ty, _)| ty).collect();
+        let names = self.glsl_outputs(&types);
+        self.functions();
+        let mut outputs: Vec<_> = names.into_iter().zip(types).collect();
+        outputs.push(("gl_Position".to_owned(), FOUR));
+        self.glsl_main(&outputs);
+    }
+}
+
+fn is_flat(ty: &Type) -> bool {
+    matches!(ty, Type::Scalar(Scalar::Int | Scalar::Uint))
+}

@@ -1,0 +1,221 @@
+//! Statements, and calls of functions whose signature may depend on an axis.
+
+use super::body::{Body, Local};
+use super::draft::{Parameter, Signature, Texture, TextureKind};
+use super::types::{FLOAT, INT, Type};
+
+/// Statements of a body, and how deep their expressions are.
+const MOST: usize = 3;
+const DEPTH: usize = 2;
+
+impl Body<'_> {
+    /// Some statements.
+    pub fn statements(&mut self, nesting: usize) {
+        for _ in 0..1 + self.below(MOST) {
+            self.statement(nesting);
+        }
+    }
+
+    fn statement(&mut self, nesting: usize) {
+        match self.below(12) {
+            0..=3 => self.variable(),
+            4 | 5 => self.assignment(),
+            6 => self.either(),
+            7 if nesting > 0 => self.branch(nesting),
+            8 if nesting > 0 => self.loops(nesting),
+            9 if nesting > 0 => self.switch(nesting),
+            10 if nesting > 0 => self.block("{", "}", nesting),
+            _ => self.changed_number(),
+        }
+    }
+
+    /// A new variable or value.
+    pub fn variable(&mut self) {
+        let ty = self.draft.some_type();
+        let is_mutable = self.below(2) == 0;
+        self.declare(ty, is_mutable);
+    }
+
+    fn declare(&mut self, ty: Type, is_mutable: bool) -> String {
+        let value = self.value(&ty, DEPTH);
+        let name = self.name();
+        let glsl = self.draft.spelling.is_glsl();
+        let declared = if glsl || is_mutable && self.below(2) == 0 {
+            let spelt = self.draft.spell(&ty);
+            self.draft.spelling.declared(&name, &spelt)
+        } else {
+            name.clone()
+        };
+        let word = match (glsl, is_mutable) {
+            (true, _) => "",
+            (false, true) => "var ",
+            (false, false) => "let ",
+        };
+        self.lines.push(format!("{word}{declared} = {value};"));
+        self.locals.push(Local { name: name.clone(), ty, is_mutable });
+        name
+    }
+
+    fn assignment(&mut self) {
+        let ty = self.draft.some_type();
+        if let Some(line) = self.assigned(&ty) {
+            self.lines.push(line);
+        }
+    }
+
+    fn assigned(&mut self, ty: &Type) -> Option<String> {
+        let value = self.value(ty, DEPTH);
+        let paths = self.paths(ty, true);
+        if paths.is_empty() {
+            return None;
+        }
+        let path = self.draft.random.pick(&paths).clone();
+        self.note(&path);
+        Some(format!("{path} = {value};"))
+    }
+
+    fn changed_number(&mut self) {
+        let ty = self.draft.random.pick(&[FLOAT, INT, FLOAT]).clone();
+        let value = self.value(&ty, DEPTH);
+        let paths = self.paths(&ty, true);
+        match paths.is_empty() {
+            true => self.variable(),
+            false => {
+                let path = self.draft.random.pick(&paths).clone();
+                self.note(&path);
+                let operator = self.draft.random.pick(&["+=", "-="]);
+                self.lines.push(format!("{path} {operator} {value};"));
+            }
+        }
+    }
+
+    /// One statement for a value of an axis, and another for the others.
+    fn either(&mut self) {
+        let when = self.draft.when();
+        let ty = self.draft.some_type();
+        let (some, other) = (self.assigned(&ty), self.assigned(&ty));
+        if let (Some(some), Some(other)) = (some, other) {
+            let text = self.draft.spelling.either(when, &some, Some(&other));
+            self.lines.push(text);
+        }
+    }
+
+    fn branch(&mut self, nesting: usize) {
+        let condition = self.condition(1);
+        self.block(&format!("if {condition} {{"), "}", nesting);
+        if self.below(2) == 0 {
+            self.block("else {", "}", nesting);
+        }
+    }
+
+    fn loops(&mut self, nesting: usize) {
+        let name = self.name();
+        let ty = if self.draft.spelling.is_glsl() { "int" } else { "var" };
+        let most = 1 + self.below(3);
+        self.locals.push(Local { name: name.clone(), ty: INT, is_mutable: false });
+        self.block(&format!("for ({ty} {name} = 0; {name} < {most}; {name}++) {{"), "}", nesting);
+        self.locals.pop();
+    }
+
+    fn switch(&mut self, nesting: usize) {
+        let value = self.value(&INT, 2);
+        let glsl = self.draft.spelling.is_glsl();
+        self.lines.push(format!("switch ({value}) {{"));
+        let end = if glsl { "} break;" } else { "}" };
+        self.block("case 1: {", end, nesting);
+        self.block(if glsl { "case 3: {" } else { "case 2, 3: {" }, end, nesting);
+        self.block("default: {", end, nesting);
+        self.lines.push("}".to_owned());
+    }
+
+    fn block(&mut self, head: &str, end: &str, nesting: usize) {
+        self.lines.push(head.to_owned());
+        let known = self.locals.len();
+        self.statements(nesting - 1);
+        self.locals.truncate(known);
+        self.lines.push(end.to_owned());
+    }
+
+    /// The name of a variable that has the result of a function.
+    pub fn called(&mut self, ty: &Type) -> Option<String> {
+        let functions = self.draft.functions[..self.callable].to_vec();
+        let fitting = functions.into_iter().filter(|one| one.result == *ty);
+        let fitting: Vec<Signature> = fitting.filter(|one| !self.hides(&one.name)).collect();
+        if fitting.is_empty() {
+            return None;
+        }
+        let function = self.draft.random.pick(&fitting).clone();
+        self.used.insert(function.name.clone());
+        let arguments = self.arguments(&function.parameters)?;
+        let name = &function.name;
+        let Some((when, parameters)) = &function.other else {
+            let call = format!("{name}({arguments})");
+            return Some(self.kept(ty, &call));
+        };
+        let others = self.arguments(parameters)?;
+        let kept = self.name();
+        let spelt = self.draft.spell(ty);
+        let declared = self.draft.spelling.declared(&kept, &spelt);
+        let var = if self.draft.spelling.is_glsl() { "" } else { "var " };
+        self.lines.push(format!("{var}{declared};"));
+        let some = format!("{kept} = {name}({others});");
+        let other = format!("{kept} = {name}({arguments});");
+        let text = self.draft.spelling.either(*when, &some, Some(&other));
+        self.lines.push(text);
+        self.locals.push(Local { name: kept.clone(), ty: ty.clone(), is_mutable: true });
+        Some(kept)
+    }
+
+    /// The result of a call, kept where it is made: what calls change depends on their order.
+    fn kept(&mut self, ty: &Type, call: &str) -> String {
+        let kept = self.name();
+        let glsl = self.draft.spelling.is_glsl();
+        let spelt = self.draft.spell(ty);
+        let declared =
+            if glsl { self.draft.spelling.declared(&kept, &spelt) } else { format!("let {kept}") };
+        self.lines.push(format!("{declared} = {call};"));
+        self.locals.push(Local { name: kept.clone(), ty: ty.clone(), is_mutable: false });
+        kept
+    }
+
+    fn arguments(&mut self, parameters: &[Parameter]) -> Option<String> {
+        let mut arguments = Vec::new();
+        for parameter in parameters {
+            match parameter {
+                Parameter::Value(ty) => arguments.push(self.value(ty, 1)),
+                Parameter::Pointer(ty) => {
+                    let is_it = |local: &&Local| local.is_mutable && local.ty == *ty;
+                    let known: Vec<String> =
+                        self.locals.iter().filter(is_it).map(|local| local.name.clone()).collect();
+                    let is_pointer = |name: &str| name.starts_with("(*");
+                    let name = match known.is_empty() {
+                        true => self.declare(ty.clone(), true),
+                        false => self.draft.random.pick(&known).clone(),
+                    };
+                    let and = if self.draft.spelling.is_glsl() { "" } else { "&" };
+                    arguments.push(match is_pointer(&name) {
+                        true => name.trim_matches(['(', '*', ')']).to_owned(),
+                        false => format!("{and}{name}"),
+                    });
+                }
+                Parameter::Texture => {
+                    let Texture { name, sampler, .. } = self.plain_texture()?;
+                    self.used.extend([name.clone(), sampler.clone()]);
+                    arguments.push(format!("{name}, {sampler}"));
+                }
+            }
+        }
+        Some(arguments.join(", "))
+    }
+
+    fn plain_texture(&mut self) -> Option<Texture> {
+        let is_it = |texture: &&Texture| {
+            let hidden = self.hides(&texture.name) || self.hides(&texture.sampler);
+            texture.kind == TextureKind::Plain && !hidden
+        };
+        let own = self.textures.iter();
+        let all: Vec<Texture> =
+            self.draft.textures.iter().filter(is_it).chain(own).cloned().collect();
+        (!all.is_empty()).then(|| self.draft.random.pick(&all).clone())
+    }
+}

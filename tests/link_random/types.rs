@@ -1,0 +1,144 @@
+//! Types, and how both languages spell what is made of them.
+
+use lamplight::bundle::Language;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scalar {
+    Float,
+    Int,
+    Uint,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Type {
+    Scalar(Scalar),
+    Vector(usize, Scalar),
+    /// Columns and rows.
+    Matrix(usize, usize),
+    Array(Box<Type>, usize),
+    /// By its place in the list of structures.
+    Struct(usize),
+}
+
+pub const FLOAT: Type = Type::Scalar(Scalar::Float);
+pub const INT: Type = Type::Scalar(Scalar::Int);
+pub const UINT: Type = Type::Scalar(Scalar::Uint);
+
+/// An axis of the program has a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct When {
+    pub axis: usize,
+    pub value: usize,
+}
+
+/// An axis: its values, or none if it is true or false.
+pub type Axis = &'static [&'static str];
+
+/// The axes of a program, by the number of their name.
+pub const AXES: [Axis; 4] = [&[], &[], &["one", "two", "three"], &["low", "high", "none", "all"]];
+
+/// A structure; some members are there for some values of an axis.
+#[derive(Debug, Clone)]
+pub struct Struct {
+    pub name: String,
+    pub members: Vec<Member>,
+}
+
+#[derive(Debug, Clone)]
+pub struct Member {
+    pub name: String,
+    pub ty: Type,
+    pub when: Option<When>,
+}
+
+impl Struct {
+    pub fn is_plain(&self) -> bool {
+        self.members.iter().all(|member| member.when.is_none())
+    }
+}
+
+/// The spelling of a language.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Spelling(pub Language);
+
+impl Spelling {
+    pub fn is_glsl(self) -> bool {
+        self.0 == Language::Glsl
+    }
+
+    pub fn ty(self, ty: &Type, structs: &[Struct]) -> String {
+        let glsl = self.is_glsl();
+        match ty {
+            Type::Scalar(scalar) => self.scalar(*scalar).to_owned(),
+            Type::Vector(size, scalar) => {
+                let (before, behind) = match scalar {
+                    Scalar::Float => ("", "f"),
+                    Scalar::Int => ("i", "i"),
+                    Scalar::Uint => ("u", "u"),
+                };
+                if glsl { format!("{before}vec{size}") } else { format!("vec{size}{behind}") }
+            }
+            Type::Matrix(columns, rows) => {
+                format!("mat{columns}x{rows}{}", if glsl { "" } else { "f" })
+            }
+            Type::Array(of, size) if glsl => format!("{}[{size}]", self.ty(of, structs)),
+            Type::Array(of, size) => format!("array<{}, {size}>", self.ty(of, structs)),
+            Type::Struct(index) => structs[*index].name.clone(),
+        }
+    }
+
+    pub fn scalar(self, scalar: Scalar) -> &'static str {
+        match (scalar, self.is_glsl()) {
+            (Scalar::Float, false) => "f32",
+            (Scalar::Int, false) => "i32",
+            (Scalar::Uint, false) => "u32",
+            (Scalar::Float, true) => "float",
+            (Scalar::Int, true) => "int",
+            (Scalar::Uint, true) => "uint",
+        }
+    }
+
+    /// A declaration of a variable, or of a member or a parameter, without its end.
+    pub fn declared(self, name: &str, ty: &str) -> String {
+        // Sizes of arrays stand behind the name in GLSL.
+        match (self.is_glsl(), ty.split_once('[')) {
+            (false, _) => format!("{name}: {ty}"),
+            (true, None) => format!("{ty} {name}"),
+            (true, Some((of, size))) => format!("{of} {name}[{size}"),
+        }
+    }
+
+    /// The condition of an axis.
+    pub fn condition(self, when: When) -> String {
+        let values = AXES[when.axis];
+        let axis = format!("axis_{}", when.axis);
+        match (self.is_glsl(), values.get(when.value)) {
+            (false, None) if when.value == 0 => format!("!{axis}"),
+            (false, None) => axis,
+            (false, Some(value)) => format!("{axis} == {value}"),
+            (true, None) if when.value == 0 => format!("!{}", axis.to_uppercase()),
+            (true, None) => axis.to_uppercase(),
+            (true, Some(value)) => {
+                let axis = axis.to_uppercase();
+                format!("{axis} == {axis}_{}", value.to_uppercase())
+            }
+        }
+    }
+
+    /// Lines that are there under a condition, and others that are there where they are not. In
+    /// WESL either is one declaration, member, parameter or statement.
+    pub fn either(self, when: When, some: &str, other: Option<&str>) -> String {
+        let condition = self.condition(when);
+        // What follows `@else` in brackets would be a condition.
+        let other = other.map(|other| match other.starts_with('(') {
+            true => format!("{{ {other} }}"),
+            false => other.to_owned(),
+        });
+        match (self.is_glsl(), other) {
+            (false, None) => format!("@if({condition}) {some}\n"),
+            (false, Some(other)) => format!("@if({condition}) {some}\n@else {other}\n"),
+            (true, None) => format!("#if {condition}\n{some}\n#endif\n"),
+            (true, Some(other)) => format!("#if {condition}\n{some}\n#else\n{other}\n#endif\n"),
+        }
+    }
+}
