@@ -30,6 +30,8 @@ pub mod generate;
 pub mod keys;
 #[cfg(feature = "compile")]
 pub mod link;
+#[cfg(feature = "compile")]
+pub mod lint;
 #[cfg(feature = "eval")]
 pub mod metal;
 #[cfg(feature = "compile")]

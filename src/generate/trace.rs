@@ -75,7 +75,7 @@ pub struct Told {
     texts: Vec<String>,
 }
 
-const FORMS: [Form; 3] = [Form::Human, Form::Short, Form::Json];
+const FORMS: [Form; 4] = [Form::Human, Form::Coloured, Form::Short, Form::Json];
 
 impl Told {
     pub fn new(manifest: &Path, sources: &SourceSet, warnings: &[Diagnostic]) -> Self {
