@@ -1,7 +1,8 @@
 //! The one error type: what is wrong, where in the author's text, and what to do about it.
 //!
-//! Adding a diagnostic is adding a Markdown file to `codes/`: its name is the code, its first
-//! line the title, the rest what `lamplight explain` prints.
+//! Adding a diagnostic is adding a Markdown file to `codes/`. Its name is the code, its first line
+//! the title. `Page: NAME` names the page of the guide that explains it. The rest is what
+//! `lamplight explain` prints.
 
 mod excerpt;
 pub mod guide;
@@ -19,6 +20,8 @@ pub struct Code {
     pub title: &'static str,
     /// Markdown paragraphs: when it happens, an example, how to mend it.
     pub explanation: &'static str,
+    /// Name of the page of the guide that explains it, without its extension.
+    pub page: &'static str,
 }
 
 /// Every code, one constant for each file of `codes/`.

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
-use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, base, maps, placed};
+use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base, maps, placed};
 use crate::scene::shape::Shape;
 
 /// Half of the room along each axis, its middle at the origin.
@@ -60,6 +60,12 @@ fn chart(index: usize, uv: DVec2) -> DVec2 {
     let place = DVec2::new((index % CHARTS.0) as f64, (index / CHARTS.0) as f64);
     (place + inside) / DVec2::new(CHARTS.0 as f64, CHARTS.1 as f64)
 }
+
+pub const SET: Set = Set {
+    name: "room",
+    about: "a box seen from inside, with textures and a baked lightmap",
+    make: scene,
+};
 
 pub fn scene() -> Scene {
     let plaster = Material::default().glossy(0.08);

@@ -2,7 +2,13 @@
 
 use glam::DVec3;
 
-use super::{Lamp, Scene, casters};
+use super::{Lamp, Scene, Set, casters};
+
+pub const SET: Set = Set {
+    name: "screen",
+    about: "one triangle that covers the picture, before it the casters as the light sees them",
+    make: scene,
+};
 
 pub fn scene() -> Scene {
     let mut scene = casters::scene();

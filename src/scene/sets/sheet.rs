@@ -3,8 +3,14 @@
 use glam::{DMat4, DVec3};
 
 use super::palette::{self, CHALK};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
 use crate::scene::shape::Shape;
+
+pub const SET: Set = Set {
+    name: "sheet",
+    about: "an open, curled sheet: both of its sides are visible",
+    make: scene,
+};
 
 pub fn scene() -> Scene {
     let curl = Shape::surface(96, 24, |u, v| {

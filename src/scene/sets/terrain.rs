@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette;
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, base};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base};
 use crate::scene::shape::Shape;
 
 /// Along each side, scene units.
@@ -18,6 +18,9 @@ pub fn height(x: f64, z: f64) -> f64 {
         + 0.07 * (3.7 * x + 1.3 * z).sin() * (3.1 * z - 0.4).cos();
     valley * (1.5 * ridge * ridge + 0.4) + bumps
 }
+
+pub const SET: Set =
+    Set { name: "terrain", about: "a field of heights under a low sun", make: scene };
 
 pub fn scene() -> Scene {
     let at = |u: f64, v: f64| {

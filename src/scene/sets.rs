@@ -1,22 +1,12 @@
 //! The scenes of the pictures: shapes, lamps, materials and a viewer, all by formulas.
 
-mod casters;
-mod floor;
-mod maps;
-mod palette;
-mod room;
-mod screen;
-mod sheet;
-mod spheres;
-mod terrain;
-mod vessel;
-
-pub use maps::{Map, Maps};
+pub use super::maps::{Map, Maps};
 
 use glam::{DMat4, DVec3};
 
 use super::shape::Shape;
 use super::view::look_at;
+use super::{maps, palette};
 
 /// Everything that is drawn, and what it is seen with.
 #[derive(Debug, Clone)]
@@ -115,11 +105,11 @@ impl Default for Material {
 
 impl Material {
     /// A highlight of another sharpness, the roughness to match.
-    fn shiny(self, shininess: f64) -> Self {
+    pub(super) fn shiny(self, shininess: f64) -> Self {
         Self { shininess, roughness: (2.0 / (shininess + 2.0)).powf(0.25), ..self }
     }
 
-    fn glossy(self, share: f64) -> Self {
+    pub(super) fn glossy(self, share: f64) -> Self {
         Self { specular: DVec3::splat(share), ..self }
     }
 }
@@ -175,32 +165,22 @@ impl Scene {
     }
 }
 
-/// A scene's name, what it is, and how it is made.
-pub type Set = (&'static str, &'static str, fn() -> Scene);
+/// A scene, by its name: one file of `sets/` each.
+#[derive(Debug)]
+pub struct Set {
+    /// As presets and the command line name it.
+    pub name: &'static str,
+    /// One line.
+    pub about: &'static str,
+    /// The scene.
+    pub make: fn() -> Scene,
+}
 
-/// All scenes.
-pub const SETS: &[Set] = &[
-    ("spheres", "a row of spheres of rising shininess before the viewer", spheres::scene),
-    ("floor", "a tessellated floor with a light above it", floor::scene),
-    (
-        "casters",
-        "a sphere, a box and a torus over a floor that their shadows fall on",
-        casters::scene,
-    ),
-    ("sheet", "an open, curled sheet: both of its sides are visible", sheet::scene),
-    ("room", "a box seen from inside, with textures and a baked lightmap", room::scene),
-    (
-        "screen",
-        "one triangle that covers the picture, before it the casters as the light sees them",
-        screen::scene,
-    ),
-    ("terrain", "a field of heights under a low sun", terrain::scene),
-    ("vessel", "a turned pot with a spout and a handle, on a table", vessel::scene),
-];
+include!(concat!(env!("OUT_DIR"), "/sets.rs"));
 
 /// The scene of that name.
 pub fn scene(name: &str) -> Option<Scene> {
-    SETS.iter().find(|(known, _, _)| *known == name).map(|(_, _, scene)| scene())
+    ALL.iter().find(|set| set.name == name).map(|set| (set.make)())
 }
 
 /// A place, turned about y by an angle in radians.
