@@ -26,13 +26,14 @@ use crate::{house, scene, shaderlib};
 type Outcome = Result<(), Failed>;
 
 pub fn trials() -> Vec<Trial> {
-    let all: [(&str, fn() -> Outcome); 7] = [
+    let all: [(&str, fn() -> Outcome); 8] = [
         ("function", function),
         ("axis_value", axis_value),
         ("diagnostic", diagnostic),
         ("executor", || rust("executor", "src/execute/executors/fresh.rs")),
         ("target", || rust("target", "src/emit/targets/fresh.rs")),
         ("scene", || rust("scene", "src/scene/sets/fresh.rs")),
+        ("examples", examples),
         ("mistakes", mistakes),
     ];
     all.into_iter().map(|(name, run)| Trial::test(format!("new::{name}"), run)).collect()
@@ -212,6 +213,14 @@ fn balanced(text: &str) -> Outcome {
         }
     }
     if open.is_empty() { Ok(()) } else { Err(format!("{open:?} is missing:\n{text}").into()) }
+}
+
+/// What the usage shows as an example of each kind can be made.
+fn examples() -> Outcome {
+    for kind in made::KINDS {
+        make(kind.name, kind.example).map_err(|problem| format!("{}: {problem:?}", kind.name))?;
+    }
+    Ok(())
 }
 
 /// Wrong names and what there is already are refused with a reason.

@@ -38,14 +38,18 @@ pub mod codes {
 /// How much a diagnostic weighs. Only errors fail a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
+    /// The run fails.
     Error,
+    /// The run goes on.
     Warning,
 }
 
 /// A span with a few words. The first label of a diagnostic is its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
+    /// The place in the author's text.
     pub span: Span,
+    /// A few words at the place.
     pub message: String,
 }
 
@@ -53,10 +57,15 @@ pub struct Label {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[must_use]
 pub struct Diagnostic {
+    /// Whether it fails the run.
     pub severity: Severity,
+    /// What kind it is, with an explanation.
     pub code: &'static Code,
+    /// One line.
     pub message: String,
+    /// Places, the main one first.
     pub labels: Vec<Label>,
+    /// Lines under the excerpt.
     pub notes: Vec<String>,
     /// The item that it is about, where that was asked for by name and not in a text: whoever asked
     /// knows the place.

@@ -11,7 +11,9 @@ use super::{maps, palette};
 /// Everything that is drawn, and what it is seen with.
 #[derive(Debug, Clone)]
 pub struct Scene {
+    /// What is drawn.
     pub objects: Vec<Object>,
+    /// Where it is seen from.
     pub eye: Eye,
     /// Up to ten, the most important one first; the first casts the shadow.
     pub lamps: Vec<Lamp>,
@@ -19,18 +21,24 @@ pub struct Scene {
     pub materials: Vec<[Material; 2]>,
     /// Light from everywhere: of one colour, from above, from below.
     pub ambient: DVec3,
+    /// Ambient light from above.
     pub sky: DVec3,
+    /// Ambient light from below.
     pub ground: DVec3,
     /// What distance fades into, and over which distances.
     pub haze: DVec3,
+    /// Distances at which the haze begins and is full.
     pub haze_range: (f64, f64),
+    /// Textures, made when they are asked for.
     pub maps: fn() -> Maps,
 }
 
 /// A shape in its place.
 #[derive(Debug, Clone)]
 pub struct Object {
+    /// Corners and triangles.
     pub shape: Shape,
+    /// Places the shape in the world.
     pub world_from_object: DMat4,
     /// Multiplied with the colours of the corners.
     pub color: DVec3,
@@ -43,11 +51,15 @@ pub struct Object {
 /// The viewer.
 #[derive(Debug, Clone, Copy)]
 pub struct Eye {
+    /// In world space.
     pub position: DVec3,
+    /// A point that is looked at, in world space.
     pub target: DVec3,
     /// The whole vertical angle, radians.
     pub fov_y: f64,
+    /// Distance of the near plane.
     pub near: f64,
+    /// Distance of the far plane.
     pub far: f64,
 }
 
@@ -57,7 +69,9 @@ pub struct Eye {
 pub struct Lamp {
     /// What arrives at the target, whatever the falloff.
     pub color: DVec3,
+    /// In world space.
     pub position: DVec3,
+    /// A point that it shines at, in world space.
     pub target: DVec3,
     /// Half the angle of the cone, radians.
     pub half_angle: f64,
@@ -69,21 +83,32 @@ pub struct Lamp {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LampKind {
+    /// Shines in one direction everywhere.
     Directional,
+    /// Shines to all sides.
     Point,
+    /// Shines into a cone.
     Spot,
 }
 
 /// What a surface does with light.
 #[derive(Debug, Clone, Copy)]
 pub struct Material {
+    /// Linear colour that it gives off by itself.
     pub emission: DVec3,
+    /// Exponent of the classic highlights.
     pub shininess: f64,
+    /// Share of the ambient light that it reflects.
     pub ambient: DVec3,
+    /// Roughness of the microfacet highlight, [0, 1].
     pub roughness: f64,
+    /// Share of the light that it reflects to all sides.
     pub diffuse: DVec3,
+    /// How far light wraps around the terminator, [0, 1].
     pub wrap: f64,
+    /// Share of the light in its highlight.
     pub specular: DVec3,
+    /// Roughness of Oren and Nayar, radians.
     pub sigma: f64,
 }
 

@@ -61,12 +61,14 @@ fn chart(index: usize, uv: DVec2) -> DVec2 {
     (place + inside) / DVec2::new(CHARTS.0 as f64, CHARTS.1 as f64)
 }
 
+/// The scene, for the table of all.
 pub const SET: Set = Set {
     name: "room",
     about: "a box seen from inside, with textures and a baked lightmap",
     make: scene,
 };
 
+/// The scene itself.
 pub fn scene() -> Scene {
     let plaster = Material::default().glossy(0.08);
     let mut objects: Vec<Object> = walls()

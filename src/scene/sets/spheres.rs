@@ -8,12 +8,14 @@ use crate::scene::shape::Shape;
 
 const COLORS: [DVec3; 5] = [CORAL, AMBER, LEAF, TEAL, INDIGO];
 
+/// The scene, for the table of all.
 pub const SET: Set = Set {
     name: "spheres",
     about: "a row of spheres of rising shininess before the viewer",
     make: scene,
 };
 
+/// The scene itself.
 pub fn scene() -> Scene {
     let ball = Shape::sphere(0.95, (48, 24));
     let object = |(index, color): (usize, &DVec3)| {

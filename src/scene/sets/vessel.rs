@@ -74,12 +74,14 @@ const CUP: &[(f64, f64)] = &[
     (0.0, 0.08),
 ];
 
+/// The scene, for the table of all.
 pub const SET: Set = Set {
     name: "vessel",
     about: "a turned pot with a spout and a handle, on a table",
     make: scene,
 };
 
+/// The scene itself.
 pub fn scene() -> Scene {
     let glaze = Material::default().glossy(0.5).shiny(90.0);
     let cup: Vec<DVec2> = CUP.iter().map(|(radius, height)| DVec2::new(*radius, *height)).collect();

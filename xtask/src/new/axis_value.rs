@@ -54,15 +54,10 @@ fn in_manifest(text: &str, table: &str, value: &str) -> Result<String, String> {
     Ok(format!("{}, \"{value}\"{}", &text[..end], &text[end..]))
 }
 
-/// The value at the end of the axis's line: older ordinals stay.
+/// A line of its own: lines of the file are only ever appended.
 fn in_lock(text: &str, line: &str, value: &str) -> Result<String, String> {
-    let found = text.lines().any(|known| known.starts_with(line));
-    let extended = |known: &str| match known.starts_with(line) {
-        true => format!("{known} {value}\n"),
-        false => format!("{known}\n"),
-    };
-    match found {
-        true => Ok(text.lines().map(extended).collect()),
+    match text.lines().any(|known| known.starts_with(line)) {
+        true => Ok(format!("{text}{line}+ {value}\n")),
         false => Err(format!("`{LOCK}` has no line `{}`", line.trim())),
     }
 }
