@@ -5,6 +5,10 @@
 
 #include "../math/safe.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The part of one edge in the vector irradiance of a polygon.
 ///
 /// Parameters: `a`, `b` unit directions to the ends of the edge, in a frame whose z is the normal.
@@ -199,5 +203,9 @@ float area_energy(float alpha, float wide) {
     float ratio = alpha / wide;
     return ratio * ratio;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

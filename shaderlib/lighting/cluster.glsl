@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_LIGHTING_CLUSTER_GLSL
 #define LAMPLIGHT_LIGHTING_CLUSTER_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The slice of the depth that a distance lies in.
 ///
 /// Slices grow with the distance by a constant factor, so that cells stay about as deep as they are wide.
@@ -48,5 +52,9 @@ uint cluster_index(vec2 uv, float z, float near, float far, uvec3 counts) {
     uint y = uint(at.y);
     return x + counts.x * (y + counts.y * cluster_slice(z, near, far, counts.z));
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_LIGHTING_PROFILE_GLSL
 #define LAMPLIGHT_LIGHTING_PROFILE_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// Where a photometric profile about the light's axis is read.
 ///
 /// Parameters: `c` cosine of the angle between the light's axis and the direction from it to the point: `dot(-l, axis)`, [-1, 1].
@@ -48,5 +52,9 @@ vec3 cookie_uv(vec3 p, mat4 m) {
     }
     return vec3(q.xy / q.w, 1.0);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

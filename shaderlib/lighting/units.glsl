@@ -5,6 +5,10 @@
 
 #include "../math/safe.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The luminous intensity of a point light of a luminous power.
 ///
 /// Parameters: `lm` luminous power, lumens, at least 0.
@@ -93,5 +97,9 @@ float ev100_from_illuminance(float illuminance) {
 float exposure(float ev) {
     return exp2(-clamp(ev, -120.0, 120.0)) / 1.2;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

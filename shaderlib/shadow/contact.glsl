@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_SHADOW_CONTACT_GLSL
 #define LAMPLIGHT_SHADOW_CONTACT_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// Whether a point of the march is behind what the depth buffer shows, and not far behind.
 ///
 /// Parameters: `ray`, `scene` linear distances along the view axis of the point and of the surface seen there, scene units; `bias` least distance behind, scene units, at least 0; `thickness` what surfaces are taken to be deep, scene units.
@@ -44,5 +48,9 @@ float edge_fade(vec2 uv, float border) {
     }
     return nearest / border;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

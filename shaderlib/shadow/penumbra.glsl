@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_SHADOW_PENUMBRA_GLSL
 #define LAMPLIGHT_SHADOW_PENUMBRA_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The width of the penumbra of a light with a size and a place.
 ///
 /// Parameters: `receiver`, `blocker` linear distances from the light to the lit point and to what shadows it, scene units, above 0; `size` of the light, scene units, at least 0.
@@ -27,5 +31,9 @@ float pcss_width(float receiver, float blocker, float size) {
 float pcss_width_directional(float receiver, float blocker, float size) {
     return max(receiver - blocker, 0.0) * max(size, 0.0);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_SHADOW_SDF_GLSL
 #define LAMPLIGHT_SHADOW_SDF_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// One step of a march to the light: the least share of its cone that was free so far.
 ///
 /// Begin with `res` 1 and `ph` 0; step by `h`; pass the result's y as the next `ph`.
@@ -40,5 +44,9 @@ float sdf_soft_smooth(float share) {
     float x = clamp(share, -1.0, 1.0);
     return 0.25 * (1.0 + x) * (1.0 + x) * (2.0 - x);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif
