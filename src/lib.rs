@@ -55,6 +55,8 @@ pub mod validate;
 #[cfg(feature = "harness")]
 pub mod catalogue;
 #[cfg(feature = "harness")]
+pub mod cost;
+#[cfg(feature = "harness")]
 pub mod execute;
 #[cfg(feature = "harness")]
 pub mod picture;
