@@ -16,6 +16,7 @@ mod cost;
 mod determinism;
 mod diagnostics;
 mod differential;
+mod doors;
 mod emit;
 mod eval;
 mod examples;
@@ -63,6 +64,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     determinism::trials,
     diagnostics::trials,
     differential::trials,
+    doors::trials,
     emit::trials,
     eval::trials,
     examples::trials,

@@ -10,12 +10,14 @@
 mod compile;
 mod entry;
 mod lint;
+mod shader;
 mod shard;
 mod sink;
 mod summary;
 mod trace;
 mod weave;
 
+pub use shader::{Root, Shader};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
 pub use summary::{EntrySummary, ProgramSummary, Summary, WholeSummary};
@@ -98,7 +100,7 @@ pub fn generate(
     let mut generated = Generated {
         contents: Contents::default(),
         summary: Summary::default(),
-        warnings: Vec::new(),
+        warnings: manifest.warnings.clone(),
     };
     let mut outputs = Outputs::default();
     let mut lints = Lints::default();
@@ -123,8 +125,9 @@ pub fn generate(
         let woven = on_large_stack(|| {
             weave::weave(&entries, &program.space, points, &make, tools.progress)
         })?;
-        // One permutation says nothing about the others, and a part of them not enough.
-        if request.only.is_none() && request.shard.is_none() {
+        // One permutation says nothing about the others, a part of them not enough, and none at all
+        // has been told of.
+        if request.only.is_none() && request.shard.is_none() && !points.is_empty() {
             lints.see(sources, program, &entries, points);
             lints.see_woven(sources, program, &entries, &woven);
         }
