@@ -12,6 +12,7 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod cost;
 mod determinism;
 mod diagnostics;
 mod differential;
@@ -33,6 +34,7 @@ mod link;
 mod link_compare;
 mod metal;
 mod mutate;
+mod new;
 mod packages;
 mod permute;
 mod pipelines;
@@ -59,6 +61,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    cost::trials,
     determinism::trials,
     diagnostics::trials,
     differential::trials,
@@ -76,6 +79,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     link::trials,
     metal::trials,
     mutate::trials,
+    new::trials,
     packages::trials,
     permute::trials,
     pipelines::trials,

@@ -96,6 +96,7 @@ const ENTRIES: &[Entry] = &[
     ),
     entry("completions", FIRST, &["lamplight completions bash > lamplight.bash"]),
     entry("man", FIRST, &["lamplight man -o man", "lamplight man gen"]),
+    entry("cost", "Cost on GPUs", &["lamplight cost lighting::spot --gpu navi21"]),
 ];
 
 /// Codes that one line names.

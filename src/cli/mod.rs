@@ -9,6 +9,7 @@ mod check;
 mod compile;
 mod completions;
 mod compose;
+mod cost;
 mod eval;
 mod executor;
 mod explain;
@@ -75,6 +76,7 @@ enum Command {
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
     Render(render::Arguments),
+    Cost(cost::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
     Export(export::Arguments),
@@ -93,6 +95,15 @@ impl Command {
             _ => &[],
         };
         names.iter().filter_map(|name| executors::find(name)).collect()
+    }
+
+    /// The GPUs that it asks for, opened while there is one thread.
+    fn gpus(&self) -> cost::Opened {
+        match self {
+            Self::Cost(arguments) => arguments.gpus.open(),
+            Self::Variants(arguments) if arguments.cost => arguments.gpus.open(),
+            _ => Ok(Vec::new()),
+        }
     }
 }
 
@@ -122,14 +133,19 @@ pub fn main() -> ExitCode {
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     // While there is one thread.
     executors::prepare(&cli.command.executors());
+    let gpus = cli.command.gpus();
     let form = cli.color.of(cli.diagnostics);
-    match dispatch(cli.command, form) {
+    match dispatch(cli.command, gpus, form) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(form),
     }
 }
 
-fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failure> {
+fn dispatch(
+    command: Command,
+    gpus: cost::Opened,
+    form: failure::DiagnosticForm,
+) -> Result<(), Failure> {
     match command {
         Command::Init(arguments) => init::run(arguments),
         Command::List(arguments) => list::run(arguments),
@@ -139,7 +155,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Lint(arguments) => lint::run(arguments, form),
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Merge(arguments) => merge::run(arguments),
-        Command::Variants(arguments) => variants::run(arguments, form),
+        Command::Variants(arguments) => variants::run(arguments, gpus, form),
         Command::Watch(arguments) => watch::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
         Command::Keys(arguments) => keys::run(arguments, form),
@@ -147,6 +163,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
         Command::Render(arguments) => render::run(arguments, form),
+        Command::Cost(arguments) => cost::run(arguments, gpus),
         Command::Mutate(arguments) => mutate::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),

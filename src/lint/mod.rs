@@ -16,7 +16,9 @@ use crate::validate;
 
 /// What to look at, and under which settings.
 pub struct Request<'a> {
+    /// The package and what it may import.
     pub packages: &'a Packages,
+    /// The package's manifest, whose axes have values.
     pub manifest: Option<&'a Manifest>,
     /// What is chosen beside the manifest's axes.
     pub settings: &'a Settings,

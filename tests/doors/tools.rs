@@ -163,9 +163,9 @@ fn examples() -> Outcome {
     Ok(())
 }
 
-/// Those that do not end, or take too long for a trial that runs all of them.
+/// Those that do not end, take too long for a trial that runs all of them, or need a driver.
 fn is_slow(example: &str) -> bool {
-    ["watch", "catalogue", "render"].iter().any(|slow| example.contains(slow))
+    ["watch", "catalogue", "render", "cost"].iter().any(|slow| example.contains(slow))
 }
 
 fn works(package: &Package, example: &str) -> Outcome {

@@ -17,6 +17,7 @@ use crate::emit::reflect::inputs;
 use crate::emit::slots::{Numbering, assign, native};
 use crate::emit::{Emitted, Entry, Source};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry {
     target: Target::HLSL,
     extension: "hlsl",

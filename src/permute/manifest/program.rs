@@ -14,13 +14,17 @@ use crate::source::{LIMITS, Span};
 /// Entry points in one or both languages, and what they vary in.
 #[derive(Debug, Clone)]
 pub struct Program {
+    /// As the manifest and bundles call it.
     pub name: String,
+    /// What it is, in the manifest's words.
     pub doc: Option<String>,
     /// The root module. There is this, or `glsl`, or both.
     pub wesl: Option<File>,
+    /// Its root files in GLSL, one for each stage.
     pub glsl: Option<Glsl>,
     /// In the order declared; all, where the manifest names none.
     pub targets: Vec<Target>,
+    /// Its permutations.
     pub space: Space,
     /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
     pub usage: Option<File>,
@@ -56,7 +60,9 @@ pub struct File {
 /// The stages of a GLSL program, at least one of them.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Glsl {
+    /// Root file of the vertex stage.
     pub vertex: Option<File>,
+    /// Root file of the fragment stage.
     pub fragment: Option<File>,
 }
 
