@@ -12,6 +12,7 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod cost;
 mod determinism;
 mod diagnostics;
 mod differential;
@@ -60,6 +61,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    cost::trials,
     determinism::trials,
     diagnostics::trials,
     differential::trials,
