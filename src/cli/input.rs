@@ -243,6 +243,11 @@ impl Input {
         Ok((composed, Context { graph, settings, options, permutation }))
     }
 
+    /// The language asked for.
+    pub fn chosen_language(&self) -> Option<Language> {
+        self.lang.map(Language::from)
+    }
+
     /// The language asked for, or else what the extension says.
     fn language(&self, file: &Path) -> Result<Language, Failure> {
         let extension = file.extension().unwrap_or_default().to_string_lossy();

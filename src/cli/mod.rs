@@ -163,7 +163,7 @@ fn dispatch(
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
         Command::Render(arguments) => render::run(arguments, form),
-        Command::Cost(arguments) => cost::run(arguments, gpus),
+        Command::Cost(arguments) => cost::run(arguments, gpus, form),
         Command::Mutate(arguments) => mutate::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
