@@ -8,12 +8,14 @@ use clap::Args;
 
 use super::executor;
 use super::failure::Failure;
-use super::input::LanguageName;
+use super::features;
+use super::input::{self, LanguageName};
 use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
 use crate::execute::on_thread;
 use crate::output::{self, Replace};
-use crate::project;
+use crate::permute::{Setting, Settings};
+use crate::project::{self, LIBRARY};
 use crate::proof::check::{Open, Options, Report, failures, lacking, stricter, table};
 use crate::proof::library::Library;
 use crate::proof::ratchet::{FILE, Ratchet};
@@ -23,8 +25,8 @@ use crate::source::{Disk, SourceSet};
 /// Run numeric cases and compare with their references.
 #[derive(Args)]
 pub struct Arguments {
-    /// Modules of the library (`lighting::spot`, `lighting`), or case files and folders of your
-    /// own [default: the whole library].
+    /// Modules of the library (`lighting::spot`, `lighting`; `lamplight` for all of it), or case
+    /// files and folders of your own [default: the package here, else the whole library].
     path: Vec<String>,
     /// What runs the cases; may be given several times.
     #[arg(long, value_name = "E", default_value = "eval")]
@@ -41,6 +43,14 @@ pub struct Arguments {
     /// With `--bless`, also raise it. With `--report`, replace files that Lamplight did not write.
     #[arg(long)]
     force: bool,
+    /// Choose the value of a setting that your modules ask for.
+    #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = input::axis_value)]
+    set: Vec<(String, Setting)>,
+    /// Turn a feature on, or off with `=false`.
+    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = input::feature)]
+    feature: Vec<(String, Setting)>,
+    #[command(flatten)]
+    features: features::Arguments,
     /// List the cases that state less than WGSL allows.
     #[arg(long)]
     spec: bool,
@@ -62,6 +72,24 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
+    /// What is chosen. Enum axes that the package's manifest declares can be compared.
+    fn settings(&self, root: &Path) -> Result<Settings, Failure> {
+        let mut sources = SourceSet::default();
+        let manifest = project::manifest(root, &mut sources)
+            .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+        let mut settings = Settings::default();
+        for program in manifest.iter().flat_map(|manifest| &manifest.programs) {
+            let of_program = program.space.settings(&program.space.default_assignment());
+            settings.values.extend(of_program.values);
+            settings.enums.extend(of_program.enums);
+            settings.integers.extend(of_program.integers);
+            settings.undeclared = settings.undeclared.or(of_program.undeclared);
+        }
+        settings.values.extend(self.set.iter().chain(&self.feature).cloned());
+        settings.undeclared = self.features.undeclared(settings.undeclared);
+        Ok(settings)
+    }
+
     fn replace(&self) -> Replace {
         if self.force { Replace::Any } else { Replace::Ours }
     }
@@ -153,8 +181,11 @@ fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
 }
 
 fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
+    let here =
+        project::package_above(Path::new("")).map(|root| root.to_string_lossy().into_owned());
+    let default: Vec<String> = here.into_iter().filter(|_| arguments.path.is_empty()).collect();
     let (own, of_library): (Vec<&String>, Vec<&String>) =
-        arguments.path.iter().partition(|path| Path::new(path).exists());
+        arguments.path.iter().chain(&default).partition(|path| Path::new(path).exists());
     let mut selections = Vec::new();
     if own.is_empty() || !of_library.is_empty() {
         let library = Library::embedded();
@@ -237,7 +268,7 @@ fn add_own(
     match selections.iter_mut().find(same) {
         Some(selection) => selection.files.push(path),
         None => selections.push(Selection {
-            library: package(&root)?,
+            library: package(&root)?.with_settings(arguments.settings(&root)?),
             root: Some(root),
             files: vec![path],
             languages,
@@ -257,7 +288,9 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
         let stem = |file: &str| file.trim_end_matches(".toml").to_owned();
         let matching: Vec<String> = files
             .iter()
-            .filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/")))
+            .filter(|file| {
+                wanted == LIBRARY || stem(file) == wanted || file.starts_with(&format!("{wanted}/"))
+            })
             .cloned()
             .collect();
         if matching.is_empty() {

@@ -7,24 +7,31 @@ mod bundle;
 mod catalogue;
 mod check;
 mod compile;
+mod completions;
 mod compose;
+mod cost;
 mod eval;
 mod executor;
 mod explain;
 mod export;
 mod failure;
+mod features;
 mod generate;
 mod guide;
+mod init;
 mod input;
 mod keys;
+mod lint;
 mod list;
 mod merge;
 mod mutate;
 mod overwrite;
+mod own;
 mod partial;
 mod progress;
 mod render;
 mod show;
+mod stream;
 mod text;
 mod variants;
 mod watch;
@@ -46,14 +53,19 @@ struct Cli {
     /// How diagnostics are printed on standard error.
     #[arg(long, global = true, value_enum, default_value_t)]
     diagnostics: failure::DiagnosticForm,
+    /// When to write colours; `auto` heeds `NO_COLOR`.
+    #[arg(long, global = true, value_enum, default_value_t)]
+    color: failure::Colour,
 }
 
 #[derive(Subcommand)]
 enum Command {
+    Init(init::Arguments),
     List(list::Arguments),
     Show(show::Arguments),
     Compose(compose::Arguments),
     Compile(compile::Arguments),
+    Lint(lint::Arguments),
     Gen(generate::Arguments),
     Merge(merge::Arguments),
     Variants(variants::Arguments),
@@ -64,10 +76,13 @@ enum Command {
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
     Render(render::Arguments),
+    Cost(cost::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
     Export(export::Arguments),
     Explain(explain::Arguments),
+    Completions(completions::Completions),
+    Man(completions::Manual),
 }
 
 impl Command {
@@ -81,29 +96,66 @@ impl Command {
         };
         names.iter().filter_map(|name| executors::find(name)).collect()
     }
+
+    /// The GPUs that it asks for, opened while there is one thread.
+    fn gpus(&self) -> cost::Opened {
+        match self {
+            Self::Cost(arguments) => arguments.gpus.open(),
+            Self::Variants(arguments) if arguments.cost => arguments.gpus.open(),
+            _ => Ok(Vec::new()),
+        }
+    }
+}
+
+/// The command line with examples and pages in its help.
+fn described() -> clap::Command {
+    guide::in_help(Cli::command()).color(asked_for_colour())
+}
+
+/// What `--color` says, for help and wrong usage, which are told before options are read.
+fn asked_for_colour() -> clap::ColorChoice {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let value = |index: usize| match arguments[index].strip_prefix("--color") {
+        Some("") => arguments.get(index + 1).map(String::as_str),
+        Some(rest) => rest.strip_prefix('='),
+        None => None,
+    };
+    match (0..arguments.len()).find_map(value) {
+        Some("always") => clap::ColorChoice::Always,
+        Some("never") => clap::ColorChoice::Never,
+        _ => clap::ColorChoice::Auto,
+    }
 }
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let matches = guide::in_help(Cli::command()).get_matches();
+    let matches = described().get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     // While there is one thread.
     executors::prepare(&cli.command.executors());
-    match dispatch(cli.command, cli.diagnostics) {
+    let gpus = cli.command.gpus();
+    let form = cli.color.of(cli.diagnostics);
+    match dispatch(cli.command, gpus, form) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(cli.diagnostics),
+        Err(failure) => failure.report(form),
     }
 }
 
-fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failure> {
+fn dispatch(
+    command: Command,
+    gpus: cost::Opened,
+    form: failure::DiagnosticForm,
+) -> Result<(), Failure> {
     match command {
+        Command::Init(arguments) => init::run(arguments),
         Command::List(arguments) => list::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Compose(arguments) => compose::run(arguments, form),
         Command::Compile(arguments) => compile::run(arguments, form),
+        Command::Lint(arguments) => lint::run(arguments, form),
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Merge(arguments) => merge::run(arguments),
-        Command::Variants(arguments) => variants::run(arguments, form),
+        Command::Variants(arguments) => variants::run(arguments, gpus, form),
         Command::Watch(arguments) => watch::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
         Command::Keys(arguments) => keys::run(arguments, form),
@@ -111,8 +163,11 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
         Command::Render(arguments) => render::run(arguments, form),
+        Command::Cost(arguments) => cost::run(arguments, gpus, form),
         Command::Mutate(arguments) => mutate::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Completions(arguments) => completions::completions(&arguments, described()),
+        Command::Man(arguments) => completions::manual(&arguments, described()),
     }
 }

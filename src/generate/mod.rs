@@ -10,12 +10,14 @@
 mod compile;
 mod entry;
 mod lint;
+mod shader;
 mod shard;
 mod sink;
 mod summary;
 mod trace;
 mod weave;
 
+pub use shader::{Root, Shader};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
 pub use summary::{EntrySummary, ProgramSummary, Summary, WholeSummary};
@@ -60,6 +62,7 @@ pub struct Tools<'a> {
     pub sink: &'a dyn Sink,
     /// Where results are kept between runs, and looked up.
     pub cache: Option<&'a Cache>,
+    /// Told how far the run is.
     pub progress: &'a (dyn Fn(Progress) + Sync),
 }
 
@@ -70,6 +73,7 @@ pub struct Progress {
     pub stage: String,
     /// Permutations done, of how many.
     pub done: usize,
+    /// Permutations of that entry point.
     pub total: usize,
 }
 
@@ -78,7 +82,9 @@ pub struct Progress {
 pub struct Generated {
     /// Keys refer to units that the sink has: the entry points themselves have none.
     pub contents: Contents,
+    /// Counts and times.
     pub summary: Summary,
+    /// What the author should know.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -98,13 +104,11 @@ pub fn generate(
     let mut generated = Generated {
         contents: Contents::default(),
         summary: Summary::default(),
-        warnings: Vec::new(),
+        warnings: manifest.warnings.clone(),
     };
     let mut outputs = Outputs::default();
     let mut lints = Lints::default();
-    for program in chosen(manifest, request)? {
-        let points = points(program, request)?;
-        let entries = entry::entries(sources, packages, program, points.first())?;
+    for (program, points, entries) in prepared(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
         let mut targets = if request.targets.is_empty() {
             program.targets.clone()
@@ -123,8 +127,9 @@ pub fn generate(
         let woven = on_large_stack(|| {
             weave::weave(&entries, &program.space, points, &make, tools.progress)
         })?;
-        // One permutation says nothing about the others, and a part of them not enough.
-        if request.only.is_none() && request.shard.is_none() {
+        // One permutation says nothing about the others, a part of them not enough, and none at all
+        // has been told of.
+        if request.only.is_none() && request.shard.is_none() && !points.is_empty() {
             lints.see(sources, program, &entries, points);
             lints.see_woven(sources, program, &entries, &woven);
         }
@@ -140,6 +145,27 @@ pub fn generate(
     generated.summary.cached = tools.cache.map_or(0, Cache::hits);
     generated.summary.seconds = start.elapsed().as_secs_f64();
     Ok(generated)
+}
+
+/// A program with its permutations and its entry points.
+type Prepared<'a> = (&'a Program, Vec<Assignment>, Vec<Entry>);
+
+/// Every program that is asked for: what is wrong with one does not hide what is wrong with another.
+fn prepared<'a>(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &'a Manifest,
+    request: &Request,
+) -> Result<Vec<Prepared<'a>>, Diagnostics> {
+    let (mut programs, mut errors) = (Vec::new(), Diagnostics::new());
+    for program in chosen(manifest, request)? {
+        let points = points(program, request)?;
+        match entry::entries(sources, packages, program, points.first()) {
+            Ok(entries) => programs.push((program, points, entries)),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if errors.is_empty() { Ok(programs) } else { Err(lint::distinct(sources, errors)) }
 }
 
 /// [`generate`] with every unit in the contents, for callers that want the bundle in memory.

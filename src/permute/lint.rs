@@ -1,5 +1,5 @@
-//! What is allowed but hardly meant: constraints that decide nothing or everything, values and
-//! slices that select nothing.
+//! Lints of a space: constraints that are always true or always false, and values and slices that
+//! no permutation has. All of these are allowed. Few authors mean them.
 
 use super::axis::{Axis, ValueSet};
 use super::space::{Constraint, Slice, Space};
@@ -30,10 +30,20 @@ pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
             .flat_map(|(axis, valid)| never_valid(axis, valid)),
     );
     warnings.extend(space.lists().only.iter().filter_map(|slice| empty(space, slice)));
+    warnings.extend(nothing_wanted(space, what, place));
     warnings
 }
 
-/// A space that cannot be counted has been refused by now, so a single condition of it can.
+/// A space in which the lists leave no permutation.
+pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnostic> {
+    (space.count() == 0).then(|| {
+        let message = format!("the lists of {what} leave no permutation");
+        Diagnostic::warning(codes::NO_PERMUTATION, message).at(place, "ships empty")
+    })
+}
+
+/// Whether a condition always has one value. Spaces that are too complex to count were refused
+/// before, so a single condition can be counted.
 fn trivial(space: &Space, constraint: &Constraint) -> Option<Diagnostic> {
     let satisfying = space.satisfying(&constraint.formula).ok()?;
     let (code, word) = match satisfying {
@@ -43,7 +53,8 @@ fn trivial(space: &Space, constraint: &Constraint) -> Option<Diagnostic> {
     };
     let warning =
         Diagnostic::warning(code, format!("the constraint `{}` is always {word}", constraint.text));
-    Some(warning.at(constraint.span, format!("{word} whatever the axes are")))
+    let warning = warning.at(constraint.span, format!("{word} whatever the axes are"));
+    Some(if satisfying == 0 { warning.note("so the program ships empty") } else { warning })
 }
 
 fn never_valid(axis: &Axis, valid: ValueSet) -> Option<Diagnostic> {

@@ -3,11 +3,13 @@
 //! naga recurses over what it reads and panics on some inputs, so that every call into it is
 //! bounded first ([`limits`]), runs on a large stack and has its panics caught ([`guard`]).
 
+mod every;
 mod guard;
 mod limits;
 mod report;
 mod uniformity;
 
+pub use every::every;
 pub use guard::{guard, on_large_stack};
 pub use limits::{LIMITS, Limits};
 pub use uniformity::{has_lints, lint};
@@ -22,8 +24,11 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 /// A module that naga accepts, with what it found out about it.
 #[derive(Debug, Clone)]
 pub struct Validated {
+    /// Language of the text.
     pub language: Language,
+    /// As naga's front end read it.
     pub module: naga::Module,
+    /// What naga's validator found out about it.
     pub info: ModuleInfo,
 }
 

@@ -48,7 +48,7 @@ pub struct Arguments {
     all: bool,
     /// Where the picture goes [default: the name of the preset, or `render.png`]; with `--all`, a
     /// folder [default: `gallery`].
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Pixels across and down.
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
@@ -143,7 +143,7 @@ fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
         )?,
     };
     if let Some(scene) = &arguments.scene {
-        let known = sets::SETS.iter().map(|(name, _, _)| *name);
+        let known = sets::ALL.iter().map(|set| set.name);
         if !known.clone().any(|name| name == scene) {
             return Err(unknown("scene", scene, known));
         }
