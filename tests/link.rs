@@ -24,13 +24,16 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 6] = [
+    let cases: [Case; 9] = [
         ("forward_alone_and_together", forward),
         ("traps_alone_and_together", traps),
         ("names_alone_and_together", names),
         ("whole_and_linked", whole_and_linked),
         ("reasons", reasons),
         ("warnings_are_not_lost", warnings),
+        ("an_entry_point_called_like_others", entry_points),
+        ("names_of_hlsl_and_glsl", kept_names),
+        ("functions_that_old_glsl_lacks", lacking),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("link::{name}"), case)).collect()
 }
@@ -275,8 +278,22 @@ fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {
     let contents = std::mem::take(&mut together.contents);
     let out = folder.path().join("out");
     write_directory(&contents, &out)?;
-    let files = lamplight::bundle::blob_files(&out)?.into_iter();
+    judge_all(&out)
+}
+
+/// Every output of a bundle is well formed.
+fn judge_all(out: &Path) -> Outcome {
+    let files = lamplight::bundle::blob_files(out)?;
+    let texts = files.iter().filter(|file| file.target == "msl");
+    let texts = texts.map(|file| std::fs::read_to_string(&file.path));
+    let texts = texts.collect::<Result<Vec<String>, _>>()?;
+    let views: Vec<&str> = texts.iter().map(String::as_str).collect();
+    let mut wrong = Vec::new();
+    for refusal in lamplight::metal::judge(&views, &|_| ()).map_err(|missing| missing.reason)? {
+        wrong.push(format!("{}\n{}", refusal.errors, texts[refusal.index]));
+    }
     let jobs: Vec<Job> = files
+        .into_iter()
         .map(|file| Job {
             stage: external::stage(file.stage),
             target: file.target,
@@ -284,7 +301,8 @@ fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {
         })
         .collect();
     let (judged, refusals) = external::validate(jobs, &|_| {})?;
-    if refusals.is_empty() && judged > 0 { Ok(()) } else { Err(refusals.join("\n").into()) }
+    wrong.extend(refusals);
+    if wrong.is_empty() && judged > 0 { Ok(()) } else { Err(wrong.join("\n").into()) }
 }
 
 /// A program of one fragment shader with something more in it.
@@ -338,6 +356,7 @@ fn reasons() -> Outcome {
         ),
         ("fn é(x: f32) -> f32 { return x; }", "let d = é(1.0);"),
         ("const_assert true;", ""),
+        ("fn SamplerState(x: f32) -> f32 { return x; }", "let d = SamplerState(1.0);"),
     ];
     for (more, body) in linked {
         let reasons = reasons_of(&fragment(more, body), "")?;
@@ -391,4 +410,114 @@ fn sampled(at: vec2f) -> vec4f { if far(at) { return textureSample(map, smp, at)
     } else {
         Err(format!("{together} warnings together, {alone} alone").into())
     }
+}
+
+/// Makes a program of one file in some targets, and has every output judged.
+fn judged(text: &str, targets: &str) -> Result<Generated, Failed> {
+    let folder = tempfile::tempdir()?;
+    let manifest = format!("[program.one]\nwesl = \"one.wesl\"\n{targets}\n");
+    let (mut sources, packages, manifest) = package(folder.path(), "one", &manifest, text)?;
+    let mut made = made(&mut sources, &packages, &manifest, None)?;
+    let contents = std::mem::take(&mut made.contents);
+    let out = folder.path().join("out");
+    write_directory(&contents, &out)?;
+    judge_all(&out)?;
+    made.contents = contents;
+    for unit in units(&made).values() {
+        if let Some(hlsl) = unit.targets.get("hlsl") {
+            judge_hlsl(&out, hlsl, external::stage(unit.reflection.stage))?;
+        }
+    }
+    Ok(made)
+}
+
+fn judge_hlsl(folder: &Path, hlsl: &lamplight::bundle::Artifact, stage: &str) -> Outcome {
+    let file = folder.join("text.hlsl");
+    std::fs::write(&file, &hlsl.bytes)?;
+    let said = std::process::Command::new("glslangValidator")
+        .args(["-D", "-V", "-S", stage, "-e", &hlsl.native.entry_name, "-o", "/dev/null"])
+        .arg(&file)
+        .output()?;
+    let text = String::from_utf8_lossy(&hlsl.bytes);
+    match said.status.success() {
+        true => Ok(()),
+        false => Err(format!("{}\n{text}", String::from_utf8_lossy(&said.stdout)).into()),
+    }
+}
+
+/// naga adds to an entry point that ends with a digit, and the manifest says what it is called; a
+/// variable and a parameter that become the same are told apart.
+fn entry_points() -> Outcome {
+    let text = "
+@group(0) @binding(0) var<uniform> metal_2: vec4f;
+fn read() -> vec4f { return metal_2; }
+@fragment fn metal_2_(@location(0) metal_2: vec2f) -> @location(0) vec4f { return read() + metal_2.xyxy; }
+@vertex fn main_1() -> @builtin(position) vec4f { return vec4f(); }
+";
+    let made = judged(text, "")?;
+    for ((entry, _), unit) in units(&made) {
+        let wgsl = &unit.targets["wgsl"];
+        let (text, name) = (String::from_utf8_lossy(&wgsl.bytes), &wgsl.native.entry_name);
+        let declared = format!("fn {name}(");
+        if text.matches(&declared).count() != 1 || text.contains("var<uniform> metal_2_:") {
+            return Err(format!("{entry} is told as `{name}`:\n{text}").into());
+        }
+        lamplight::validate::validate(&lamplight::compose::Composed::of_text(
+            lamplight::bundle::Language::Wesl,
+            None,
+            text.clone().into_owned(),
+        ))
+        .map_err(|problems| format!("{problems:?}\n{text}"))?;
+    }
+    Ok(())
+}
+
+/// Names of an author's that naga's helpers have, or that its lists of words lack.
+fn kept_names() -> Outcome {
+    let text = "
+struct Pair { sampler2D: f32, turn: mat2x2f, kind: vec3f }
+struct int64_t { f32vec2: vec4f, gl: f32 }
+const TABLE = array<vec2f, 2>(vec2f(0.5), vec2f(0.25));
+const PAIRS = array<Pair, 2>(
+    Pair(0.5, mat2x2f(vec2f(1.0), vec2f(2.0)), vec3f(1.0)),
+    Pair(0.25, mat2x2f(vec2f(3.0), vec2f(4.0)), vec3f(2.0)),
+);
+const ONE = Pair(1.0, mat2x2f(vec2f(1.0), vec2f(2.0)), vec3f(0.0));
+var<private> list: array<i32, 3> = array<i32, 3>(1, 2, 3);
+fn gl(x: f32) -> int64_t { return int64_t(vec4f(x), x); }
+fn gl_1(x: f32) -> f32 { let gl = x; return gl; }
+@fragment fn ZeroValue(@location(0) at: vec2f, @location(1) @interpolate(flat) i: u32) -> @location(0) vec4f {
+    let ConstructPair = at.x;
+    let Constructarray2_float2_ = array<vec2f, 2>(at, TABLE[i & 1u]);
+    let pair = Pair(ConstructPair, mat2x2f(at, at), vec3f(f32(list[i & 1u])));
+    let found = gl(gl_1(pair.sampler2D + PAIRS[i & 1u].turn[1].x + ONE.kind.y));
+    return found.f32vec2 + Constructarray2_float2_[i & 1u].xyxy;
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    judged(text, "").map(|_| ())
+}
+
+/// A function that GLSL 3.30 lacks is refused in its line, for those targets alone.
+fn lacking() -> Outcome {
+    let text = "
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    return vec4f(ldexp(at.x, 2), f32(countOneBits(u32(at.y))), 0.0, 0.0);
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    judged(text, r#"targets = ["spirv", "glsl450", "hlsl", "msl", "wgsl"]"#)?;
+    for target in ["glsl330", "essl300"] {
+        let targets = format!("targets = [\"{target}\"]");
+        let Err(refused) = judged(text, &targets) else {
+            return Err(format!("{target} has neither `ldexp` nor `bitCount`").into());
+        };
+        let words = refused.message().unwrap_or_default().to_owned();
+        for word in ["`ldexp`", "`bitCount`", "one.wesl:3:"] {
+            if !words.contains(word) {
+                return Err(format!("{target}: no {word} in:\n{words}").into());
+            }
+        }
+    }
+    Ok(())
 }

@@ -30,10 +30,10 @@ use program::Program;
 use random::Random;
 
 /// How many programs the tests make, and from which seed on.
-const PROGRAMS: u64 = 200;
+const PROGRAMS: u64 = 60;
 const SEED: u64 = 1;
 /// The judges beside the crate see one program in so many.
-const JUDGED: u64 = 4;
+const JUDGED: u64 = 6;
 /// Programs whose outputs are judged together.
 const BATCH: u64 = 64;
 /// Programs of a hundred that the crate may refuse, since the generator does not know everything.

@@ -36,6 +36,7 @@ mod link_random;
 mod metal;
 mod mutate;
 mod new;
+mod one_meaning;
 mod packages;
 mod permute;
 mod pipelines;
@@ -82,6 +83,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     metal::trials,
     mutate::trials,
     new::trials,
+    one_meaning::trials,
     packages::trials,
     permute::trials,
     pipelines::trials,

@@ -17,7 +17,6 @@ const LATER: &[(MathFunction, &str)] = &[
     (MathFunction::ExtractBits, "bitfieldExtract"),
     (MathFunction::FirstLeadingBit, "findMSB"),
     (MathFunction::FirstTrailingBit, "findLSB"),
-    (MathFunction::Frexp, "frexp"),
     (MathFunction::InsertBits, "bitfieldInsert"),
     (MathFunction::Ldexp, "ldexp"),
     (MathFunction::Pack4xI8, "bitfieldInsert"),

@@ -238,9 +238,13 @@ impl Fragment {
 
 impl Cut {
     /// Tells the identifiers apart that the unit's function declares: `bases` are the author's
-    /// names, which naga writes with an underscore or a number behind them.
-    pub fn add_locals(&mut self, bases: BTreeSet<&str>) {
+    /// names, which naga writes with an underscore or a number behind them. The entry point is no
+    /// local, even where one is called like it.
+    pub fn add_locals(&mut self, bases: &BTreeSet<&str>, entry: &str) {
         let is_local = |word: &String| {
+            if word == entry {
+                return false;
+            }
             let stem = word.trim_end_matches(|end: char| end.is_ascii_digit());
             let stem = if stem.ends_with('_') { stem.trim_end_matches('_') } else { word };
             bases.contains(stem) || bases.contains(word.trim_end_matches('_'))

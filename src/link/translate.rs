@@ -387,7 +387,7 @@ fn write(
     };
     let wanted = cut::Wanted { function, entry: &emitted.native.entry_name, names: &parsed.names };
     let mut cut = cut::cut(&text, &wanted)?;
-    cut.add_locals(locals(recipe, &parsed.validated.module, function));
+    cut.add_locals(&locals(recipe, &parsed.validated.module, function), wanted.entry);
     let native = match recipe.unit {
         Unit::Function(_) => None,
         Unit::Entry => {

@@ -6,6 +6,7 @@
 mod judge;
 #[path = "../../fuzz/src/kinds.rs"]
 mod kinds;
+mod link;
 mod mutate;
 
 use std::collections::BTreeSet;
@@ -19,7 +20,7 @@ use crate::{Failure, Outcome};
 use kinds::{KINDS, Kind};
 use mutate::Random;
 
-const USAGE: &str = "usage: cargo xtask fuzz [--seconds N] [--seed N] [KIND]...";
+const USAGE: &str = "usage: cargo xtask fuzz [--seconds N] [--seed N] [KIND]...\n       cargo xtask fuzz link [--programs N] [--seed N]";
 /// A worker that shows no sign of life for so long is in an endless loop.
 const PATIENCE: Duration = Duration::from_secs(20);
 /// The exit code of a worker that found something.
@@ -37,6 +38,7 @@ struct Request {
 /// Fuzzes every kind for its share of the time; a finding is exit code 3.
 pub fn run(arguments: &[String]) -> Outcome {
     match arguments {
+        [kind, rest @ ..] if kind == "link" => link::run(rest),
         [mode, kind, file] if mode == "--judge" => judge_file(find(kind)?, Path::new(file)),
         [mode, kind, seed, seconds] if mode == "--work" => {
             work(find(kind)?, number(seed)?, number(seconds)?)

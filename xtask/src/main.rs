@@ -71,7 +71,11 @@ const COMMANDS: &[Command] = &[
         "measure, beside peers where there are any: compose, eval, gen, load or scale",
         bench::run,
     ),
-    ("fuzz", "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...", fuzz::run),
+    (
+        "fuzz",
+        "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...; or random programs: link [--programs N] [--seed N]",
+        fuzz::run,
+    ),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];
 

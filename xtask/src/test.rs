@@ -16,7 +16,13 @@ pub fn run(arguments: &[String]) -> Outcome {
 
 /// Runs cargo in the workspace; a failure is exit code 3.
 pub fn cargo(arguments: &[&str], rest: &[String]) -> Outcome {
+    cargo_with(arguments, rest, &[])
+}
+
+/// [`cargo`] with variables in its environment.
+pub fn cargo_with(arguments: &[&str], rest: &[String], variables: &[(String, String)]) -> Outcome {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.envs(variables.iter().cloned());
     command.args(arguments).current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     if !rest.is_empty() {
         command.arg("--").args(rest);

@@ -1,0 +1,37 @@
+//! `cargo xtask fuzz link`: random programs, made, judged and compared by the trial `link::random`
+//! of the tests.
+
+use crate::{Failure, Outcome, test};
+
+const USAGE: &str = "usage: cargo xtask fuzz link [--programs N] [--seed N] [--every N] [--shrink]
+
+  --programs N  how many (20000)
+  --seed N      the seed of the first (1)
+  --every N     the judges beside the crate see one program in N (16)
+  --shrink      make the first finding of each kind small";
+
+/// Runs the trial; findings are left in `target/fuzz/link/`, and are exit code 3.
+pub fn run(arguments: &[String]) -> Outcome {
+    let mut settings = vec![("PROGRAMS", "20000".to_owned()), ("JUDGED", "16".to_owned())];
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        let name = match argument.as_str() {
+            "--programs" => "PROGRAMS",
+            "--seed" => "SEED",
+            "--every" => "JUDGED",
+            "--shrink" => {
+                settings.push(("SHRINK", "1".to_owned()));
+                continue;
+            }
+            _ => return Err(Failure::usage(USAGE)),
+        };
+        let value = rest.next().filter(|value| value.parse::<u64>().is_ok());
+        let value = value.ok_or_else(|| Failure::usage(USAGE))?;
+        settings.push((name, value.clone()));
+    }
+    let settings =
+        settings.into_iter().map(|(name, value)| (format!("LAMPLIGHT_LINK_{name}"), value));
+    let command =
+        ["test", "--quiet", "--package", "lamplight", "--features", "store", "--test", "all"];
+    test::cargo_with(&command, &["link::random".to_owned()], &settings.collect::<Vec<_>>())
+}
