@@ -12,20 +12,20 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod conventions;
 mod determinism;
 mod diagnostics;
 mod differential;
 mod emit;
 mod eval;
 mod examples;
-#[path = "../xtask/src/external.rs"]
-mod external;
 mod fragments;
 mod frames;
 mod generate;
 mod guide;
 mod harness;
 mod house;
+mod judges;
 mod keys;
 mod library;
 mod link;
@@ -58,6 +58,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    conventions::trials,
     determinism::trials,
     diagnostics::trials,
     differential::trials,
@@ -69,6 +70,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     guide::trials,
     harness::trials,
     house::trials,
+    judges::trials,
     keys::trials,
     library::trials,
     link::trials,

@@ -8,7 +8,7 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::input::{Input, Ready};
 use super::overwrite::Overwrite;
-use crate::bundle::Target;
+use crate::bundle::{Clip, Target};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest};
 use crate::emit::{self, Emitted, targets};
 use crate::output::{self, Replace};
@@ -22,6 +22,10 @@ pub struct Arguments {
     /// Output languages: spirv, glsl450, glsl330, essl300, msl, hlsl, wgsl.
     #[arg(long, value_name = "T,...", value_delimiter = ',', required = true, value_parser = target)]
     target: Vec<Target>,
+    /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: that
+    /// of the file's program in the manifest, or else `wgpu`].
+    #[arg(long, value_name = "SPACE", value_parser = clip)]
+    clip: Option<Clip>,
     /// Folder for the files [default: standard output].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -39,6 +43,11 @@ pub fn target(name: &str) -> Result<Target, String> {
     })
 }
 
+/// A clip space by name, as an option's value.
+pub fn clip(name: &str) -> Result<Clip, String> {
+    Clip::find(name).ok_or_else(|| "no such clip space (clip spaces: wgpu, native)".to_owned())
+}
+
 struct File {
     name: String,
     binary: bool,
@@ -47,10 +56,11 @@ struct File {
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let Ready { project, composed, context } = arguments.input.compose(form)?;
+    let clip = arguments.clip.unwrap_or_default();
     let files = validate(&composed).and_then(|validated| {
         warn(&project.sources, &context.own(validate::lint(&composed, &validated)), form);
         emit::check(&composed, &validated)?;
-        files(&validated, &arguments)
+        files(&validated, &arguments, clip)
     });
     let files = files
         .map_err(|diagnostics| Failure::Input(project.sources, context.explain(diagnostics)))?;
@@ -63,6 +73,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
 fn files(
     validated: &crate::validate::Validated,
     arguments: &Arguments,
+    clip: Clip,
 ) -> Result<Vec<File>, Diagnostics> {
     let stem = arguments.input.file.file_name().unwrap_or_default().to_string_lossy();
     let stem = stem.split('.').next().unwrap_or_default();
@@ -74,7 +85,7 @@ fn files(
     for point in &validated.module.entry_points {
         let isolated = emit::isolate(validated, &point.name)?;
         for &target in &arguments.target {
-            let Emitted { bytes, .. } = emit::emit(&isolated, &point.name, target)
+            let Emitted { bytes, .. } = emit::emit_for(&isolated, &point.name, target, clip)
                 .map_err(|diagnostic| vec![diagnostic])?;
             let Some(entry) = targets::find(target) else { continue };
             let name = format!(

@@ -16,6 +16,7 @@ mod failure;
 mod generate;
 mod guide;
 mod input;
+mod judged;
 mod keys;
 mod list;
 mod merge;

@@ -72,6 +72,7 @@ pub const PAGES: &[Page] = &[
             codes::SPACE_TOO_COMPLEX,
             codes::TOO_MANY_PERMUTATIONS,
             codes::UNKNOWN_AXIS,
+            codes::UNKNOWN_CLIP,
             codes::UNKNOWN_KEY,
             codes::UNKNOWN_PROGRAM,
             codes::UNKNOWN_TARGET,
@@ -143,7 +144,11 @@ pub const PAGES: &[Page] = &[
         ],
     },
     Page { title: "Bundles", file: "bundles.md", codes: &[codes::BUNDLE_FAILED] },
-    Page { title: "Conventions of each target", file: "targets.md", codes: &[codes::EMIT_FAILED] },
+    Page {
+        title: "Conventions of each target",
+        file: "targets.md",
+        codes: &[codes::EMIT_FAILED, codes::OUTPUT_REFUSED],
+    },
     Page {
         title: "Limits and what each protects",
         file: "limits.md",

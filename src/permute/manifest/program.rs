@@ -4,7 +4,7 @@ use toml::de::DeTable;
 
 use super::reader::{Name, Reader, Value};
 use super::{axes, lists, names};
-use crate::bundle::Target;
+use crate::bundle::{Clip, Target};
 use crate::diagnostic::{Diagnostic, Severity, codes};
 use crate::permute::axis::Axis;
 use crate::permute::space::{Constraint, Lists, Space, TooComplex};
@@ -21,6 +21,8 @@ pub struct Program {
     pub glsl: Option<Glsl>,
     /// In the order declared; all, where the manifest names none.
     pub targets: Vec<Target>,
+    /// The clip space of its outputs.
+    pub clip: Clip,
     pub space: Space,
     /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
     pub usage: Option<File>,
@@ -58,6 +60,7 @@ const KEYS: &[&str] = &[
     "wesl",
     "glsl",
     "targets",
+    "clip",
     "axis",
     "constraint",
     "include",
@@ -88,9 +91,11 @@ pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> 
     }
     let usage = table.get("usage").and_then(|value| file(reader, value, "`usage`"));
     let targets = table.get("targets").map_or(Target::ALL.to_vec(), |value| targets(reader, value));
+    let clip = table.get("clip").map_or(Some(Clip::default()), |value| clip(reader, value));
     let limit = table.get("limit").map_or(Some(LIMITS.permutations), |value| limit(reader, value));
     let space = space(reader, table, &what, span)?;
-    let program = Program { name, doc, wesl, glsl, targets, space, usage, limit: limit?, span };
+    let program =
+        Program { name, doc, wesl, glsl, targets, clip: clip?, space, usage, limit: limit?, span };
     check_limit(reader, &program);
     (self::errors(reader) == errors).then_some(program)
 }
@@ -143,6 +148,19 @@ fn target(reader: &mut Reader, value: &Value) -> Option<Target> {
                 .suggest(&text.text, names())
                 .note(format!("targets: {}", names().collect::<Vec<_>>().join(", "))),
         );
+    }
+    found
+}
+
+fn clip(reader: &mut Reader, value: &Value) -> Option<Clip> {
+    let text = reader.string(value, "`clip`")?;
+    let found = Clip::find(&text.text);
+    if found.is_none() {
+        let names = || Clip::ALL.iter().map(|(name, _)| *name);
+        let message = format!("there is no clip space `{}`", text.text);
+        let unknown = Diagnostic::error(codes::UNKNOWN_CLIP, message).at(text.span, "not one");
+        let known = format!("clip spaces: {}", names().collect::<Vec<_>>().join(", "));
+        reader.problems.push(unknown.suggest(&text.text, names()).note(known));
     }
     found
 }
