@@ -127,6 +127,14 @@ fn clip_in_manifest_and_cache() -> Outcome {
             return Err(format!("{arguments:?}: not what was asked for").into());
         }
     }
+    for (arguments, expected) in [(&[][..], false), (&["--clip", "wgpu"], true)] {
+        let compile = ["compile", "one.wesl", "--target", "glsl330", "--entry", "vs_main"];
+        let said = package.run(&[&compile, arguments].concat())?;
+        expect(&said, 0, &["gl_Position = "])?;
+        if String::from_utf8_lossy(&said.stdout).contains(CONVERTS) != expected {
+            return Err(format!("compile {arguments:?}: not what was asked for").into());
+        }
+    }
     fs::write(
         package.path("one.lamplight"),
         pack(&Bundle::open(package.path("out"))?.contents()?)?,

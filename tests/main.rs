@@ -16,6 +16,7 @@ mod conventions;
 mod determinism;
 mod diagnostics;
 mod differential;
+mod doors;
 mod emit;
 mod eval;
 mod examples;
@@ -62,6 +63,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     determinism::trials,
     diagnostics::trials,
     differential::trials,
+    doors::trials,
     emit::trials,
     eval::trials,
     examples::trials,

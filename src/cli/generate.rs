@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::compile::{clip, target};
+use super::compile::{Wanted, clip, wanted, wanted_one};
 use super::failure::{DiagnosticForm, Failure};
 use super::work::{Places, Work};
-use crate::bundle::{Clip, Target};
+use crate::bundle::Clip;
 use crate::generate::{Request, Shard, Summary};
 use crate::permute::Quoted;
 use crate::source::SourceSet;
@@ -25,8 +25,8 @@ pub struct Arguments {
     #[arg(long, value_name = "KEY")]
     only: Option<String>,
     /// Only these targets.
-    #[arg(long, value_name = "T,...", value_delimiter = ',', value_parser = target)]
-    target: Vec<Target>,
+    #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
+    target: Vec<Wanted>,
     /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: the
     /// manifest's].
     #[arg(long, value_name = "SPACE", value_parser = clip)]
@@ -72,7 +72,7 @@ fn request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
     Request {
         program: arguments.program.clone(),
         only,
-        targets: arguments.target.clone(),
+        targets: wanted(&arguments.target),
         clip: arguments.clip,
         shard: arguments.shard,
     }

@@ -19,13 +19,14 @@ use crate::source::SourceSet;
 /// Report how many permutations a manifest has, and what each axis costs.
 #[derive(Args)]
 pub struct Arguments {
-    /// The manifest [default: that of the library].
+    /// The manifest [default: `lamplight.toml` here or in the nearest folder above, else that of
+    /// the library].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
     /// As JSON.
     #[arg(long)]
     json: bool,
-    /// Also list every key of this program.
+    /// List every key of this program instead.
     #[arg(long, value_name = "PROGRAM")]
     keys: Option<String>,
     /// Compose every permutation: count the distinct texts, and say which axes each stage sees.
@@ -38,12 +39,13 @@ pub struct Arguments {
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let mut sources = SourceSet::default();
-    let opened = open(arguments.manifest.as_deref(), &mut sources);
+    let manifest = arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
+    let opened = open(manifest.as_deref(), &mut sources);
     let (manifest, packages) =
         opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
     warn(&sources, &manifest.warnings, form);
     if let Some(name) = &arguments.keys {
-        return keys(&manifest, name);
+        return keys(&manifest, name, arguments.json);
     }
     let reports = manifest.programs.iter().map(|program| {
         let mut report = report(&program.name, &program.space);
@@ -113,16 +115,22 @@ fn compose(
     Ok(())
 }
 
-fn keys(manifest: &Manifest, name: &str) -> Result<(), Failure> {
+fn keys(manifest: &Manifest, name: &str, json: bool) -> Result<(), Failure> {
     let program = manifest.program(name).ok_or_else(|| {
         let known = manifest.programs.iter().map(|program| program.name.as_str());
         let hint =
             nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         Failure::input(format!("the manifest declares no program `{name}`{hint}"))
     })?;
+    let points = program.space.enumerate();
+    let keys = points.iter().map(|point| program.space.key(point).to_string());
     let mut out = std::io::BufWriter::new(stdout().lock());
-    for point in program.space.enumerate() {
-        writeln!(out, "{}", program.space.key(&point))?;
+    if json {
+        writeln!(out, "{:#}", serde_json::json!(keys.collect::<Vec<_>>()))?;
+    } else {
+        for key in keys {
+            writeln!(out, "{key}")?;
+        }
     }
     Ok(out.flush()?)
 }

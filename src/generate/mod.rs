@@ -11,6 +11,7 @@ mod compile;
 mod entry;
 mod lint;
 mod permutation;
+mod shader;
 mod shard;
 mod sink;
 mod summary;
@@ -18,6 +19,7 @@ mod trace;
 mod weave;
 
 pub use permutation::{Named, Permutation, permutation};
+pub use shader::{Root, Shader};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
 pub use summary::{EntrySummary, Judged, ProgramSummary, Summary, WholeSummary};
@@ -102,7 +104,7 @@ pub fn generate(
     let mut generated = Generated {
         contents: Contents::default(),
         summary: Summary::default(),
-        warnings: Vec::new(),
+        warnings: manifest.warnings.clone(),
     };
     let mut outputs = Outputs::default();
     let mut lints = Lints::default();
@@ -129,8 +131,9 @@ pub fn generate(
         let woven = on_large_stack(|| {
             weave::weave(&entries, &program.space, points, &make, tools.progress)
         })?;
-        // One permutation says nothing about the others, and a part of them not enough.
-        if request.only.is_none() && request.shard.is_none() {
+        // One permutation says nothing about the others, a part of them not enough, and none at all
+        // has been told of.
+        if request.only.is_none() && request.shard.is_none() && !points.is_empty() {
             lints.see(sources, program, &entries, points);
             lints.see_woven(sources, program, &entries, &woven);
         }

@@ -199,6 +199,10 @@ impl Files for Observed {
     fn display(&self, path: &str) -> String {
         self.files.display(path)
     }
+
+    fn on_disk(&self, path: &str) -> bool {
+        self.files.on_disk(path)
+    }
 }
 
 /// Bytes of an output that is compared with an earlier one.

@@ -38,6 +38,12 @@ impl Program {
         let glsl = self.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
         self.wesl.iter().chain(glsl)
     }
+
+    /// The same, to be changed.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut File> {
+        let glsl = self.glsl.iter_mut().flat_map(|glsl| [&mut glsl.vertex, &mut glsl.fragment]);
+        self.wesl.iter_mut().chain(glsl.flatten())
+    }
 }
 
 /// A file that a manifest names.
@@ -68,6 +74,7 @@ const KEYS: &[&str] = &[
     "exclude",
     "usage",
     "limit",
+    "features_default",
     "doc",
 ];
 
@@ -93,7 +100,10 @@ pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> 
     let targets = table.get("targets").map_or(Target::ALL.to_vec(), |value| targets(reader, value));
     let clip = table.get("clip").map_or(Some(Clip::default()), |value| clip(reader, value));
     let limit = table.get("limit").map_or(Some(LIMITS.permutations), |value| limit(reader, value));
-    let space = space(reader, table, &what, span)?;
+    let undeclared =
+        table.get("features_default").and_then(|value| features_default(reader, value));
+    let mut space = space(reader, table, &what, span)?;
+    space.undeclared = undeclared;
     let program =
         Program { name, doc, wesl, glsl, targets, clip: clip?, space, usage, limit: limit?, span };
     check_limit(reader, &program);
@@ -163,6 +173,22 @@ fn clip(reader: &mut Reader, value: &Value) -> Option<Clip> {
         reader.problems.push(unknown.suggest(&text.text, names()).note(known));
     }
     found
+}
+
+/// What the words of `features_default` say of a feature that no axis declares.
+const FEATURES: &[(&str, Option<bool>)] =
+    &[("on", Some(true)), ("off", Some(false)), ("error", None)];
+
+fn features_default(reader: &mut Reader, value: &Value) -> Option<bool> {
+    let text = reader.string(value, "`features_default`")?;
+    let found = FEATURES.iter().find(|(name, _)| *name == text.text);
+    if found.is_none() {
+        let message = format!("`features_default` is `on`, `off` or `error`, not `{}`", text.text);
+        let unknown =
+            Diagnostic::error(codes::UNKNOWN_VALUE, message).at(text.span, "not a choice");
+        reader.problems.push(unknown.suggest(&text.text, FEATURES.iter().map(|(name, _)| *name)));
+    }
+    found.and_then(|(_, undeclared)| *undeclared)
 }
 
 fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {

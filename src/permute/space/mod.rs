@@ -69,6 +69,8 @@ pub struct Space {
     lists: Lists,
     valid: Diagram,
     wanted: Diagram,
+    /// [`Settings::undeclared`] at every point.
+    pub undeclared: Option<bool>,
 }
 
 impl Space {
@@ -86,7 +88,7 @@ impl Space {
         } else {
             diagram(&axes, &constraints, &lists, order)?
         };
-        Ok(Self { axes, constraints, lists, valid, wanted })
+        Ok(Self { axes, constraints, lists, valid, wanted, undeclared: None })
     }
 
     /// The axes, by name.
@@ -219,6 +221,7 @@ impl Space {
                 .filter(|axis| axis.mode == Mode::Spec)
                 .map(|axis| (axis.name.clone(), axis.values[axis.default].clone()))
                 .collect(),
+            undeclared: self.undeclared,
         }
     }
 
