@@ -33,6 +33,7 @@ mod link;
 mod link_compare;
 mod metal;
 mod mutate;
+mod new;
 mod packages;
 mod permute;
 mod pipelines;
@@ -78,6 +79,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     link::trials,
     metal::trials,
     mutate::trials,
+    new::trials,
     packages::trials,
     permute::trials,
     pipelines::trials,

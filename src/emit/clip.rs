@@ -5,11 +5,14 @@ use crate::bundle::{Clip, ClipSpace, FrontFace, Rows, Viewport, YAxis};
 /// What a target makes of each.
 #[derive(Debug)]
 pub struct Spaces {
+    /// For WebGPU's conventions.
     pub wgpu: ClipSpace,
+    /// For the API's own.
     pub native: ClipSpace,
 }
 
 impl Spaces {
+    /// The one that is asked for.
     pub fn of(&self, clip: Clip) -> ClipSpace {
         match clip {
             Clip::Wgpu => self.wgpu,

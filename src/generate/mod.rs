@@ -66,6 +66,7 @@ pub struct Tools<'a> {
     pub sink: &'a dyn Sink,
     /// Where results are kept between runs, and looked up.
     pub cache: Option<&'a Cache>,
+    /// Told how far the run is.
     pub progress: &'a (dyn Fn(Progress) + Sync),
 }
 
@@ -76,6 +77,7 @@ pub struct Progress {
     pub stage: String,
     /// Permutations done, of how many.
     pub done: usize,
+    /// Permutations of that entry point.
     pub total: usize,
 }
 
@@ -84,7 +86,9 @@ pub struct Progress {
 pub struct Generated {
     /// Keys refer to units that the sink has: the entry points themselves have none.
     pub contents: Contents,
+    /// Counts and times.
     pub summary: Summary,
+    /// What the author should know.
     pub warnings: Vec<Diagnostic>,
 }
 

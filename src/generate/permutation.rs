@@ -13,15 +13,19 @@ use crate::source::SourceSet;
 /// Which shader of a bundle.
 #[derive(Debug, Clone, Copy)]
 pub struct Named<'a> {
+    /// Its program.
     pub program: &'a str,
+    /// Its source language.
     pub language: Language,
     /// The entry point's name in the bundle.
     pub label: &'a str,
+    /// The key of its permutation.
     pub key: &'a str,
 }
 
 /// A shader's text, with its places.
 pub struct Permutation {
+    /// The text.
     pub composed: Composed,
     /// The entry point's name in the text.
     pub entry: String,

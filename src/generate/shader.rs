@@ -14,16 +14,22 @@ use crate::validate::{on_large_stack, validate};
 pub struct Shader {
     /// Its name in the source.
     pub entry: String,
+    /// Stage of the entry point.
     pub stage: naga::ShaderStage,
+    /// Its outputs.
     pub made: Made,
 }
 
 /// The entry points of a graph's root, by `options` its whole text, in the order of the source.
 #[derive(Debug)]
 pub struct Root<'a> {
+    /// The modules that its file reaches.
     pub graph: &'a Graph,
+    /// The settings of the permutation.
     pub settings: &'a Settings,
+    /// How it is composed.
     pub options: &'a Options,
+    /// The clip space of its outputs.
     pub clip: Clip,
 }
 

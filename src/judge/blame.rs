@@ -20,8 +20,11 @@ const LINES: usize = 6;
 
 /// What made the outputs.
 pub struct Made<'a> {
+    /// Where the sources are.
     pub packages: &'a Packages,
+    /// What declares the programs.
     pub manifest: &'a Manifest,
+    /// The keys, with the units that they refer to.
     pub contents: &'a Contents,
 }
 

@@ -33,10 +33,13 @@ use crate::validate::on_large_stack;
 /// One output of a bundle.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Output {
+    /// Its target.
     pub target: Target,
+    /// Stage of its entry point.
     pub stage: Stage,
     /// Name of the entry point in the output.
     pub entry: String,
+    /// Where it is.
     pub file: PathBuf,
     /// A unit of the bundle that has it.
     pub unit: Hash,
@@ -75,6 +78,7 @@ pub fn outputs(files: impl IntoIterator<Item = BlobFile>) -> Result<Vec<Output>,
 /// An output that its judge does not take.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Refusal {
+    /// The output.
     pub output: Output,
     /// What refuses it.
     pub judge: &'static str,
@@ -87,6 +91,7 @@ pub struct Refusal {
 /// Something that a judge needs and the machine lacks.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Missing {
+    /// What it is.
     pub what: String,
     /// The command that installs it.
     pub install: String,
@@ -144,9 +149,11 @@ fn versions(target: Target, tint: &Tint) -> String {
 /// What the judges say of outputs.
 #[derive(Debug, Default)]
 pub struct Verdict {
-    /// How many were judged now, and how many passed before.
+    /// How many were judged now.
     pub judged: usize,
+    /// How many passed before.
     pub known: usize,
+    /// What was refused.
     pub refusals: Vec<Refusal>,
 }
 

@@ -46,7 +46,7 @@ fn tokens(line: &str) -> Vec<&str> {
     while let Some(first) = rest.chars().next() {
         let is_number = first.is_ascii_digit();
         let length = match is_part(first) {
-            true => rest.find(|c: char| !is_part(c) && !(is_number && c == '.')),
+            true => rest.find(|c: char| !(is_part(c) || is_number && c == '.')),
             false => Some(first.len_utf8()),
         };
         let (token, after) = rest.split_at(length.unwrap_or(rest.len()));

@@ -6,7 +6,9 @@ use std::fmt;
 /// The value of an axis or a feature.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Setting {
+    /// False or true.
     Bool(bool),
+    /// An integer.
     Int(i64),
     /// A value of an enum axis, by name.
     Name(String),

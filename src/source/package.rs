@@ -41,9 +41,17 @@ pub enum ReadError {
     /// `..` or a symbolic link leads out of the root.
     OutsideRoot,
     /// The bytes are not UTF-8: the lossy text and the offset of the first bad byte in it.
-    NotUtf8 { lossy: String, offset: usize },
+    NotUtf8 {
+        /// The text with replacement characters.
+        lossy: String,
+        /// Where the first of those is.
+        offset: usize,
+    },
     /// More bytes than [`Limits::file_bytes`].
-    TooLarge { bytes: u64 },
+    TooLarge {
+        /// Size of the file.
+        bytes: u64,
+    },
     /// The operating system's words.
     Io(String),
 }

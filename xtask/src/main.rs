@@ -4,11 +4,13 @@
 
 mod bench;
 mod ci;
+mod create;
 mod docs;
 mod fuzz;
 mod generate;
 mod machine;
 mod mutate;
+mod new;
 mod test;
 mod validate;
 
@@ -55,6 +57,11 @@ const COMMANDS: &[Command] = &[
         generate::run,
     ),
     ("test", "install what the tests need, then run every test", test::run),
+    (
+        "new",
+        "write the files for a new function, axis-value, target, executor, scene or diagnostic",
+        create::run,
+    ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
     ("validate", "let the judges of all targets look at a bundle", validate::run),
     (

@@ -17,6 +17,7 @@ use crate::emit::reflect::{inputs, kind};
 use crate::emit::slots::{Numbering, assign, native};
 use crate::emit::{Emitted, Entry, Judge, Source, clip, zeros};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry {
     target: Target::HLSL,
     extension: "hlsl",
@@ -104,8 +105,10 @@ fn class(source: &Source<'_>, place: Place) -> Option<&'static str> {
         .find(|(_, one)| one.binding.is_some_and(|one| [one.group, one.binding] == place))?;
     Some(match (kind(source.module, variable)?, variable.space) {
         (Kind::Uniform, _) => "b",
-        (Kind::Storage, naga::AddressSpace::Storage { access }) => {
-            if access.contains(naga::StorageAccess::STORE) { "u" } else { "t" }
+        (Kind::Storage, naga::AddressSpace::Storage { access })
+            if access.contains(naga::StorageAccess::STORE) =>
+        {
+            "u"
         }
         (Kind::StorageTexture, _) => "u",
         _ => "t",

@@ -13,6 +13,7 @@ use crate::bundle::{BufferSizes, Kind, Target};
 use crate::emit::slots::{Numbering, assign, native};
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry {
     target: Target::MSL,
     extension: "metal",

@@ -9,6 +9,7 @@ use crate::bundle::Target;
 use crate::emit::slots::{Numbering, native};
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry {
     target: Target::SPIRV,
     extension: "spv",

@@ -8,6 +8,7 @@ use crate::bundle::{Choice, Target};
 use crate::emit::slots::{Numbering, native};
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry {
     target: Target::WGSL,
     extension: "wgsl",

@@ -14,15 +14,19 @@ use crate::source::{LIMITS, Span};
 /// Entry points in one or both languages, and what they vary in.
 #[derive(Debug, Clone)]
 pub struct Program {
+    /// As the manifest and bundles call it.
     pub name: String,
+    /// What it is, in the manifest's words.
     pub doc: Option<String>,
     /// The root module. There is this, or `glsl`, or both.
     pub wesl: Option<File>,
+    /// Its root files in GLSL, one for each stage.
     pub glsl: Option<Glsl>,
     /// In the order declared; all, where the manifest names none.
     pub targets: Vec<Target>,
     /// The clip space of its outputs.
     pub clip: Clip,
+    /// Its permutations.
     pub space: Space,
     /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
     pub usage: Option<File>,
@@ -58,7 +62,9 @@ pub struct File {
 /// The stages of a GLSL program, at least one of them.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Glsl {
+    /// Root file of the vertex stage.
     pub vertex: Option<File>,
+    /// Root file of the fragment stage.
     pub fragment: Option<File>,
 }
 

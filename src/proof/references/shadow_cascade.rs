@@ -5,7 +5,10 @@ use glam::DVec4;
 
 pub const REFERENCES: Entry = Entry {
     module: "shadow::cascade",
-    functions: &[("cascade_index", |a| (index(a.f64(), a.vec4()) as f64).into()), ("cascade_blend", blend)],
+    functions: &[
+        ("cascade_index", |a| (index(a.f64(), a.vec4()) as f64).into()),
+        ("cascade_blend", blend),
+    ],
 };
 
 /// How many cascades end at or before the distance: the first that does not is the one.

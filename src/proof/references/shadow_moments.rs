@@ -8,7 +8,9 @@ pub const REFERENCES: Entry = Entry {
     module: "shadow::moments",
     functions: &[
         ("vsm_moments", |a| moments(a.f64()).into()),
-        ("vsm_moments_slope", |a| (moments(a.f64()) + DVec2::Y * 0.25 * a.vec2().length_squared()).into()),
+        ("vsm_moments_slope", |a| {
+            (moments(a.f64()) + DVec2::Y * 0.25 * a.vec2().length_squared()).into()
+        }),
         ("chebyshev", |a| chebyshev(a.vec2(), a.f64(), a.f64(), a.f64()).into()),
         ("vsm_visibility", vsm_visibility),
         ("evsm_warp", |a| warp(a.f64(), a.vec2()).into()),
