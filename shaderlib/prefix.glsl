@@ -21,21 +21,29 @@
 #define SplitSum lamplight_SplitSum
 #define accumulate(p0, p1, p2, p3, p4, p5, p6, p7) lamplight_accumulate(p0, p1, p2, p3, p4, p5, p6, p7)
 #define alpha_aniso(p0, p1) lamplight_alpha_aniso(p0, p1)
+#define any_tangent(p0) lamplight_any_tangent(p0)
+#define area_alpha(p0, p1, p2) lamplight_area_alpha(p0, p1, p2)
+#define area_energy(p0, p1) lamplight_area_energy(p0, p1)
 #define bent_reflection(p0, p1, p2, p3, p4) lamplight_bent_reflection(p0, p1, p2, p3, p4)
 #define blinn_phong(p0, p1, p2, p3) lamplight_blinn_phong(p0, p1, p2, p3)
 #define blinn_phong_half(p0, p1, p2, p3) lamplight_blinn_phong_half(p0, p1, p2, p3)
 #define blinn_phong_hpg(p0, p1, p2, p3) lamplight_blinn_phong_hpg(p0, p1, p2, p3)
 #define blinn_phong_normalized(p0, p1, p2, p3) lamplight_blinn_phong_normalized(p0, p1, p2, p3)
 #define blur21(p0, p1, p2) lamplight_blur21(p0, p1, p2)
+#define bounding_sphere(p0, p1, p2) lamplight_bounding_sphere(p0, p1, p2)
 #define btdf_thin(p0, p1, p2, p3) lamplight_btdf_thin(p0, p1, p2, p3)
 #define burley(p0, p1, p2, p3) lamplight_burley(p0, p1, p2, p3)
 #define burley_albedo(p0, p1) lamplight_burley_albedo(p0, p1)
 #define cascade_blend(p0, p1, p2) lamplight_cascade_blend(p0, p1, p2)
 #define cascade_index(p0, p1) lamplight_cascade_index(p0, p1)
+#define cascade_snap(p0, p1) lamplight_cascade_snap(p0, p1)
+#define cascade_split(p0, p1, p2, p3, p4) lamplight_cascade_split(p0, p1, p2, p3, p4)
 #define castano_row(p0, p1, p2, p3, p4) lamplight_castano_row(p0, p1, p2, p3, p4)
 #define charlie_exponent(p0, p1) lamplight_charlie_exponent(p0, p1)
 #define charlie_lambda(p0, p1) lamplight_charlie_lambda(p0, p1)
 #define chebyshev(p0, p1, p2, p3) lamplight_chebyshev(p0, p1, p2, p3)
+#define cluster_index(p0, p1, p2, p3, p4) lamplight_cluster_index(p0, p1, p2, p3, p4)
+#define cluster_slice(p0, p1, p2, p3) lamplight_cluster_slice(p0, p1, p2, p3)
 #define coat_f0(p0, p1) lamplight_coat_f0(p0, p1)
 #define coat_mix(p0, p1, p2, p3) lamplight_coat_mix(p0, p1, p2, p3)
 #define compare_tap(p0, p1, p2) lamplight_compare_tap(p0, p1, p2)
@@ -45,8 +53,12 @@
 #define cone_scale_offset(p0, p1, p2) lamplight_cone_scale_offset(p0, p1, p2)
 #define cone_smooth(p0, p1, p2) lamplight_cone_smooth(p0, p1, p2)
 #define constant_bias(p0, p1) lamplight_constant_bias(p0, p1)
+#define contact_hit(p0, p1, p2, p3) lamplight_contact_hit(p0, p1, p2, p3)
+#define cookie_uv(p0, p1) lamplight_cookie_uv(p0, p1)
+#define cube_bias(p0, p1, p2) lamplight_cube_bias(p0, p1, p2)
 #define cube_compare(p0, p1, p2) lamplight_cube_compare(p0, p1, p2)
 #define cube_depth(p0, p1, p2) lamplight_cube_depth(p0, p1, p2)
+#define cube_texel(p0, p1) lamplight_cube_texel(p0, p1)
 #define d_charlie(p0, p1) lamplight_d_charlie(p0, p1)
 #define d_ggx(p0, p1, p2) lamplight_d_ggx(p0, p1, p2)
 #define d_ggx_aniso(p0, p1, p2, p3, p4) lamplight_d_ggx_aniso(p0, p1, p2, p3, p4)
@@ -57,14 +69,22 @@
 #define diffusion_cdf(p0, p1) lamplight_diffusion_cdf(p0, p1)
 #define diffusion_profile(p0, p1) lamplight_diffusion_profile(p0, p1)
 #define diffusion_s(p0) lamplight_diffusion_s(p0)
+#define disk_irradiance(p0, p1, p2) lamplight_disk_irradiance(p0, p1, p2)
 #define dispersion_ior(p0, p1) lamplight_dispersion_ior(p0, p1)
+#define edge_fade(p0, p1) lamplight_edge_fade(p0, p1)
 #define energy_compensation(p0, p1) lamplight_energy_compensation(p0, p1)
 #define eon(p0, p1, p2, p3, p4) lamplight_eon(p0, p1, p2, p3, p4)
 #define eon_albedo(p0, p1) lamplight_eon_albedo(p0, p1)
 #define eon_g(p0) lamplight_eon_g(p0)
+#define esm_moment(p0, p1) lamplight_esm_moment(p0, p1)
+#define esm_visibility(p0, p1, p2) lamplight_esm_visibility(p0, p1, p2)
+#define ev100(p0, p1, p2) lamplight_ev100(p0, p1, p2)
+#define ev100_from_illuminance(p0) lamplight_ev100_from_illuminance(p0)
+#define ev100_from_luminance(p0) lamplight_ev100_from_luminance(p0)
 #define evsm_moments(p0, p1) lamplight_evsm_moments(p0, p1)
 #define evsm_visibility(p0, p1, p2, p3, p4) lamplight_evsm_visibility(p0, p1, p2, p3, p4)
 #define evsm_warp(p0, p1) lamplight_evsm_warp(p0, p1)
+#define exposure(p0) lamplight_exposure(p0)
 #define f0_from_ior(p0) lamplight_f0_from_ior(p0)
 #define f_average_schlick(p0, p1) lamplight_f_average_schlick(p0, p1)
 #define f_conductor(p0, p1, p2) lamplight_f_conductor(p0, p1, p2)
@@ -88,6 +108,11 @@
 #define hemisphere_weight(p0, p1) lamplight_hemisphere_weight(p0, p1)
 #define hemisphere_weight_sine(p0, p1) lamplight_hemisphere_weight_sine(p0, p1)
 #define ibl_mix(p0, p1, p2, p3, p4) lamplight_ibl_mix(p0, p1, p2, p3, p4)
+#define ies_u(p0) lamplight_ies_u(p0)
+#define ies_uv(p0, p1, p2) lamplight_ies_uv(p0, p1, p2)
+#define intensity_point(p0) lamplight_intensity_point(p0)
+#define intensity_spot(p0, p1) lamplight_intensity_spot(p0, p1)
+#define intensity_spot_filament(p0) lamplight_intensity_spot_filament(p0)
 #define interleaved_gradient_noise(p0) lamplight_interleaved_gradient_noise(p0)
 #define inverse3(p0) lamplight_inverse3(p0)
 #define inverse_square(p0, p1) lamplight_inverse_square(p0, p1)
@@ -100,9 +125,21 @@
 #define linear_from_srgb_channel(p0) lamplight_linear_from_srgb_channel(p0)
 #define linear_radius(p0, p1) lamplight_linear_radius(p0, p1)
 #define linearize_depth(p0, p1, p2) lamplight_linearize_depth(p0, p1, p2)
+#define ltc_edge(p0, p1) lamplight_ltc_edge(p0, p1)
+#define ltc_matrix(p0) lamplight_ltc_matrix(p0)
+#define ltc_rect(p0, p1, p2, p3, p4) lamplight_ltc_rect(p0, p1, p2, p3, p4)
+#define ltc_uv(p0, p1) lamplight_ltc_uv(p0, p1)
+#define luminance_area(p0, p1) lamplight_luminance_area(p0, p1)
+#define march_point(p0, p1, p2, p3, p4, p5) lamplight_march_point(p0, p1, p2, p3, p4, p5)
 #define material_index(p0, p1) lamplight_material_index(p0, p1)
 #define material_index_oglpg(p0, p1) lamplight_material_index_oglpg(p0, p1)
 #define mean_blocker(p0, p1, p2, p3) lamplight_mean_blocker(p0, p1, p2, p3)
+#define msm_dequantise(p0) lamplight_msm_dequantise(p0)
+#define msm_moments(p0) lamplight_msm_moments(p0)
+#define msm_quantise(p0) lamplight_msm_quantise(p0)
+#define msm_visibility(p0, p1, p2) lamplight_msm_visibility(p0, p1, p2)
+#define nearest_sphere(p0, p1, p2) lamplight_nearest_sphere(p0, p1, p2)
+#define nearest_tube(p0, p1, p2, p3) lamplight_nearest_tube(p0, p1, p2, p3)
 #define normal_matrix(p0) lamplight_normal_matrix(p0)
 #define normal_offset(p0, p1, p2, p3, p4) lamplight_normal_offset(p0, p1, p2, p3, p4)
 #define oren_nayar(p0, p1, p2, p3) lamplight_oren_nayar(p0, p1, p2, p3)
@@ -115,6 +152,8 @@
 #define pcf_random16_hpg(p0, p1, p2, p3) lamplight_pcf_random16_hpg(p0, p1, p2, p3)
 #define pcf_vogel(p0, p1, p2, p3, p4) lamplight_pcf_vogel(p0, p1, p2, p3, p4)
 #define pcss(p0, p1, p2, p3, p4) lamplight_pcss(p0, p1, p2, p3, p4)
+#define pcss_width(p0, p1, p2) lamplight_pcss_width(p0, p1, p2)
+#define pcss_width_directional(p0, p1, p2) lamplight_pcss_width_directional(p0, p1, p2)
 #define perturb_normal(p0, p1, p2) lamplight_perturb_normal(p0, p1, p2)
 #define phong(p0, p1, p2, p3) lamplight_phong(p0, p1, p2, p3)
 #define phong_igl(p0, p1, p2, p3) lamplight_phong_igl(p0, p1, p2, p3)
@@ -147,6 +186,8 @@
 #define sample_point(p0, p1) lamplight_sample_point(p0, p1)
 #define sample_spot(p0, p1) lamplight_sample_spot(p0, p1)
 #define saturate_color(p0) lamplight_saturate_color(p0)
+#define sdf_soft_smooth(p0) lamplight_sdf_soft_smooth(p0)
+#define sdf_soft_step(p0, p1, p2, p3, p4) lamplight_sdf_soft_step(p0, p1, p2, p3, p4)
 #define sh4_irradiance(p0, p1) lamplight_sh4_irradiance(p0, p1)
 #define sh9_basis(p0) lamplight_sh9_basis(p0)
 #define sh9_irradiance(p0, p1) lamplight_sh9_irradiance(p0, p1)
@@ -157,9 +198,11 @@
 #define shadow_mix(p0, p1) lamplight_shadow_mix(p0, p1)
 #define sheen_albedo(p0, p1) lamplight_sheen_albedo(p0, p1)
 #define sheen_scale(p0, p1, p2) lamplight_sheen_scale(p0, p1, p2)
+#define slice_depth(p0, p1, p2, p3) lamplight_slice_depth(p0, p1, p2, p3)
 #define slope_bias(p0, p1, p2) lamplight_slope_bias(p0, p1, p2)
 #define specular_aa(p0, p1, p2, p3, p4) lamplight_specular_aa(p0, p1, p2, p3, p4)
 #define specular_f0(p0, p1, p2) lamplight_specular_f0(p0, p1, p2)
+#define sphere_irradiance(p0, p1) lamplight_sphere_irradiance(p0, p1)
 #define split_sum(p0, p1, p2) lamplight_split_sum(p0, p1, p2)
 #define split_sum_multi(p0, p1, p2) lamplight_split_sum_multi(p0, p1, p2)
 #define srgb_from_linear(p0) lamplight_srgb_from_linear(p0)
@@ -198,21 +241,29 @@
 #undef SplitSum
 #undef accumulate
 #undef alpha_aniso
+#undef any_tangent
+#undef area_alpha
+#undef area_energy
 #undef bent_reflection
 #undef blinn_phong
 #undef blinn_phong_half
 #undef blinn_phong_hpg
 #undef blinn_phong_normalized
 #undef blur21
+#undef bounding_sphere
 #undef btdf_thin
 #undef burley
 #undef burley_albedo
 #undef cascade_blend
 #undef cascade_index
+#undef cascade_snap
+#undef cascade_split
 #undef castano_row
 #undef charlie_exponent
 #undef charlie_lambda
 #undef chebyshev
+#undef cluster_index
+#undef cluster_slice
 #undef coat_f0
 #undef coat_mix
 #undef compare_tap
@@ -222,8 +273,12 @@
 #undef cone_scale_offset
 #undef cone_smooth
 #undef constant_bias
+#undef contact_hit
+#undef cookie_uv
+#undef cube_bias
 #undef cube_compare
 #undef cube_depth
+#undef cube_texel
 #undef d_charlie
 #undef d_ggx
 #undef d_ggx_aniso
@@ -234,14 +289,22 @@
 #undef diffusion_cdf
 #undef diffusion_profile
 #undef diffusion_s
+#undef disk_irradiance
 #undef dispersion_ior
+#undef edge_fade
 #undef energy_compensation
 #undef eon
 #undef eon_albedo
 #undef eon_g
+#undef esm_moment
+#undef esm_visibility
+#undef ev100
+#undef ev100_from_illuminance
+#undef ev100_from_luminance
 #undef evsm_moments
 #undef evsm_visibility
 #undef evsm_warp
+#undef exposure
 #undef f0_from_ior
 #undef f_average_schlick
 #undef f_conductor
@@ -265,6 +328,11 @@
 #undef hemisphere_weight
 #undef hemisphere_weight_sine
 #undef ibl_mix
+#undef ies_u
+#undef ies_uv
+#undef intensity_point
+#undef intensity_spot
+#undef intensity_spot_filament
 #undef interleaved_gradient_noise
 #undef inverse3
 #undef inverse_square
@@ -277,9 +345,21 @@
 #undef linear_from_srgb_channel
 #undef linear_radius
 #undef linearize_depth
+#undef ltc_edge
+#undef ltc_matrix
+#undef ltc_rect
+#undef ltc_uv
+#undef luminance_area
+#undef march_point
 #undef material_index
 #undef material_index_oglpg
 #undef mean_blocker
+#undef msm_dequantise
+#undef msm_moments
+#undef msm_quantise
+#undef msm_visibility
+#undef nearest_sphere
+#undef nearest_tube
 #undef normal_matrix
 #undef normal_offset
 #undef oren_nayar
@@ -292,6 +372,8 @@
 #undef pcf_random16_hpg
 #undef pcf_vogel
 #undef pcss
+#undef pcss_width
+#undef pcss_width_directional
 #undef perturb_normal
 #undef phong
 #undef phong_igl
@@ -324,6 +406,8 @@
 #undef sample_point
 #undef sample_spot
 #undef saturate_color
+#undef sdf_soft_smooth
+#undef sdf_soft_step
 #undef sh4_irradiance
 #undef sh9_basis
 #undef sh9_irradiance
@@ -334,9 +418,11 @@
 #undef shadow_mix
 #undef sheen_albedo
 #undef sheen_scale
+#undef slice_depth
 #undef slope_bias
 #undef specular_aa
 #undef specular_f0
+#undef sphere_irradiance
 #undef split_sum
 #undef split_sum_multi
 #undef srgb_from_linear

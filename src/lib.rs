@@ -171,6 +171,9 @@ pub mod validate;
 pub mod catalogue;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
+pub mod cost;
+#[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod execute;
 #[cfg(feature = "harness")]
 #[doc(hidden)]

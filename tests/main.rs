@@ -13,6 +13,7 @@ mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
 mod conventions;
+mod cost;
 mod determinism;
 mod diagnostics;
 mod differential;
@@ -61,6 +62,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     compose_glsl::trials,
     compose_wesl::trials,
     conventions::trials,
+    cost::trials,
     determinism::trials,
     diagnostics::trials,
     differential::trials,

@@ -62,6 +62,29 @@ vec2 receiver_plane(vec2 duv_dx, vec2 duv_dy, vec2 dz) {
     return vec2(duv_dy.y * dz.x - duv_dx.y * dz.y, duv_dx.x * dz.y - duv_dy.x * dz.x) / det;
 }
 
+/// The size of a texel of a cube map with a depth.
+///
+/// Parameters: `d` distance of the point along the face's axis, scene units, at least 0; `size` texels across a face, above 0.
+/// Returns: `2*d/size`, scene units: a face sees 90 degrees.
+/// Source: the tangent of 45 degrees is 1.
+/// Edges: a size below 1 counts as 1.
+/// Error model: 2.5 ULP.
+float cube_texel(float d, float size) {
+    return 2.0 * d / max(size, 1.0);
+}
+
+/// A bias for cube maps: what the surface's slope makes of a texel's size, up to eight texels.
+///
+/// Parameters: `d` distance of the point along the face's axis, scene units, at least 0; `size` texels across a face, above 0; `n_dot_l` cosine n.l, [-1, 1].
+/// Returns: `min(texel*tan(acos(n.l)), 8*texel)`, scene units: subtract it from the distance that is compared.
+/// Source: the slope factor of `slope_bias`, over a texel of `cube_texel`.
+/// Edges: eight texels where the light is at or behind the horizon; 0 for a distance of 0 or less.
+/// Error model: 9 ULP.
+float cube_bias(float d, float size, float n_dot_l) {
+    float texel = cube_texel(max(d, 0.0), size);
+    return slope_bias(n_dot_l, texel, 8.0 * texel);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -8,6 +8,7 @@ mod catalogue;
 mod check;
 mod compile;
 mod compose;
+mod cost;
 mod eval;
 mod executor;
 mod explain;
@@ -67,6 +68,7 @@ enum Command {
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
     Render(render::Arguments),
+    Cost(cost::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
     Export(export::Arguments),
@@ -84,6 +86,15 @@ impl Command {
         };
         names.iter().filter_map(|name| executors::find(name)).collect()
     }
+
+    /// The GPUs that it asks for, opened while there is one thread.
+    fn gpus(&self) -> cost::Opened {
+        match self {
+            Self::Cost(arguments) => arguments.gpus.open(),
+            Self::Variants(arguments) if arguments.cost => arguments.gpus.open(),
+            _ => Ok(Vec::new()),
+        }
+    }
 }
 
 /// Runs the command line of this process.
@@ -92,13 +103,18 @@ pub fn main() -> ExitCode {
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     // While there is one thread.
     executors::prepare(&cli.command.executors());
-    match dispatch(cli.command, cli.diagnostics) {
+    let gpus = cli.command.gpus();
+    match dispatch(cli.command, gpus, cli.diagnostics) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(cli.diagnostics),
     }
 }
 
-fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failure> {
+fn dispatch(
+    command: Command,
+    gpus: cost::Opened,
+    form: failure::DiagnosticForm,
+) -> Result<(), Failure> {
     match command {
         Command::List(arguments) => list::run(arguments),
         Command::Show(arguments) => show::run(arguments),
@@ -106,7 +122,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Compile(arguments) => compile::run(arguments, form),
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Merge(arguments) => merge::run(arguments),
-        Command::Variants(arguments) => variants::run(arguments, form),
+        Command::Variants(arguments) => variants::run(arguments, gpus, form),
         Command::Watch(arguments) => watch::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
         Command::Keys(arguments) => keys::run(arguments, form),
@@ -114,6 +130,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
         Command::Render(arguments) => render::run(arguments, form),
+        Command::Cost(arguments) => cost::run(arguments, gpus),
         Command::Mutate(arguments) => mutate::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),

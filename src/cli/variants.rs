@@ -5,8 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use serde::Serialize;
+
+use super::cost;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::progress::Bar;
+use crate::cost::permutations::Change;
 use crate::diagnostic::{Diagnostics, nearest};
 use crate::generate::{self, Discard, Request, Tools};
 use crate::permute::axis::Mode;
@@ -35,18 +39,28 @@ pub struct Arguments {
     /// Compile them too, and count the distinct outputs.
     #[arg(long)]
     compile: bool,
+    /// Compile every permutation for GPUs, and tell what each value of an axis adds to a stage.
+    #[arg(long)]
+    pub cost: bool,
+    #[command(flatten)]
+    pub gpus: cost::Gpus,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run(
+    arguments: Arguments,
+    opened: cost::Opened,
+    form: DiagnosticForm,
+) -> Result<(), Failure> {
     let mut sources = SourceSet::default();
     let manifest = arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
-    let opened = open(manifest.as_deref(), &mut sources);
+    let read = open(manifest.as_deref(), &mut sources);
     let (manifest, packages) =
-        opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+        read.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
     warn(&sources, &manifest.warnings, form);
     if let Some(name) = &arguments.keys {
         return keys(&manifest, name, arguments.json);
     }
+    let devices = opened.map_err(Failure::environment)?;
     let reports = manifest.programs.iter().map(|program| {
         let mut report = report(&program.name, &program.space);
         if program.glsl.is_some() {
@@ -60,17 +74,44 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
             bar.clear();
             composed.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
         }
-        Ok(report)
+        let changes = match devices.as_slice() {
+            [] => Vec::new(),
+            devices => cost::changes(&mut sources, &packages, &manifest, &program.name, devices)?,
+        };
+        Ok(Told { report, changes })
     });
-    let reports = reports.collect::<Result<Vec<Report>, Failure>>()?;
+    let reports = reports.collect::<Result<Vec<Told>, Failure>>()?;
     if arguments.json {
         return Ok(writeln!(stdout(), "{:#}", serde_json::json!(reports))?);
     }
-    let texts: Vec<String> = reports.iter().map(ToString::to_string).collect();
+    let texts: Vec<String> = reports.iter().map(Told::text).collect();
     Ok(stdout().write_all(texts.join("\n").as_bytes())?)
 }
 
-fn open(path: Option<&Path>, sources: &mut SourceSet) -> Result<(Manifest, Packages), Diagnostics> {
+/// The report of one program.
+#[derive(Serialize)]
+struct Told {
+    #[serde(flatten)]
+    report: Report,
+    /// What values of axes change on GPUs, where that was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    changes: Vec<Change>,
+}
+
+impl Told {
+    fn text(&self) -> String {
+        match self.changes.as_slice() {
+            [] => self.report.to_string(),
+            changes => format!("{}\n{}", self.report, cost::changes_table(changes)),
+        }
+    }
+}
+
+/// The manifest of a path, or the library's, with its packages.
+pub fn open(
+    path: Option<&Path>,
+    sources: &mut SourceSet,
+) -> Result<(Manifest, Packages), Diagnostics> {
     match path {
         Some(path) => project::declared(path, sources),
         None => {
