@@ -134,11 +134,15 @@ pub mod emit;
 pub mod eval;
 #[cfg(feature = "compile")]
 pub mod generate;
+#[cfg(feature = "eval")]
+pub mod judge;
 #[cfg(feature = "compile")]
 pub mod keys;
 #[cfg(feature = "compile")]
 #[doc(hidden)]
 pub mod link;
+#[cfg(feature = "compile")]
+pub mod lint;
 #[cfg(feature = "eval")]
 #[doc(hidden)]
 pub mod metal;

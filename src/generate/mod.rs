@@ -10,6 +10,7 @@
 mod compile;
 mod entry;
 mod lint;
+mod permutation;
 mod shader;
 mod shard;
 mod sink;
@@ -17,16 +18,17 @@ mod summary;
 mod trace;
 mod weave;
 
+pub use permutation::{Named, Permutation, permutation};
 pub use shader::{Root, Shader};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
-pub use summary::{EntrySummary, ProgramSummary, Summary, WholeSummary};
+pub use summary::{EntrySummary, Judged, ProgramSummary, Summary, WholeSummary};
 pub use trace::{Recorder, Run, Told, Trace};
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::bundle::{Axis, Contents, Digest, EntryContents, ProgramContents, Target};
+use crate::bundle::{Axis, Clip, Contents, Digest, EntryContents, ProgramContents, Target};
 use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::Linker;
@@ -52,6 +54,8 @@ pub struct Request {
     pub only: Option<Quoted>,
     /// Only these targets; those of each program where there are none.
     pub targets: Vec<Target>,
+    /// Clip space of all programs, in the place of what each declares.
+    pub clip: Option<Clip>,
     /// Only this part of each program's permutations.
     pub shard: Option<Shard>,
 }
@@ -108,9 +112,7 @@ pub fn generate(
     };
     let mut outputs = Outputs::default();
     let mut lints = Lints::default();
-    for program in chosen(manifest, request)? {
-        let points = points(program, request)?;
-        let entries = entry::entries(sources, packages, program, points.first())?;
+    for (program, points, entries) in prepared(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
         let mut targets = if request.targets.is_empty() {
             program.targets.clone()
@@ -119,11 +121,13 @@ pub fn generate(
         };
         targets.sort();
         targets.dedup();
+        let clip = request.clip.unwrap_or(program.clip);
         let compiler = Compiler {
             targets: &targets,
+            clip,
             sink: tools.sink,
             cache: tools.cache,
-            linker: Linker::new(&targets),
+            linker: Linker::for_clip(&targets, clip),
         };
         let make = |batch: &[(&Text, &Entry)]| compiler.make(batch);
         let woven = on_large_stack(|| {
@@ -147,6 +151,27 @@ pub fn generate(
     generated.summary.cached = tools.cache.map_or(0, Cache::hits);
     generated.summary.seconds = start.elapsed().as_secs_f64();
     Ok(generated)
+}
+
+/// A program with its permutations and its entry points.
+type Prepared<'a> = (&'a Program, Vec<Assignment>, Vec<Entry>);
+
+/// Every program that is asked for: what is wrong with one does not hide what is wrong with another.
+fn prepared<'a>(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &'a Manifest,
+    request: &Request,
+) -> Result<Vec<Prepared<'a>>, Diagnostics> {
+    let (mut programs, mut errors) = (Vec::new(), Diagnostics::new());
+    for program in chosen(manifest, request)? {
+        let points = points(program, request)?;
+        match entry::entries(sources, packages, program, points.first()) {
+            Ok(entries) => programs.push((program, points, entries)),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if errors.is_empty() { Ok(programs) } else { Err(lint::distinct(sources, errors)) }
 }
 
 /// [`generate`] with every unit in the contents, for callers that want the bundle in memory.

@@ -77,7 +77,7 @@ pub struct Told {
     texts: Vec<String>,
 }
 
-const FORMS: [Form; 3] = [Form::Human, Form::Short, Form::Json];
+const FORMS: [Form; 4] = [Form::Human, Form::Coloured, Form::Short, Form::Json];
 
 impl Told {
     /// The warnings of a run, as each form writes them.
@@ -148,7 +148,8 @@ impl Trace {
 
 fn key(sources: &SourceSet, request: &Request) -> crate::bundle::Hash {
     let only = request.only.as_ref().map(|only| &only.text);
-    let asked = format!("{:?} {only:?} {:?} {:?}", request.program, request.targets, request.shard);
+    let Request { program, targets, clip, shard, .. } = request;
+    let asked = format!("{program:?} {only:?} {targets:?} {clip:?} {shard:?}");
     let texts = sources.iter().map(|(_, source)| &*source.text);
     hash(&["run", BUILD, &asked].into_iter().chain(texts).collect::<Vec<_>>())
 }
