@@ -6,6 +6,7 @@
 
 pub mod bundle;
 pub mod input;
+pub mod limits;
 pub mod output;
 #[cfg(feature = "single-file")]
 #[path = "packing/zstd.rs"]

@@ -25,6 +25,7 @@ mod frames;
 mod generate;
 mod guide;
 mod harness;
+mod hostile;
 mod house;
 mod keys;
 mod library;
@@ -68,6 +69,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     generate::trials,
     guide::trials,
     harness::trials,
+    hostile::trials,
     house::trials,
     keys::trials,
     library::trials,

@@ -1,6 +1,6 @@
 //! `lamplight check`: numeric cases of the library or of the user's own modules.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
@@ -9,6 +9,7 @@ use clap::Args;
 use super::executor;
 use super::failure::Failure;
 use super::input::LanguageName;
+use super::terminal::stdout;
 use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
 use crate::execute::on_thread;

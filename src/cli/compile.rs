@@ -1,6 +1,6 @@
 //! `lamplight compile FILE --target T`: one shader in the languages asked for.
 
-use std::io::{IsTerminal, Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -8,7 +8,9 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::input::{Input, Ready};
 use super::overwrite::Overwrite;
+use super::terminal::{data, is_terminal, stdout};
 use crate::bundle::Target;
+use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest};
 use crate::emit::{self, Emitted, targets};
 use crate::output::{self, Replace};
@@ -50,7 +52,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let files = validate(&composed).and_then(|validated| {
         warn(&project.sources, &context.own(validate::lint(&composed, &validated)), form);
         emit::check(&composed, &validated)?;
-        files(&validated, &arguments)
+        files(&validated, &composed, &arguments)
     });
     let files = files
         .map_err(|diagnostics| Failure::Input(project.sources, context.explain(diagnostics)))?;
@@ -62,6 +64,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
 
 fn files(
     validated: &crate::validate::Validated,
+    composed: &Composed,
     arguments: &Arguments,
 ) -> Result<Vec<File>, Diagnostics> {
     let stem = arguments.input.file.file_name().unwrap_or_default().to_string_lossy();
@@ -75,7 +78,7 @@ fn files(
         let isolated = emit::isolate(validated, &point.name)?;
         for &target in &arguments.target {
             let Emitted { bytes, .. } = emit::emit(&isolated, &point.name, target)
-                .map_err(|diagnostic| vec![diagnostic])?;
+                .map_err(|error| vec![emit::at_entry(error, composed, &point.name)])?;
             let Some(entry) = targets::find(target) else { continue };
             let name = format!(
                 "{stem}.{}.{}",
@@ -112,14 +115,14 @@ fn write(files: &[File], folder: &Path, replace: Replace) -> Result<(), Failure>
 
 /// Text goes to standard output, with file names where there are several; one binary alone may too.
 fn print(files: &[File]) -> Result<(), Failure> {
-    if files.iter().any(|file| file.binary) && (files.len() > 1 || stdout().is_terminal()) {
+    if files.iter().any(|file| file.binary) && (files.len() > 1 || is_terminal()) {
         return Err(Failure::usage("a binary target needs `-o DIR`"));
     }
     for file in files {
         if files.len() > 1 {
             writeln!(stdout(), "// ==== {}", file.name)?;
         }
-        stdout().write_all(&file.bytes)?;
+        data(&file.bytes)?;
     }
     Ok(())
 }

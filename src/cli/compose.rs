@@ -1,11 +1,10 @@
 //! `lamplight compose FILE`: the composed text.
 
-use std::io::{Write, stdout};
-
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
 use super::input::Input;
+use super::terminal::data;
 
 /// Print a root module with all it reaches as one text.
 #[derive(Args)]
@@ -16,5 +15,5 @@ pub struct Arguments {
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let ready = arguments.input.compose(form)?;
-    Ok(stdout().write_all(ready.composed.text.as_bytes())?)
+    Ok(data(ready.composed.text.as_bytes())?)
 }

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 
 use super::guide;
+use super::terminal::stderr;
 use crate::diagnostic::render::{Form, render};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;
@@ -47,22 +48,22 @@ impl Failure {
                 if diagnostics.iter().any(|error| error.code == codes::BUNDLE_FAILED) =>
             {
                 warn(&sources, &diagnostics, form);
-                let _ = writeln!(io::stderr(), "error: cannot write the bundle");
+                let _ = writeln!(stderr(), "error: cannot write the bundle");
                 ExitCode::from(4)
             }
             Self::Input(sources, diagnostics) => {
                 warn(&sources, &diagnostics, form);
                 let reading = guide::after_errors(&diagnostics);
                 if let (Some(reading), DiagnosticForm::Human) = (reading, form) {
-                    let _ = io::stderr().write_all(reading.as_bytes());
+                    let _ = stderr().write_all(reading.as_bytes());
                 }
                 ExitCode::from(1)
             }
             Self::Message(code, message) => {
                 let _ = match form {
-                    DiagnosticForm::Json => writeln!(io::stderr(), "{}", message_as_json(&message)),
+                    DiagnosticForm::Json => writeln!(stderr(), "{}", message_as_json(&message)),
                     DiagnosticForm::Human | DiagnosticForm::Short => {
-                        writeln!(io::stderr(), "error: {message}")
+                        writeln!(stderr(), "error: {message}")
                     }
                 };
                 ExitCode::from(code)
@@ -88,7 +89,7 @@ impl From<io::Error> for Failure {
 
 /// Prints diagnostics that do not stop the command, or those that did.
 pub fn warn(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
-    let _ = io::stderr().write_all(render(sources, diagnostics, form.into()).as_bytes());
+    let _ = stderr().write_all(render(sources, diagnostics, form.into()).as_bytes());
 }
 
 /// [`Form`] as an option's value.

@@ -1,10 +1,10 @@
 //! Where the guide explains what a command is about: a line at the end of help and of errors.
 
 use std::collections::BTreeSet;
-use std::io::{IsTerminal, stderr};
 
 use clap::Command;
 
+use super::terminal::is_person;
 use crate::diagnostic::{Diagnostic, Severity, guide};
 
 /// The page of each command, by its title.
@@ -51,7 +51,7 @@ fn with_page(command: Command, page: &str) -> Command {
 
 /// What to read about the errors, for a person at a terminal; nothing for a program.
 pub fn after_errors(diagnostics: &[Diagnostic]) -> Option<String> {
-    stderr().is_terminal().then(|| reading(diagnostics)).flatten()
+    is_person().then(|| reading(diagnostics)).flatten()
 }
 
 fn reading(diagnostics: &[Diagnostic]) -> Option<String> {

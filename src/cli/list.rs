@@ -1,11 +1,12 @@
 //! `lamplight list [WHAT]`: tables of what there is.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::failure::Failure;
+use super::terminal::stdout;
 use super::text;
 use crate::catalogue::{self, Kind, probe};
 use crate::emit::targets;

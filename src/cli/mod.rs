@@ -25,11 +25,13 @@ mod partial;
 mod progress;
 mod render;
 mod show;
+mod terminal;
 mod text;
 mod variants;
 mod watch;
 mod work;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -85,14 +87,23 @@ impl Command {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let matches = guide::in_help(Cli::command()).get_matches();
-    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let matches = guide::in_help(Cli::command()).try_get_matches().unwrap_or_else(wrong_usage);
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(wrong_usage);
     // While there is one thread.
     executors::prepare(&cli.command.executors());
     match dispatch(cli.command, cli.diagnostics) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(cli.diagnostics),
     }
+}
+
+/// Says what is wrong with the arguments, which are quoted and may hold anything; help as it is.
+fn wrong_usage<T>(error: clap::Error) -> T {
+    if !error.use_stderr() {
+        error.exit();
+    }
+    let _ = write!(terminal::stderr(), "{}", error.render());
+    std::process::exit(error.exit_code())
 }
 
 fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failure> {

@@ -1,12 +1,13 @@
 //! `lamplight variants`: what a manifest's axes multiply to.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::progress::Bar;
+use super::terminal::stdout;
 use crate::diagnostic::{Diagnostics, nearest};
 use crate::generate::{self, Discard, Request, Tools};
 use crate::permute::axis::Mode;
@@ -120,7 +121,7 @@ fn keys(manifest: &Manifest, name: &str) -> Result<(), Failure> {
             nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         Failure::input(format!("the manifest declares no program `{name}`{hint}"))
     })?;
-    let mut out = std::io::BufWriter::new(stdout().lock());
+    let mut out = std::io::BufWriter::new(stdout());
     for point in program.space.enumerate() {
         writeln!(out, "{}", program.space.key(&point))?;
     }

@@ -20,7 +20,7 @@ use crate::bundle::Language;
 use crate::bundle::{Native, Reflection, Target};
 use crate::compose::Composed;
 use crate::emit::{self, type_name};
-use crate::validate::{CAPABILITIES, Validated, check_limits, guard, on_large_stack};
+use crate::validate::{CAPABILITIES, Validated, check_limits, guard, is_bounded, on_large_stack};
 
 /// A unit in every target.
 pub struct Translated {
@@ -75,6 +75,9 @@ fn inner(
     targets: &[Target],
 ) -> Result<Translated, Reason> {
     let mut module = parse(outline, &composed.text)?;
+    if !is_bounded(&module) {
+        return Err(Reason::Refused);
+    }
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)

@@ -5,7 +5,7 @@ use crate::source::Span;
 
 /// Axes of one program, and values of one axis, that a manifest may declare. Sets of either are
 /// single machine words, which is what makes counting a large space quick.
-pub const MAX: usize = 128;
+pub const MAX: usize = crate::limits::AXES;
 
 /// What the values of an axis are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

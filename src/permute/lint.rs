@@ -4,12 +4,12 @@
 use super::axis::{Axis, ValueSet};
 use super::space::{Constraint, Slice, Space};
 use crate::diagnostic::{Diagnostic, codes};
+use crate::limits::SPACE_STEPS;
 use crate::source::Span;
 
 /// Warnings about a space; `what` and `place` name its program.
 pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
-    let mut warnings: Vec<Diagnostic> =
-        space.constraints().iter().filter_map(|constraint| trivial(space, constraint)).collect();
+    let mut warnings: Vec<Diagnostic> = trivial_constraints(space);
     if space.valid_count() == 0
         && warnings.iter().any(|warning| warning.code == codes::CONSTRAINT_ALWAYS_FALSE)
     {
@@ -33,9 +33,16 @@ pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
     warnings
 }
 
-/// A space that cannot be counted has been refused by now, so a single condition of it can.
-fn trivial(space: &Space, constraint: &Constraint) -> Option<Diagnostic> {
-    let satisfying = space.satisfying(&constraint.formula).ok()?;
+/// A space that cannot be counted has been refused by now, so a single condition of it can; all of
+/// them share one bound, and what is beyond it is not looked at.
+fn trivial_constraints(space: &Space) -> Vec<Diagnostic> {
+    let mut steps = SPACE_STEPS;
+    let constraints = space.constraints().iter();
+    constraints.filter_map(|constraint| trivial(space, constraint, &mut steps)).collect()
+}
+
+fn trivial(space: &Space, constraint: &Constraint, steps: &mut usize) -> Option<Diagnostic> {
+    let satisfying = space.satisfying(&constraint.formula, steps).ok()?;
     let (code, word) = match satisfying {
         0 => (codes::CONSTRAINT_ALWAYS_FALSE, "false"),
         all if all == space.full_count() => (codes::CONSTRAINT_ALWAYS_TRUE, "true"),

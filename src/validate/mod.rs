@@ -3,9 +3,11 @@
 //! naga recurses over what it reads and panics on some inputs, so that every call into it is
 //! bounded first ([`limits`]), runs on a large stack and has its panics caught ([`guard`]).
 
+mod constants;
 mod guard;
 mod limits;
 mod report;
+mod sizes;
 mod uniformity;
 
 pub use guard::{guard, on_large_stack};
@@ -74,7 +76,20 @@ fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     }
 }
 
+/// Whether no type or value of a module is too large for what is written of it.
+pub fn is_bounded(module: &naga::Module) -> bool {
+    sizes::check(module).is_none()
+}
+
 fn analyse(composed: &Composed, module: naga::Module) -> Result<Validated, Diagnostics> {
+    if let Some(large) = sizes::check(&module) {
+        let error = Diagnostic::error(codes::LIMIT_EXCEEDED, large.message);
+        let range = large.span.to_range().unwrap_or(0..0);
+        return Err(vec![match composed.map.lookup(range.clone()) {
+            Some(span) => error.at(span, "declared here"),
+            None => error,
+        }]);
+    }
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
         .validate(&module)
         .map_err(|error| vec![report::validation(composed, &error)])?;

@@ -7,12 +7,13 @@ mod program;
 pub use preset::{preset_json, probe_json};
 pub use program::axis_json;
 
-use std::io::{Write, stdout};
+use std::io::Write;
 
 use clap::Args;
 use serde_json::Value;
 
 use super::failure::Failure;
+use super::terminal::stdout;
 use crate::catalogue::preset::Preset;
 use crate::catalogue::probe::Probe;
 use crate::catalogue::{self, Item, Module};
