@@ -1,5 +1,5 @@
 //! Finds the crate's open sets by their files, so that adding a diagnostic, a target, an
-//! executor, a reference or a snippet is adding a file. Writes one Rust table for each.
+//! executor, a reference, a scene or a snippet is adding a file. Writes one Rust table for each.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,13 +12,15 @@ fn main() -> std::io::Result<()> {
     println!("cargo::rustc-env=LAMPLIGHT_BUILD={}", build_id(&root, &out)?);
     fs::write(out.join("codes.rs"), codes(&root.join("src/diagnostic/codes"))?)?;
     fs::write(out.join("target_names.rs"), target_names(&root.join("src/emit/targets"))?)?;
-    for (folder, entry) in [
-        ("emit/targets", "TARGET"),
-        ("execute/executors", "EXECUTOR"),
-        ("proof/references", "REFERENCES"),
+    for (folder, constant, ty) in [
+        ("emit/targets", "TARGET", "Entry"),
+        ("execute/executors", "EXECUTOR", "Entry"),
+        ("proof/references", "REFERENCES", "Entry"),
+        ("scene/sets", "SET", "Set"),
     ] {
         let name = folder.rsplit('/').next().unwrap_or(folder);
-        fs::write(out.join(format!("{name}.rs")), modules(&root.join("src").join(folder), entry)?)?;
+        let table = modules(&root.join("src").join(folder), constant, ty)?;
+        fs::write(out.join(format!("{name}.rs")), table)?;
     }
     fs::write(out.join("shaderlib.rs"), embedded(&root.join("shaderlib"))?)
 }
@@ -101,7 +103,8 @@ fn constant(stem: &str) -> String {
     stem.replace('-', "_").to_uppercase()
 }
 
-/// One `Code` constant for each Markdown file: its first line is the title, the rest explains.
+/// One `Code` constant for each Markdown file: its first line is the title, `Page: NAME` is the
+/// page of the guide, the rest explains.
 fn codes(folder: &Path) -> std::io::Result<String> {
     let mut table = String::new();
     let mut names = String::new();
@@ -112,10 +115,15 @@ fn codes(folder: &Path) -> std::io::Result<String> {
         let (title, explanation) = text.split_once('\n').unwrap_or((&text, ""));
         let constant = constant(&name);
         let title = title.trim_start_matches('#').trim();
-        let explanation = explanation.trim();
+        let (page, explanation) = explanation
+            .trim_start()
+            .strip_prefix("Page: ")
+            .and_then(|rest| rest.split_once('\n'))
+            .unwrap_or(("", explanation));
+        let (page, explanation) = (page.trim(), explanation.trim());
         let _ = writeln!(
             table,
-            "/// {title}\npub const {constant}: &Code = &Code {{ name: {name:?}, title: {title:?}, explanation: {explanation:?} }};"
+            "/// {title}\npub const {constant}: &Code = &Code {{ name: {name:?}, title: {title:?}, explanation: {explanation:?}, page: {page:?} }};"
         );
         let _ = write!(names, "{constant}, ");
     }
@@ -142,18 +150,18 @@ fn target_names(folder: &Path) -> std::io::Result<String> {
     Ok(table)
 }
 
-/// Declares each file of the folder as a module and lists the constant `entry` of each.
-fn modules(folder: &Path, entry: &str) -> std::io::Result<String> {
+/// Declares each file of the folder as a module and lists the constant of each, which has the type.
+fn modules(folder: &Path, constant: &str, ty: &str) -> std::io::Result<String> {
     let mut table = String::new();
     let mut entries = String::new();
     for path in files(folder, "rs")? {
         let name = stem(&path);
         let _ = writeln!(table, "#[path = {:?}]\npub mod {name};", path);
-        let _ = write!(entries, "&{name}::{entry}, ");
+        let _ = write!(entries, "&{name}::{constant}, ");
     }
     let _ = writeln!(
         table,
-        "/// One entry for each file of the folder, by name.\npub const ALL: &[&Entry] = &[{entries}];"
+        "/// One entry for each file of the folder, by name.\npub const ALL: &[&{ty}] = &[{entries}];"
     );
     Ok(table)
 }

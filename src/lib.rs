@@ -1,12 +1,121 @@
 //! Lamplight: lighting and shadow functions in WGSL and GLSL, composed, compiled and proven.
 //!
-//! Data flows one way, each arrow one function:
+//! The crate has three uses. The shaders themselves are in `shaderlib/` and need none of it.
 //!
-//! `source -> parse -> resolve -> permute -> compose -> validate -> emit -> bundle`
+//! # In an engine
+//!
+//! [`bundle`] opens what was generated and finds a permutation by its key. It needs no feature of
+//! the crate, and neither naga nor wgpu.
+//!
+//! ```
+//! # fn generated() -> Result<lamplight::bundle::Contents, String> {
+//! #     let mut sources = lamplight::source::SourceSet::default();
+//! #     let folder = std::path::Path::new("examples/build_script/shaders");
+//! #     let made = lamplight::project::read_manifest(&folder.join("lamplight.toml"), &mut sources);
+//! #     let made = made.and_then(|manifest| {
+//! #         let packages = lamplight::project::packages(folder, &mut sources)?;
+//! #         let request = lamplight::generate::Request::default();
+//! #         lamplight::generate::in_memory(&mut sources, &packages, &manifest, &request, &|_| {})
+//! #     });
+//! #     made.map(|made| made.contents).map_err(|problems| format!("{problems:?}"))
+//! # }
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let bytes = lamplight::bundle::pack(&generated()?)?;
+//! use lamplight::bundle::{Bundle, Target};
+//!
+//! let bundle = Bundle::from_bytes(bytes)?; // or Bundle::open("shaders.lamplight")
+//! let shader = bundle.program("lamp")?.shader("fs_main")?;
+//! let found = shader.get("cone=exponent,specular", Target::WGSL)?;
+//! assert_eq!(found.native.entry_name, "fs_main");
+//! assert!(std::str::from_utf8(&found.bytes)?.contains("fn fs_main("));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # In a build script
+//!
+//! [`project`] reads a package and its manifest from the disk, and [`generate`] compiles every
+//! permutation that the manifest declares. What goes wrong comes back as [`diagnostic`]s with
+//! places in the author's text.
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use lamplight::bundle::pack;
+//! use lamplight::diagnostic::Diagnostics;
+//! use lamplight::diagnostic::render::{Form, render};
+//! use lamplight::generate::{Generated, Request, in_memory};
+//! use lamplight::project;
+//! use lamplight::source::SourceSet;
+//!
+//! fn generated(package: &Path, sources: &mut SourceSet) -> Result<Generated, Diagnostics> {
+//!     let manifest = project::read_manifest(&package.join(project::MANIFEST), sources)?;
+//!     let packages = project::packages(package, sources)?;
+//!     in_memory(sources, &packages, &manifest, &Request::default(), &|_| {})
+//! }
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut sources = SourceSet::default();
+//! let made = generated(Path::new("examples/build_script/shaders"), &mut sources)
+//!     .map_err(|problems| render(&sources, &problems, Form::Human))?;
+//! let bytes = pack(&made.contents)?;
+//! # assert!(!bytes.is_empty() && made.warnings.is_empty());
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # In a tool
+//!
+//! Each step is a function from one value to the next: [`source`] holds texts, [`resolve`] finds
+//! what they import, [`compose`] writes one text for the settings of one permutation, [`validate`]
+//! hands it to naga, and [`emit`] writes one target. [`permute`] knows the space of permutations,
+//! [`keys`] writes typed keys, [`cache`] and [`store`] keep results, [`eval`] runs functions on the
+//! CPU, and [`scene`] has the mathematics of the host.
+//!
+//! ```
+//! use lamplight::bundle::{Language, Target};
+//! use lamplight::diagnostic::Diagnostics;
+//! use lamplight::permute::Settings;
+//! use lamplight::resolve::{self, Packages};
+//! use lamplight::source::{Embedded, Memory, Package, SourceSet};
+//! use lamplight::{compose, emit, validate};
+//!
+//! fn lit() -> Result<Vec<u8>, Diagnostics> {
+//!     let text = "
+//!         import lamplight::brdf::diffuse::lambert;
+//!         @fragment fn fs_main(@location(0) n: vec3f) -> @location(0) vec4f {
+//!             return vec4f(lambert(n, vec3f(0.0, 1.0, 0.0)));
+//!         }";
+//!     let own = Memory([("lit.wesl".to_owned(), text.to_owned())].into());
+//!     let packages = Packages {
+//!         root: Package { name: "package".to_owned(), files: Box::new(own) },
+//!         dependencies: vec![Package { name: "lamplight".to_owned(), files: Box::new(Embedded) }],
+//!     };
+//!     let mut sources = SourceSet::default();
+//!     let graph = resolve::load(&mut sources, &packages, "lit.wesl", Language::Wesl)?;
+//!     let composed = compose::compose(&graph, &Settings::default(), &Default::default())?;
+//!     let validated = validate::validate(&composed)?;
+//!     let emitted = emit::emit(&validated, "fs_main", Target::MSL).map_err(|error| vec![error])?;
+//!     Ok(emitted.bytes)
+//! }
+//!
+//! # fn main() -> Result<(), String> {
+//! let metal = lit().map_err(|problems| format!("{problems:?}"))?;
+//! assert!(String::from_utf8_lossy(&metal).contains("float lambert("));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Modules that are not listed here serve the command line and may change with any version.
+
+#![warn(missing_docs)]
 
 pub mod bundle;
+#[doc(hidden)]
 pub mod input;
+#[doc(hidden)]
 pub mod limits;
+#[doc(hidden)]
 pub mod output;
 #[cfg(feature = "single-file")]
 #[path = "packing/zstd.rs"]
@@ -30,10 +139,13 @@ pub mod generate;
 #[cfg(feature = "compile")]
 pub mod keys;
 #[cfg(feature = "compile")]
+#[doc(hidden)]
 pub mod link;
 #[cfg(feature = "eval")]
+#[doc(hidden)]
 pub mod metal;
 #[cfg(feature = "compile")]
+#[doc(hidden)]
 pub mod parse;
 #[cfg(feature = "compile")]
 pub mod permute;
@@ -49,22 +161,32 @@ pub mod store;
 #[path = "store/absent.rs"]
 pub mod store;
 #[cfg(feature = "compile")]
+#[doc(hidden)]
 pub mod tools;
 #[cfg(feature = "compile")]
 pub mod validate;
 
 #[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod catalogue;
 #[cfg(feature = "harness")]
+#[doc(hidden)]
+pub mod cost;
+#[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod execute;
 #[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod picture;
 #[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod proof;
 #[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod report;
 #[cfg(feature = "harness")]
 pub mod scene;
 
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;

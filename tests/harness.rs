@@ -25,7 +25,7 @@ pub fn trials() -> Vec<Trial> {
             .map_err(Failed::from)
         })
     });
-    let others: [(&str, Run); 8] = [
+    let others: [(&str, Run); 9] = [
         ("library", library),
         ("expressions", expressions),
         ("expression_errors", expression_errors),
@@ -34,6 +34,7 @@ pub fn trials() -> Vec<Trial> {
         ("every_function_has_cases", every_function_has_cases),
         ("vectors", vectors),
         ("lacking", lacking),
+        ("many_modules", many_modules),
     ];
     executors
         .chain(others.map(|(name, run)| Trial::test(format!("harness::{name}"), run)))
@@ -77,6 +78,29 @@ fn library() -> Result<(), Failed> {
             text => Err(text.to_owned().into()),
         }
     })
+}
+
+/// A thread that waits for a part of its job takes up another job on the same stack. Many modules
+/// must not add up to more than a stack holds.
+fn many_modules() -> Result<(), Failed> {
+    const MODULES: usize = 400;
+    let file = |index: usize| {
+        let name = format!("m{index}");
+        let cases = format!(
+            "[[case]]\nfunction = \"{name}\"\nformula = \"x + {index}\"\n\
+             inputs = {{ x = {{ random = [0, 1], count = 64 }} }}\n"
+        );
+        let text = format!("fn {name}(x: f32) -> f32 {{ return x + {index}.0; }}\n");
+        [(format!("{name}.wesl"), text), (format!("{name}.toml"), cases)]
+    };
+    let files = (0..MODULES).flat_map(file).collect();
+    let library = Library::new("mine", Arc::new(Memory(files)), Vec::new());
+    let paths: Vec<_> = (0..MODULES).map(|index| format!("m{index}.toml")).collect();
+    let sources = Mutex::new(SourceSet::default());
+    let report = library
+        .check(&sources, &paths, &[Language::Wesl], &mut [])
+        .map_err(|errors| render(&sources, &errors))?;
+    if report.outcomes.is_empty() { Ok(()) } else { Err("nothing was to run".into()) }
 }
 
 /// What a target has no word for is told apart from what fails, with the reason: GLSL ES 3.00

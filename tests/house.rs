@@ -24,6 +24,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("house::leftovers_are_seen", leftovers_are_seen),
         Trial::test("house::paths", paths_are_short),
         Trial::test("house::needs_of_executors", needs_are_installed),
+        Trial::test("house::described", entries_are_described),
     ]
 }
 
@@ -37,6 +38,30 @@ fn needs_are_installed() -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// Targets, executors and scenes say what they are, and have the names of their files.
+fn entries_are_described() -> Result<(), Failed> {
+    let targets = lamplight::emit::targets::ALL;
+    let executors = lamplight::execute::executors::ALL;
+    let scenes = lamplight::scene::sets::ALL;
+    let all =
+        (targets.iter().map(|target| ("src/emit/targets", target.target.name(), target.about)))
+            .chain(executors.iter().map(|found| ("src/execute/executors", found.name, found.about)))
+            .chain(scenes.iter().map(|scene| ("src/scene/sets", scene.name, scene.about)));
+    let mut problems = Vec::new();
+    for (folder, name, about) in all {
+        problems.extend(undescribed(name, about));
+        if !Path::new(ROOT).join(folder).join(format!("{name}.rs")).is_file() {
+            problems.push(format!("`{name}` is not called like its file in {folder}"));
+        }
+    }
+    if problems.is_empty() { Ok(()) } else { Err(problems.join("\n").into()) }
+}
+
+/// An entry says in one line what it is.
+pub fn undescribed(name: &str, about: &str) -> Option<String> {
+    (about.len() < 4 || about.contains('\n')).then(|| format!("`{name}` does not say what it is"))
 }
 
 /// No folder of `src/` uses one that uses it, however long the way round.

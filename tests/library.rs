@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::process::Command;
 use std::sync::OnceLock;
 
-use lamplight::bundle::{Contents, Language, Target, blob_files, write_directory};
+use lamplight::bundle::{Contents, EntryContents, Language, Target, blob_files, write_directory};
 use lamplight::compose::{Keep, Options, compose};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Request, in_memory};
@@ -50,6 +50,7 @@ pub fn trials() -> Vec<Trial> {
     let whole = [
         ("library::hashes", hashes as fn() -> _),
         ("library::difference_is_shown", difference_is_shown),
+        ("library::values_have_effect", values_have_effect),
         ("library::external_validators", validators),
     ];
     reviewed.chain(whole.map(|(name, run)| Trial::test(name, run))).collect()
@@ -154,6 +155,38 @@ fn library() -> Result<Contents, String> {
 /// Every output of every permutation is what was accepted.
 fn hashes() -> Result<(), Failed> {
     recorded::check(contents()?)
+}
+
+/// Each value of each axis that changes a text does so in both languages.
+fn values_have_effect() -> Result<(), Failed> {
+    let mut idle = Vec::new();
+    for (name, program) in &contents()?.programs {
+        for axis in program.axes.iter().filter(|axis| axis.mode == "static") {
+            for value in axis.values.iter().filter(|value| **value != axis.default) {
+                let setting = setting_of(&axis.name, value);
+                for (language, entries) in &program.languages {
+                    if !entries.values().any(|entry| differs_by(entry, &setting)) {
+                        idle.push(format!("`{name}`: `{setting}` changes nothing in {language:?}"));
+                    }
+                }
+            }
+        }
+    }
+    if idle.is_empty() { Ok(()) } else { Err(idle.join("\n").into()) }
+}
+
+/// A setting as keys write it.
+fn setting_of(axis: &str, value: &str) -> String {
+    if value == "true" { axis.to_owned() } else { format!("{axis}={value}") }
+}
+
+/// Whether some key with the setting gives another output than the same key without it.
+fn differs_by(entry: &EntryContents, setting: &str) -> bool {
+    entry.keys.iter().any(|(key, unit)| {
+        let others: Vec<&str> = key.split(',').filter(|part| *part != setting).collect();
+        let without = if others.is_empty() { "default".to_owned() } else { others.join(",") };
+        without != *key && entry.keys.get(&without).is_some_and(|other| other != unit)
+    })
 }
 
 /// A text that changes in one key is shown, with the key.

@@ -12,9 +12,11 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod cost;
 mod determinism;
 mod diagnostics;
 mod differential;
+mod doors;
 mod emit;
 mod eval;
 mod examples;
@@ -33,6 +35,7 @@ mod link;
 mod link_compare;
 mod metal;
 mod mutate;
+mod new;
 mod packages;
 mod permute;
 mod pipelines;
@@ -59,9 +62,11 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    cost::trials,
     determinism::trials,
     diagnostics::trials,
     differential::trials,
+    doors::trials,
     emit::trials,
     eval::trials,
     examples::trials,
@@ -76,6 +81,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     link::trials,
     metal::trials,
     mutate::trials,
+    new::trials,
     packages::trials,
     permute::trials,
     pipelines::trials,

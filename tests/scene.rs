@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec4Swizzles};
-use lamplight::scene::sets::SETS;
+use lamplight::scene::sets;
 use lamplight::scene::{self, Bounds, Clip, CubeMap, Depth, Equirect, MeshError, Shape};
 use libtest_mimic::{Failed, Trial};
 
@@ -402,9 +402,18 @@ fn volumes() -> Outcome {
     near("a larger ball", volume(&moved), 4.0 / 3.0 * PI * 8.0, 1.5)
 }
 
+/// A scene has something to show.
+pub fn nothing_is_shown(objects: &[sets::Object]) -> Option<String> {
+    let corners: usize = objects.iter().map(|object| object.shape.vertices.len()).sum();
+    (corners < 3).then(|| format!("{} objects have {corners} corners", objects.len()))
+}
+
 /// Normals of corners are of unit length and look where the faces around them do.
 fn scenes() -> Outcome {
-    for (name, _, make) in SETS {
+    for sets::Set { name, make, .. } in sets::ALL {
+        if let Some(problem) = nothing_is_shown(&make().objects) {
+            return Err(format!("scene {name}: {problem}").into());
+        }
         for object in make().objects {
             let positions: Vec<DVec3> =
                 object.shape.vertices.iter().map(|vertex| vertex.position).collect();

@@ -66,6 +66,8 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("shaderlib::pairs", every_module_has_its_twin),
         Trial::test("shaderlib::names", names_are_unique),
         Trial::test("shaderlib::together", modules_go_together),
+        Trial::test("shaderlib::prefixed", modules_go_beside_names),
+        Trial::test("shaderlib::prefixed_include_path", modules_go_beside_names_elsewhere),
     ];
     for module in modules() {
         for (name, check) in CHECKS {
@@ -93,8 +95,8 @@ fn stems(extension: &str) -> Vec<String> {
 
 fn every_module_has_its_twin() -> Result<(), Failed> {
     let mut glsl = stems("glsl");
-    // Spells textures for both kinds of GLSL; WGSL has one kind.
-    glsl.retain(|path| path != "filter/sampling");
+    // What only GLSL needs: two spellings of textures, and names that do not clash.
+    glsl.retain(|path| path != "filter/sampling" && path != "prefix");
     same("modules", &modules(), &glsl)
 }
 
@@ -120,6 +122,48 @@ fn modules_go_together() -> Result<(), Failed> {
     Ok(())
 }
 
+/// With `LAMPLIGHT_PREFIX` all modules compile beside a host that has a function of each name.
+fn modules_go_beside_names() -> Result<(), Failed> {
+    let includes = modules().iter().map(|module| include(module)).collect::<String>();
+    let all = format!("#define LAMPLIGHT_PREFIX\n{includes}{}", of_the_host()?);
+    for dialect in &DIALECTS {
+        run_glslang(&fragment(&all, dialect)?, dialect.options)?;
+    }
+    Ok(())
+}
+
+/// The same without our composer.
+fn modules_go_beside_names_elsewhere() -> Result<(), Failed> {
+    let path = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
+    let includes: String =
+        modules().iter().map(|module| format!("#include \"{module}.glsl\"\n")).collect();
+    for Dialect { head, output, options } in &DIALECTS {
+        let text = format!(
+            "{head}#extension GL_GOOGLE_include_directive : require\n#define LAMPLIGHT_PREFIX\n\
+             {includes}{}{output}void main() {{\n    colour = vec4(1.0);\n}}\n",
+            of_the_host()?
+        );
+        // Without linking, glslangValidator reads includes for Vulkan alone.
+        let with_includes: &[&str] = if options.is_empty() { &[path, "-l"] } else { &[path] };
+        run_glslang(&text, &[options, with_includes].concat())?;
+    }
+    Ok(())
+}
+
+/// A function of each name that the library has in GLSL, and a call of one of the library's own.
+fn of_the_host() -> Result<String, Failed> {
+    let items = lamplight::catalogue::library().into_iter().flat_map(|module| module.items);
+    let mut names: Vec<String> = items.map(|item| item.name).collect();
+    names.sort();
+    if names.len() < 150 || !names.iter().any(|name| name == "wrap") {
+        return Err(format!("the library declares {names:?}").into());
+    }
+    let own = names.iter().map(|name| format!("float {name}(bool on) {{ return 1.0; }}\n"));
+    let call = "float both(lamplight_Material material) {\n    return wrap(true) + material.wrap\n        \
+                + lamplight_wrap(vec3(0.0), vec3(0.0), 0.5);\n}\n";
+    Ok(own.collect::<String>() + call)
+}
+
 fn wesl_is_valid(module: &str) -> Result<(), Failed> {
     parse_wesl(module).map(|_| ())
 }
@@ -141,14 +185,11 @@ fn every_target_writes(module: &str) -> Result<(), Failed> {
 
 /// Structures are compared where a function takes or gives them.
 fn twins_agree(module: &str) -> Result<(), Failed> {
-    let summaries = |path: String| {
-        functions(&read(&path))
-            .into_iter()
-            .map(|f| (f.name, f.doc.first().cloned()))
-            .collect::<Vec<_>>()
+    let documented = |path: String| -> Vec<(String, Vec<String>)> {
+        functions(&read(&path)).into_iter().map(|f| (f.name, f.doc)).collect()
     };
-    let wesl = summaries(format!("{module}.wesl"));
-    same("summaries", &wesl, &summaries(format!("{module}.glsl")))?;
+    let wesl = documented(format!("{module}.wesl"));
+    same("comments", &wesl, &documented(format!("{module}.glsl")))?;
     let own = |parsed: Module| -> BTreeMap<String, String> {
         signatures(&parsed)
             .into_iter()
@@ -163,8 +204,13 @@ fn functions_are_documented(module: &str) -> Result<(), Failed> {
     if !text.starts_with("//! ") {
         return Err("the module has no documentation".into());
     }
-    let faults: Vec<String> = functions(&text).iter().flat_map(faults).collect();
+    let faults = undocumented(&text);
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
+}
+
+/// What the comments of a module's functions lack.
+pub fn undocumented(module: &str) -> Vec<String> {
+    functions(module).iter().flat_map(faults).collect()
 }
 
 fn faults(function: &Function) -> Vec<String> {

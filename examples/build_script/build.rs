@@ -24,7 +24,6 @@ pub fn compile(package: &Path, bundle: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 fn generated(package: &Path, sources: &mut SourceSet) -> Result<Generated, Diagnostics> {
-    let manifest = project::read_manifest(&package.join(project::MANIFEST), sources)?;
-    let packages = project::packages(package, sources)?;
+    let (manifest, packages) = project::declared(&package.join(project::MANIFEST), sources)?;
     in_memory(sources, &packages, &manifest, &Request::default(), &|_| {})
 }

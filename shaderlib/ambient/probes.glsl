@@ -5,7 +5,17 @@
 #ifndef LAMPLIGHT_AMBIENT_PROBES_GLSL
 #define LAMPLIGHT_AMBIENT_PROBES_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The light around a point: a breezeway.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_breezeway() {
     return vec3[9](
         vec3(0.32, 0.36, 0.38),
@@ -21,6 +31,12 @@ vec3[9] probe_breezeway() {
 }
 
 /// The light around a point: a campus at sunset.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_campus_sunset() {
     return vec3[9](
         vec3(0.79, 0.94, 0.98),
@@ -36,6 +52,12 @@ vec3[9] probe_campus_sunset() {
 }
 
 /// The light around a point: a eucalyptus grove.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_eucalyptus_grove() {
     return vec3[9](
         vec3(0.38, 0.43, 0.45),
@@ -51,6 +73,12 @@ vec3[9] probe_eucalyptus_grove() {
 }
 
 /// The light around a point: Funston Beach at sunset.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_funston_beach_sunset() {
     return vec3[9](
         vec3(0.68, 0.69, 0.7),
@@ -66,6 +94,12 @@ vec3[9] probe_funston_beach_sunset() {
 }
 
 /// The light around a point: Galileo's tomb.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_galileos_tomb() {
     return vec3[9](
         vec3(1.04, 0.76, 0.71),
@@ -81,6 +115,12 @@ vec3[9] probe_galileos_tomb() {
 }
 
 /// The light around a point: Grace Cathedral.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_grace_cathedral() {
     return vec3[9](
         vec3(0.79, 0.44, 0.54),
@@ -96,6 +136,12 @@ vec3[9] probe_grace_cathedral() {
 }
 
 /// The light around a point: the old town square.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_old_town_square() {
     return vec3[9](
         vec3(0.87, 0.88, 0.86),
@@ -111,6 +157,12 @@ vec3[9] probe_old_town_square() {
 }
 
 /// The light around a point: the old town square, in six digits.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.14.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_old_town_square_6_digits() {
     return vec3[9](
         vec3(0.871297, 0.875222, 0.86447),
@@ -126,6 +178,12 @@ vec3[9] probe_old_town_square_6_digits() {
 }
 
 /// The light around a point: St. Peter's Basilica.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_st_peters_basilica() {
     return vec3[9](
         vec3(0.36, 0.26, 0.23),
@@ -141,6 +199,12 @@ vec3[9] probe_st_peters_basilica() {
 }
 
 /// The light around a point: the Uffizi Gallery.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_uffizi_gallery() {
     return vec3[9](
         vec3(0.32, 0.31, 0.35),
@@ -156,6 +220,12 @@ vec3[9] probe_uffizi_gallery() {
 }
 
 /// The light around a point: a kitchen in Vine Street.
+///
+/// Parameters: none.
+/// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Edges: none.
+/// Error model: exact: the published digits.
 vec3[9] probe_vine_street_kitchen() {
     return vec3[9](
         vec3(0.64, 0.67, 0.73),
@@ -169,5 +239,9 @@ vec3[9] probe_vine_street_kitchen() {
         vec3(-0.03, -0.02, -0.03)
     );
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_BRDF_COAT_GLSL
 #define LAMPLIGHT_BRDF_COAT_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The light of a coated surface: what the coat reflects, and what the base does below it.
 ///
 /// Parameters: `base`, `coat` linear light of the base and of the coat's highlight without its Fresnel term; `cc` strength of the coat, [0, 1]; `fr` the coat's reflectance towards the viewer, [0, 1]: for an index of 1.5 `0.04 + 0.96*(1 - nv)^5`.
@@ -28,5 +32,9 @@ vec3 coat_f0(vec3 f0, float ior) {
     vec3 r = (vec3(1.0) + s - n * (vec3(1.0) - s)) / (vec3(1.0) + s + n * (vec3(1.0) - s));
     return r * r;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -4,6 +4,10 @@
 #ifndef LAMPLIGHT_BRDF_DIFFUSE_GLSL
 #define LAMPLIGHT_BRDF_DIFFUSE_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// Lambert's cosine.
 ///
 /// Parameters: `n`, `l` unit, one space, `l` away from the surface.
@@ -154,5 +158,9 @@ float diffuse_transmission(float nl, float w) {
     float share = clamp(w, 0.0, 1.0);
     return (max(nl, 0.0) * (1.0 - share) + max(-nl, 0.0) * share) * 0.31830989;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -5,6 +5,10 @@
 #ifndef LAMPLIGHT_BRDF_ENERGY_GLSL
 #define LAMPLIGHT_BRDF_ENERGY_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The light that a microfacet surface reflects of a white environment, in the two parts that depend on the material.
 struct SplitSum {
     /// Of light that met the facets once: for the environment prefiltered by roughness.
@@ -64,5 +68,9 @@ SplitSum split_sum_multi(vec3 f0, vec3 ks, vec2 dfg) {
     vec3 average = f + (vec3(1.0) - f) * 0.047619048;
     return SplitSum(single, single * average * lost / (vec3(1.0) - average * lost));
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -6,6 +6,10 @@
 #include "fresnel.glsl"
 #include "specular.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// How the eye's three responses see a wave of a given path difference, as linear Rec. 709.
 ///
 /// Three Gaussians over the frequency, and a fourth for the second lobe of the red response, turned into cosines with Gaussian envelopes. The constants are in turns and in nanometres, where the published ones, in metres, leave the range that half the digits of 32 bits keep.
@@ -64,5 +68,9 @@ vec3 iridescence(float eta_out, float eta_film, vec3 f0, float nm, float mu) {
     vec3 second = wave * both * film_sensitivity(2.0 * difference, vec3(1.0));
     return clamp(vec3(r12) + steady + first + second, vec3(0.0), vec3(1.0));
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

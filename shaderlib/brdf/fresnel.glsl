@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_BRDF_FRESNEL_GLSL
 #define LAMPLIGHT_BRDF_FRESNEL_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// Reflectance at normal incidence from an index of refraction.
 ///
 /// Parameters: `eta` index of refraction of the far side over that of the near side, at least 0.
@@ -124,5 +128,9 @@ vec3 f_schlick_f82(vec3 f0, vec3 tint, float mu) {
 vec3 f_average_schlick(vec3 f0, vec3 f90) {
     return f0 + (f90 - f0) * 0.047619048;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -7,6 +7,10 @@
 
 #include "../math/safe.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The GGX distribution of microfacet normals with one roughness along the tangent and one along the bitangent.
 ///
 /// Parameters: `th`, `bh`, `nh` cosines t.h, b.h and n.h, [-1, 1], the last at least 0; `at`, `ab` alpha along the tangent and the bitangent, [0, 1].
@@ -82,5 +86,9 @@ vec3 bent_reflection(vec3 v, vec3 n, vec3 b, float strength, float roughness) {
     float share = x * x * x * x;
     return reflect(-v, safe_normalize(bent + (n - bent) * share, n));
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

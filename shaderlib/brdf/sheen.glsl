@@ -7,6 +7,10 @@
 
 #include "../math/safe.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The Charlie distribution of the normals of fibres.
 ///
 /// Parameters: `nh` cosine n.h, [0, 1]; `alpha` squared perceptual roughness, [0, 1].
@@ -110,5 +114,9 @@ float sheen_scale(vec3 color, float ev, float el) {
     float largest = max(max(color.x, color.y), color.z);
     return clamp(1.0 - largest * max(ev, el), 0.0, 1.0);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

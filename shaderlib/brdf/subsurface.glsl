@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_BRDF_SUBSURFACE_GLSL
 #define LAMPLIGHT_BRDF_SUBSURFACE_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The profile of normalised diffusion.
 ///
 /// Parameters: `r` distance on the surface, scene units, at least 0; `s` of `diffusion_s` over the mean free path, 1/scene unit, above 0.
@@ -40,5 +44,9 @@ vec3 diffusion_s(vec3 albedo) {
     vec3 x = abs(a - vec3(0.8));
     return vec3(1.85) - a + 7.0 * x * x * x;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

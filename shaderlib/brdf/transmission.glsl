@@ -7,6 +7,10 @@
 #include "fresnel.glsl"
 #include "specular.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The reflectance of a dielectric at normal incidence with an artist's weight and colour.
 ///
 /// The reflectance at grazing incidence is the weight. What is below gets `1 - max(F)` of the light, the largest channel for all.
@@ -97,5 +101,9 @@ vec3 dispersion_ior(float ior, float dispersion) {
     float spread = (n - 1.0) * 0.025 * max(dispersion, 0.0);
     return vec3(max(n - spread, 1.0), n, n + spread);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -5,7 +5,17 @@
 
 #include "../math/safe.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The sRGB code of one linear channel.
+///
+/// Parameters: `x` linear, [0, 1]; above 1 the curve goes on.
+/// Returns: sRGB code, [0, 1] for inputs in [0, 1].
+/// Source: IEC 61966-2-1:1999.
+/// Edges: a negative input counts as 0.
+/// Error model: that of `safe_pow(x, 1/2.4)` times 1.055 + 2^-24 + 2 ULP; either branch at 0.0031308, where they differ by 3e-8.
 float srgb_from_linear_channel(float x) {
     if (!(x > 0.0031308)) {
         return 12.92 * max(x, 0.0);
@@ -14,6 +24,12 @@ float srgb_from_linear_channel(float x) {
 }
 
 /// The linear value of one sRGB channel.
+///
+/// Parameters: `x` sRGB code, [0, 1]; above 1 the curve goes on.
+/// Returns: linear, [0, 1] for inputs in [0, 1].
+/// Source: IEC 61966-2-1:1999.
+/// Edges: a negative input counts as 0.
+/// Error model: that of `safe_pow((x + 0.055)/1.055, 2.4)` + 7 ULP; either branch at 0.04045, where they differ by 1e-8.
 float linear_from_srgb_channel(float x) {
     if (!(x > 0.04045)) {
         return max(x, 0.0) / 12.92;
@@ -22,22 +38,46 @@ float linear_from_srgb_channel(float x) {
 }
 
 /// The sRGB code of a linear colour.
+///
+/// Parameters: `c` linear colour, [0, 1]; above 1 the curve goes on.
+/// Returns: sRGB colour, [0, 1] for inputs in [0, 1].
+/// Source: IEC 61966-2-1:1999.
+/// Edges: a negative channel counts as 0.
+/// Error model: that of `srgb_from_linear_channel`.
 vec3 srgb_from_linear(vec3 c) {
     return vec3(srgb_from_linear_channel(c.x), srgb_from_linear_channel(c.y), srgb_from_linear_channel(c.z));
 }
 
 /// The linear value of an sRGB colour.
+///
+/// Parameters: `c` sRGB colour, [0, 1]; above 1 the curve goes on.
+/// Returns: linear colour, [0, 1] for inputs in [0, 1].
+/// Source: IEC 61966-2-1:1999.
+/// Edges: a negative channel counts as 0.
+/// Error model: that of `linear_from_srgb_channel`.
 vec3 linear_from_srgb(vec3 c) {
     return vec3(linear_from_srgb_channel(c.x), linear_from_srgb_channel(c.y), linear_from_srgb_channel(c.z));
 }
 
 /// Reinhard's tone curve, per channel.
+///
+/// Parameters: `c` linear colour, at least 0.
+/// Returns: `c/(1 + c)`, linear, [0, 1).
+/// Source: Reinhard, Stark, Shirley, Ferwerda, "Photographic Tone Reproduction for Digital Images", 2002, equation 3.
+/// Edges: a negative channel counts as 0; 1 from about 2^24 on.
+/// Error model: 3.5 ULP.
 vec3 tonemap_reinhard(vec3 c) {
     vec3 x = max(c, vec3(0.0));
     return x / (1.0 + x);
 }
 
 /// A fit to the filmic tone curve of ACES, per channel.
+///
+/// Parameters: `c` linear colour, at least 0; the fit is for an exposure of 0.6.
+/// Returns: `(c*(2.51*c + 0.03))/(c*(2.43*c + 0.59) + 0.14)`, linear, clamped to [0, 1].
+/// Source: Narkowicz, "ACES Filmic Tone Mapping Curve", 2016.
+/// Edges: a negative channel counts as 0; above 65504 the input counts as that, where the curve is 1.
+/// Error model: 6 ULP.
 vec3 tonemap_aces(vec3 c) {
     vec3 x = clamp(c, vec3(0.0), vec3(65504.0));
     vec3 y = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
@@ -45,6 +85,12 @@ vec3 tonemap_aces(vec3 c) {
 }
 
 /// The clear share of a view through fog that thickens evenly between two distances.
+///
+/// Parameters: `d` distance to the viewer, scene units; `start`, `end` distances where fog begins and hides all, scene units.
+/// Returns: `clamp((end - d)/(end - start), 0, 1)`: 1 is clear, 0 all fog: mix(fog, colour, share).
+/// Source: OpenGL 2.1 specification, section 3.10 "Fog", linear.
+/// Edges: a hard edge at `end`, itself clear, where `end` is not beyond `start`.
+/// Error model: absolute 2^-23*(|end| + |d|)/(end - start) + 3*2^-23.
 float fog_linear(float d, float start, float end) {
     if (!(end > start)) {
         return d <= end ? 1.0 : 0.0;
@@ -53,14 +99,30 @@ float fog_linear(float d, float start, float end) {
 }
 
 /// The clear share of a view through fog of even density.
+///
+/// Parameters: `d` distance to the viewer, scene units, at least 0; `density` 1/scene units, at least 0.
+/// Returns: `exp(-density*d)`, [0, 1]: 1 is clear, 0 all fog.
+/// Source: OpenGL 2.1 specification, section 3.10 "Fog", exponential.
+/// Edges: 1 for a negative distance or density.
+/// Error model: relative (3 + 2*x)*2^-23 + x*2^-24, with x = density*d.
 float fog_exp(float d, float density) {
     return exp(-max(density * d, 0.0));
 }
 
 /// The clear share of a view through fog that is thin nearby.
+///
+/// Parameters: `d` distance to the viewer, scene units, at least 0; `density` 1/scene units, at least 0.
+/// Returns: `exp(-(density*d)^2)`, [0, 1]: 1 is clear, 0 all fog.
+/// Source: OpenGL 2.1 specification, section 3.10 "Fog", exponential squared.
+/// Edges: none.
+/// Error model: relative (3 + 2*x)*2^-23 + 3*x*2^-24, with x = (density*d)^2.
 float fog_exp2(float d, float density) {
     float x = density * d;
     return exp(-x * x);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

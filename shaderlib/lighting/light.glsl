@@ -7,6 +7,10 @@
 #include "spot.glsl"
 #include "../math/safe.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// `Light.kind` of a light that is off.
 const uint LIGHT_OFF = 0u;
 /// `Light.kind` of a light with one direction everywhere.
@@ -63,11 +67,25 @@ struct LightSample {
 };
 
 /// What arrives from a light of one direction.
+///
+/// Parameters: `light` the light: its `axis` is read.
+/// Returns: `l` against the axis, distance 0, factors 1.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.3.
+/// Edges: `l` is zero for a zero axis.
+/// Error model: that of `safe_normalize` for `l`; exact for the rest.
 LightSample sample_directional(Light light) {
     return LightSample(safe_normalize(-light.axis, vec3(0.0)), 0.0, 1.0, 1.0);
 }
 
 /// What arrives from a light at a position, with polynomial attenuation.
+///
+/// Another falloff replaces `attenuation` from `distance`, by a function of `lighting::attenuation`.
+///
+/// Parameters: `light` the light: `position` and `attenuation` are read; `p` the lit point, scene units, in the light's space.
+/// Returns: direction, distance, attenuation as `polynomial` gives it, cone factor 1.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.4.
+/// Edges: `l` is zero at the light itself, where the example divides 0 by 0.
+/// Error model: 6 ULP + absolute 2^-23 for `l`, 4 ULP for `distance`, 12 ULP for `attenuation`.
 LightSample sample_point(Light light, vec3 p) {
     vec3 offset = light.position - p;
     float d = length(offset);
@@ -75,6 +93,14 @@ LightSample sample_point(Light light, vec3 p) {
 }
 
 /// What arrives from a spot light, with polynomial attenuation and a power of the cosine.
+///
+/// Another cone replaces `spot` from `dot(-l, axis)`, by a function of `lighting::spot`.
+///
+/// Parameters: `light` the light: `position`, `attenuation`, `axis`, `cutoff` and `exponent` are read; `p` the lit point, scene units, in the light's space.
+/// Returns: as `sample_point`, with the cone factor of `cone_exponent`.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.5.
+/// Edges: at the light itself the cosine is 0.
+/// Error model: that of `sample_point`; for the cone that of `cone_exponent` at a cosine with the error of `l`.
 LightSample sample_spot(Light light, vec3 p) {
     LightSample lit = sample_point(light, p);
     float cone = cone_exponent(dot(-lit.l, light.axis), light.cutoff, light.exponent);
@@ -82,6 +108,12 @@ LightSample sample_spot(Light light, vec3 p) {
 }
 
 /// What arrives from a light, whatever its kind.
+///
+/// Parameters: `light` the light; `p` the lit point, scene units, in the light's space.
+/// Returns: as `sample_directional`, `sample_point` or `sample_spot`.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.7 and 7.8.
+/// Edges: every member is 0 for a light that is off or of unknown kind.
+/// Error model: that of the function chosen.
 LightSample sample_light(Light light, vec3 p) {
     if (light.kind == LIGHT_DIRECTIONAL) {
         return sample_directional(light);
@@ -94,5 +126,9 @@ LightSample sample_light(Light light, vec3 p) {
     }
     return LightSample(vec3(0.0), 0.0, 0.0, 0.0);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

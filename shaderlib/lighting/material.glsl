@@ -3,6 +3,10 @@
 #ifndef LAMPLIGHT_LIGHTING_MATERIAL_GLSL
 #define LAMPLIGHT_LIGHTING_MATERIAL_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// A material, 64 bytes, the same in uniform (std140) and storage buffers.
 struct Material {
     /// Linear colour the surface emits, at least 0.
@@ -24,13 +28,32 @@ struct Material {
 };
 
 /// The index of the material on the visible side, in an array of front and back pairs.
+///
+/// Parameters: `i` number of the pair, at least 0; `front` whether the front side is visible.
+/// Returns: `2*i` in front, `2*i + 1` behind.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.11, with the doubling done here.
+/// Edges: none; the caller keeps the index inside its array.
+/// Error model: exact.
 int material_index(int i, bool front) {
     return 2 * i + (front ? 0 : 1);
 }
 
 /// The index of the material on the visible side, as the book prints it.
+///
+/// It differs from `material_index` in that the caller passes twice the number of the pair:
+/// with the plain number, the back of one pair is the front of the next.
+///
+/// Parameters: `i` twice the number of the pair, at least 0; `front` whether the front side is visible.
+/// Returns: `i` in front, `i + 1` behind.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.11.
+/// Edges: none; the caller keeps the index inside its array.
+/// Error model: exact.
 int material_index_oglpg(int i, bool front) {
     return front ? i : i + 1;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

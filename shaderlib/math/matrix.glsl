@@ -5,7 +5,17 @@
 
 #include "safe.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// The inverse of a 3x3 matrix.
+///
+/// Parameters: `m` any matrix.
+/// Returns: its inverse.
+/// Source: Cramer's rule: the rows of the inverse are the cross products of the columns, divided by the determinant.
+/// Edges: all zeros where the determinant's magnitude is below 2^-126, a singular matrix included.
+/// Error model: absolute 3*2^-23*(s^2/|det| + s^5/det^2) per element, with s the longest column's length.
 mat3 inverse3(mat3 m) {
     vec3 yz = cross(m[1], m[2]);
     float det = dot(m[0], yz);
@@ -16,6 +26,12 @@ mat3 inverse3(mat3 m) {
 }
 
 /// The matrix that takes normals where `model` takes points: the inverse, transposed, of its upper 3x3 part.
+///
+/// Parameters: `model` an affine transform, for column vectors.
+/// Returns: the normal matrix; its results are not unit. A rotation with one scale for all axes may use the 3x3 part itself.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, chapter 7, and every tutorial after it.
+/// Edges: for a flattened model the division by the determinant is left out: the directions are still right.
+/// Error model: that of `inverse3`.
 mat3 normal_matrix(mat4 model) {
     vec3 x = model[0].xyz;
     vec3 y = model[1].xyz;
@@ -25,5 +41,9 @@ mat3 normal_matrix(mat4 model) {
     float scale = abs(det) >= SMALLEST_NORMAL ? det : 1.0;
     return mat3(yz / scale, cross(z, x) / scale, cross(x, y) / scale);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

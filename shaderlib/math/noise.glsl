@@ -3,12 +3,28 @@
 #ifndef LAMPLIGHT_MATH_NOISE_GLSL
 #define LAMPLIGHT_MATH_NOISE_GLSL
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// Interleaved gradient noise: neighbouring pixels get well-spread values.
+///
+/// Parameters: `pixel` framebuffer position, pixels, at least 0.
+/// Returns: a number in [0, 1).
+/// Source: Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014.
+/// Edges: 0 at the origin; the pattern loses its spread beyond about 2^17 pixels.
+/// Error model: absolute 80*2^-23*(0.067*pixel.x + 0.0058*pixel.y + 1), modulo 1.
 float interleaved_gradient_noise(vec2 pixel) {
     return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
 }
 
 /// A permutation of the 32-bit numbers that looks random.
+///
+/// Parameters: `seed` any number.
+/// Returns: a number of 32 bits; each output comes from one seed.
+/// Source: Jarzynski, Olano, "Hash Functions for GPU Rendering", 2020: one step of a congruential generator, permuted as O'Neill's PCG.
+/// Edges: none.
+/// Error model: exact: integers modulo 2^32.
 uint hash_pcg(uint seed) {
     uint state = seed * 747796405u + 2891336453u;
     uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -16,26 +32,56 @@ uint hash_pcg(uint seed) {
 }
 
 /// A seed for `hash_pcg` from a pixel.
+///
+/// Parameters: `pixel` framebuffer position, pixels, at least 0; fractions are dropped.
+/// Returns: a number of 32 bits.
+/// Source: the nested hash of Jarzynski, Olano, "Hash Functions for GPU Rendering", 2020.
+/// Edges: a negative position counts as 0.
+/// Error model: exact.
 uint pixel_seed(vec2 pixel) {
     return hash_pcg(uint(max(pixel.x, 0.0)) + hash_pcg(uint(max(pixel.y, 0.0))));
 }
 
 /// A number in [0, 1) from the upper 24 bits of a hash.
+///
+/// Parameters: `bits` a hash, as from `hash_pcg`.
+/// Returns: a multiple of 2^-24 in [0, 1).
+/// Source: a float holds 24 bits, so none of the values is rounded.
+/// Edges: never 1.
+/// Error model: exact.
 float unit_float(uint bits) {
     return float(bits >> 8u) * 5.9604645e-8;
 }
 
 /// The recipe's random number: the fraction of a large sine.
+///
+/// It differs from `hash_pcg` in that its value depends on the driver: no bound holds for the sine of a large number.
+///
+/// Parameters: `seed` pixel position and number of the sample.
+/// Returns: a number in [0, 1).
+/// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering.
+/// Edges: 0 for a zero seed.
+/// Error model: none: any value in [0, 1) conforms.
 float random_hpg(vec4 seed) {
     return fract(sin(dot(seed, vec4(12.9898, 78.233, 45.164, 94.673))) * 43758.5453);
 }
 
 /// A point of a spiral that fills the unit disk evenly.
+///
+/// Parameters: `i` number of the point, from 0 to `count - 1`; `count` how many points; `phi` turn of the whole spiral, radians.
+/// Returns: a point at distance `sqrt((i + 0.5)/count)` from the origin, below 1.
+/// Source: Vogel, "A Better Way to Construct the Sunflower Head", 1979: the golden angle, 2.399963 radians.
+/// Edges: a count below 1 counts as 1.
+/// Error model: absolute 2^-11 (sine and cosine, as WGSL promises them) + 1.5*2^-23*(2.4*i + |phi|); the angle is reduced to [-pi, pi], outside of which no bound holds.
 vec2 vogel_disk(int i, int count, float phi) {
     float turn = fract(float(i) * 0.38196601 + phi * 0.15915494);
     float angle = (turn - 0.5) * 6.2831853;
     float r = sqrt((float(i) + 0.5) / float(max(count, 1)));
     return vec2(-cos(angle), -sin(angle)) * r;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -10,13 +10,29 @@
 #include "../math/noise.glsl"
 #include "coord.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// One comparison with the map: 1 beyond its edge.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `uv` texture coordinates; `depth` reference, [0, 1].
+/// Returns: the lit share of the 2x2 texels around, [0, 1].
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.21, which smears the edge instead.
+/// Edges: 1 where uv is not in [0, 1].
+/// Error model: the sampler's two weights, of at least 8 bits each: absolute 2^-7.
 float compare_tap(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth) {
     float visible = textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(uv, depth), 0.0);
     return is_on_map(uv) ? visible : 1.0;
 }
 
 /// One comparison: a hard shadow, softened by the sampler over one texel.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map.
+/// Returns: visibility, [0, 1].
+/// Source: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.21.
+/// Edges: 1 where `at` is outside.
+/// Error model: that of `compare_tap`.
 float hard(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
     if (!at.inside) {
         return 1.0;
@@ -25,6 +41,12 @@ float hard(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
 }
 
 /// The mean of a square grid of comparisons, two texels apart.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `reach` comparisons on each side of the middle, at least 0.
+/// Returns: visibility, [0, 1].
+/// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering.
+/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit.
+/// Error model: that of `compare_tap` + absolute 2^-20 (sum and division).
 float pcf_grid(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int reach) {
     if (!at.inside) {
         return 1.0;
@@ -41,16 +63,34 @@ float pcf_grid(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int reach) {
 }
 
 /// Nine comparisons at -2, 0 and 2 texels in each direction, averaged.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map.
+/// Returns: visibility, [0, 1].
+/// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering: the step is two texels.
+/// Edges: as `pcf_grid`.
+/// Error model: that of `pcf_grid`.
 float pcf_3x3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
     return pcf_grid(LAMPLIGHT_DEPTH_ARG(map, smp), at, 1);
 }
 
 /// Twenty-five comparisons at -4, -2, 0, 2 and 4 texels in each direction, averaged.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map.
+/// Returns: visibility, [0, 1].
+/// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering: named by the recipe, without its code.
+/// Edges: as `pcf_grid`.
+/// Error model: that of `pcf_grid`.
 float pcf_5x5(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
     return pcf_grid(LAMPLIGHT_DEPTH_ARG(map, smp), at, 2);
 }
 
 /// A tent of 3x3 texels (weights 1, 2, 1) in four bilinear comparisons.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler, which must filter linearly; `at` place in the map.
+/// Returns: visibility, [0, 1].
+/// Source: Castaño, "Shadow Mapping Summary, Part 1", The Witness, 2013.
+/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit.
+/// Error model: that of `compare_tap` + absolute 2^-20; the offsets put up to 2^-8 more on each weight.
 float pcf_castano_3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
     if (!at.inside) {
         return 1.0;
@@ -72,6 +112,12 @@ float pcf_castano_3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
 }
 
 /// One row of `pcf_castano_5`: three bilinear comparisons.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `columns` the three u coordinates; `v` the row's; `weights` of the columns; `depth` reference, [0, 1].
+/// Returns: the weighted sum, [0, sum of the weights].
+/// Source: as `pcf_castano_5`.
+/// Edges: each comparison beyond the map's edge counts as lit.
+/// Error model: that of `compare_tap`, times the weights.
 float castano_row(LAMPLIGHT_DEPTH_MAP(map, smp), vec3 columns, float v, vec3 weights, float depth) {
     float left = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.x, v), depth);
     float middle = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.y, v), depth);
@@ -80,6 +126,12 @@ float castano_row(LAMPLIGHT_DEPTH_MAP(map, smp), vec3 columns, float v, vec3 wei
 }
 
 /// A bell of 5x5 texels (weights 1, 3, 4, 3, 1) in nine bilinear comparisons.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler, which must filter linearly; `at` place in the map.
+/// Returns: visibility, [0, 1].
+/// Source: Castaño, "Shadow Mapping Summary, Part 1", The Witness, 2013.
+/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit.
+/// Error model: that of `compare_tap` + absolute 2^-20; the offsets put up to 2^-8 more on each weight.
 float pcf_castano_5(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
     if (!at.inside) {
         return 1.0;
@@ -99,6 +151,12 @@ float pcf_castano_5(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
 }
 
 /// Sixteen comparisons at random places of a square around the point, averaged.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `radius` half the square's side, texels; `pixel` framebuffer position, which chooses the places.
+/// Returns: visibility, [0, 1].
+/// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering, with the square centred, measured after the division, and an integer hash.
+/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit.
+/// Error model: that of `compare_tap` + absolute 2^-20; the places are exact to 2^-23 of the radius.
 float pcf_random16(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, float radius, vec2 pixel) {
     if (!at.inside) {
         return 1.0;
@@ -117,6 +175,16 @@ float pcf_random16(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, float radius, vec
 }
 
 /// Sixteen comparisons at random places to one side of the point, as the recipe computes them.
+///
+/// It differs from `pcf_random16` in that the offsets are from 0 to 0.25, added before the division by w: shadows move
+/// by 0.125/w along both axes of the map, and the blur shrinks with distance. The offsets come from `random_hpg`, seeded with
+/// the pixel, its coordinates in the orders x, y, x and y, x, y, and the number of the comparison.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `sc` clip coordinates from `shadow_coord`; `min_w` as for `project`; `pixel` framebuffer position.
+/// Returns: visibility, [0, 1].
+/// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering.
+/// Edges: 1 where `project` finds the point outside; each comparison beyond the map's edge counts as lit.
+/// Error model: none for the places: `random_hpg` depends on the driver. The mean is in [0, 1].
 float pcf_random16_hpg(LAMPLIGHT_DEPTH_MAP(map, smp), vec4 sc, float min_w, vec2 pixel) {
     ShadowUv at = project(sc, min_w);
     if (!at.inside) {
@@ -132,6 +200,12 @@ float pcf_random16_hpg(LAMPLIGHT_DEPTH_MAP(map, smp), vec4 sc, float min_w, vec2
 }
 
 /// Comparisons on a spiral disk around the point, averaged.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `count` how many, at least 1; `radius` of the disk, texels; `phi` turn of the disk, radians: noise times 2*pi hides the pattern.
+/// Returns: visibility, [0, 1].
+/// Source: Vogel, "A Better Way to Construct the Sunflower Head", 1979, as the places of percentage closer filtering.
+/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit; a count below 1 counts as 1.
+/// Error model: that of `compare_tap` + absolute count*2^-24; the places have that of `vogel_disk` times the radius.
 float pcf_vogel(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int count, float radius, float phi) {
     if (!at.inside) {
         return 1.0;
@@ -146,6 +220,12 @@ float pcf_vogel(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int count, float rad
 }
 
 /// The mean depth of what is nearer to the light, on a disk around a place in the map.
+///
+/// Parameters: `depths`, `depths_smp` the depth map as a plain texture and a sampler that does not filter; `at` place in the map; `radius` of the disk, texels; `phi` turn of the disk, radians.
+/// Returns: the mean depth of the nearer ones among 16 samples, [0, 1]; `at.depth` where none is.
+/// Source: Fernando, "Percentage-Closer Soft Shadows", 2005: the blocker search.
+/// Edges: samples beyond the map's edge are those at it, where the sampler clamps.
+/// Error model: absolute 2^-20; a sample counts or not where it is closer to `at.depth` than their errors.
 float mean_blocker(LAMPLIGHT_COLOR_MAP(depths, depths_smp), ShadowUv at, float radius, float phi) {
     vec2 reach = radius / vec2(textureSize(LAMPLIGHT_COLOR_SAMPLER(depths, depths_smp), 0));
     float sum = 0.0;
@@ -160,6 +240,15 @@ float mean_blocker(LAMPLIGHT_COLOR_MAP(depths, depths_smp), ShadowUv at, float r
 }
 
 /// A shadow that is sharp near its caster and soft far from it.
+///
+/// The map is read in two ways, so it is bound twice: some targets cannot compare and read through one binding.
+/// The penumbra takes the map's depths as distances from the light: exact for a linear depth, a guess for a perspective one.
+///
+/// Parameters: `map`, `smp` depth map and comparison sampler; `depths`, `depths_smp` the same map as a plain texture, with a sampler that does not filter; `at` place in the map; `light_size` width of the light, texels of the map; `phi` turn of the disks, radians.
+/// Returns: visibility, [0, 1].
+/// Source: Fernando, "Percentage-Closer Soft Shadows", 2005: penumbra = (receiver - blocker)*light/blocker.
+/// Edges: 1 where `at` is outside and where nothing is nearer to the light; the penumbra is kept between 1 texel and `light_size`, which is at least 1.
+/// Error model: that of `pcf_vogel` for the penumbra's radius, which has that of `mean_blocker` times light_size/blocker^2.
 float pcss(
     LAMPLIGHT_DEPTH_MAP(map, smp),
     LAMPLIGHT_COLOR_MAP(depths, depths_smp),
@@ -180,9 +269,19 @@ float pcss(
 }
 
 /// One comparison with a cube map: the shadow of a point light.
+///
+/// Parameters: `cube`, `smp` depth cube map and comparison sampler; `offset` from the light to the point, in the cube's space, any length above 0; `depth` reference, [0, 1], in the measure the faces hold: `cube_depth` for perspective faces.
+/// Returns: visibility, [0, 1].
+/// Source: Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems, 2004, chapter 12; Igalia, "Working with lights and shadows", part II, whose faces must be 90 degrees wide, not 45.
+/// Edges: 1 for a reference outside [0, 1].
+/// Error model: that of `compare_tap`.
 float cube_compare(LAMPLIGHT_DEPTH_CUBE(cube, smp), vec3 offset, float depth) {
     float visible = textureGrad(LAMPLIGHT_CUBE_SAMPLER(cube, smp), vec4(offset, depth), vec3(0.0), vec3(0.0));
     return depth >= 0.0 && depth <= 1.0 ? visible : 1.0;
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

@@ -5,6 +5,10 @@
 
 #include "../math/safe.glsl"
 
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
 /// A point's place in a shadow map.
 struct ShadowUv {
     /// Texture coordinates, origin at the map's first texel; [0, 1] inside.
@@ -16,16 +20,36 @@ struct ShadowUv {
 };
 
 /// Whether texture coordinates are on the map.
+///
+/// Parameters: `uv` texture coordinates.
+/// Returns: true where both are in [0, 1].
+/// Source: stands in for a border colour, which not every target has.
+/// Edges: the map's edges are on it; NaN is not.
+/// Error model: exact.
 bool is_on_map(vec2 uv) {
     return uv.x >= 0.0 && uv.x <= 1.0 && uv.y >= 0.0 && uv.y <= 1.0;
 }
 
 /// A point in the light's clip space.
+///
+/// Parameters: `m` the light's projection times its view, for column vectors; `p_world` the point, world space, scene units.
+/// Returns: clip coordinates, before the division by w.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.20; its bias matrix is `project` here.
+/// Edges: none.
+/// Error model: absolute 4*2^-23*sum|m_ij*p_j| per component.
 vec4 shadow_coord(mat4 m, vec3 p_world) {
     return m * vec4(p_world, 1.0);
 }
 
 /// The place in the shadow map of a point in clip space, for depths in [0, 1] and rows from the top.
+///
+/// This is the convention of WebGPU, Vulkan after its flipped viewport, Metal and Direct3D.
+///
+/// Parameters: `sc` clip coordinates from `shadow_coord`; `min_w` smallest light-space depth that can be shadowed, scene units for a perspective light, at least 0.
+/// Returns: `uv = (0.5*x + 0.5, 0.5 - 0.5*y)` and `depth = z` after division by w; `inside` where uv and depth are in [0, 1] and `w > min_w`.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.19, for another clip space; the guard on w: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, shadow mapping (there 1, its near plane).
+/// Edges: outside, with uv and depth 0, where w is at or below `min_w` (0 at least): behind the light.
+/// Error model: absolute 4*2^-23*(|x/w| + 1), beside the error of `sc` divided by w.
 ShadowUv project(vec4 sc, float min_w) {
     if (!(sc.w > max(min_w, SMALLEST_NORMAL))) {
         return ShadowUv(vec2(0.0), 0.0, false);
@@ -36,25 +60,55 @@ ShadowUv project(vec4 sc, float min_w) {
 }
 
 /// The place in the shadow map of a point in OpenGL's clip space, depths from -1 to 1 and rows from the bottom.
+///
+/// Parameters: `sc` clip coordinates from `shadow_coord`, with OpenGL's projection; `min_w` as for `project`.
+/// Returns: `uv = 0.5*xy + 0.5` and `depth = 0.5*z + 0.5` after division by w; `inside` as for `project`.
+/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.16 and 7.19: the bias matrix.
+/// Edges: as `project`.
+/// Error model: that of `project`.
 ShadowUv project_gl(vec4 sc, float min_w) {
     return project(vec4(sc.x, -sc.y, 0.5 * (sc.z + sc.w), sc.w), min_w);
 }
 
 /// The distance along the view axis that a perspective depth stands for.
+///
+/// Parameters: `d` depth, [0, 1] from near to far; `near`, `far` plane distances, scene units, above 0. For reversed depth swap the planes.
+/// Returns: `near*far/(far - d*(far - near))`, scene units, between `near` and `far`.
+/// Source: the inverse of a perspective projection to [0, 1]; stands for the depth view of Igalia, "Working with lights and shadows", part II.
+/// Edges: a denominator at or below 0, beyond any far plane, counts as 2^-126.
+/// Error model: 6 ULP for d in [0, 1]; the depth's own error weighs far/near times as much near d = 1.
 float linearize_depth(float d, float near, float far) {
     // The weighted sum does not cancel near d = 1, as far - d*(far - near) does.
     return near * far / max(far * (1.0 - d) + near * d, SMALLEST_NORMAL);
 }
 
 /// The brightness Igalia's tutorial shows for a depth.
+///
+/// It differs from `linearize_depth` in that it is not linear in distance: it magnifies the last hundredth of the depths.
+///
+/// Parameters: `d` depth, [0, 1] from near to far.
+/// Returns: `1 - (1 - d)*100`: in [0, 1] for d in [0.99, 1], below 0 before.
+/// Source: Igalia, "Working with lights and shadows", part II: the shadow map.
+/// Edges: not clamped.
+/// Error model: absolute 2^-23*(1 + 100*|1 - d|).
 float depth_view_igl(float d) {
     return 1.0 - (1.0 - d) * 100.0;
 }
 
 /// The depth a perspective face of a cube map holds for an offset from the light.
+///
+/// Parameters: `offset` from the light to the point, in the cube's space, scene units; `near`, `far` plane distances of the faces, scene units, above 0.
+/// Returns: depth, [0, 1] from near to far, for faces of 90 degrees and depths in [0, 1].
+/// Source: Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems, 2004, chapter 12: the largest component is the distance along the face's axis.
+/// Edges: points nearer than `near` count as at `near`; equal planes give 0.
+/// Error model: absolute 6*2^-23*far/(far - near).
 float cube_depth(vec3 offset, float near, float far) {
     float z = max(max(max(abs(offset.x), abs(offset.y)), abs(offset.z)), max(near, SMALLEST_NORMAL));
     return far / max(far - near, SMALLEST_NORMAL) * ((z - near) / z);
 }
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
 
 #endif

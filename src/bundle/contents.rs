@@ -13,20 +13,25 @@ pub type Hash = [u8; 16];
 /// Everything of a bundle, by program.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Contents {
+    /// Programs by name.
     pub programs: BTreeMap<String, ProgramContents>,
 }
 
 /// One program: its axes, and its shaders by language and entry point.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ProgramContents {
+    /// In the order of the manifest.
     pub axes: Vec<Axis>,
+    /// Entry points by name, for each language that the program is written in.
     pub languages: BTreeMap<Language, BTreeMap<String, EntryContents>>,
 }
 
 /// One axis of a program, its values in the manifest's order.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Axis {
+    /// As keys name it.
     pub name: String,
+    /// As keys write them.
     pub values: Vec<String>,
     /// The value a key need not name.
     pub default: String,
@@ -53,6 +58,7 @@ pub struct EntryContents {
 /// One shader in all its targets.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unit {
+    /// What is bound, and what enters and leaves the stage.
     pub reflection: Arc<Reflection>,
     /// By name of the target, so that a bundle may have targets this build does not know.
     pub targets: BTreeMap<String, Artifact>,
@@ -61,9 +67,11 @@ pub struct Unit {
 /// One shader in one target.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Artifact {
+    /// The output: text, or the words of SPIR-V.
     pub bytes: Arc<[u8]>,
     /// Of the blob's file in the directory form.
     pub extension: String,
+    /// Names and numbers that this target has for what the reflection lists.
     pub native: Arc<Native>,
 }
 

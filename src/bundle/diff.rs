@@ -11,15 +11,20 @@ use super::{Contents, EntryContents, Language, Unit};
 pub struct Difference {
     /// Programs whose axes changed.
     pub axes: Vec<String>,
+    /// Permutations that changed, were added or removed.
     pub permutations: Vec<Change>,
 }
 
 /// One permutation of one entry point that differs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Change {
+    /// Name of the program.
     pub program: String,
+    /// Language of the source.
     pub language: Language,
+    /// Name of the entry point.
     pub entry: String,
+    /// Key of the permutation.
     pub key: String,
     /// `added`, `removed`, or `changed`.
     pub kind: &'static str,

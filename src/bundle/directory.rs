@@ -91,8 +91,11 @@ pub fn open(path: &Path) -> Result<Directory, Error> {
 /// A file of a directory bundle: what wrote it, and for which stage.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlobFile {
+    /// Name of the target.
     pub target: String,
+    /// Stage of the entry point.
     pub stage: Stage,
+    /// The file.
     pub path: PathBuf,
 }
 

@@ -13,13 +13,35 @@ pub enum Error {
     /// Something that is no bundle of ours is where one would be written.
     Foreign(Foreign),
     /// Bytes are not what was written: which part, and what is wrong with it.
-    Corrupt { part: String, reason: String },
+    Corrupt {
+        /// What of the bundle.
+        part: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The bundle was written in a format that this loader does not read.
-    Version { found: u32, known: u32 },
+    Version {
+        /// That of the bundle.
+        found: u32,
+        /// That of this loader.
+        known: u32,
+    },
     /// There is no program, entry point or target of that name; the names there are.
-    NotFound { what: &'static str, name: String, known: Vec<String> },
+    NotFound {
+        /// The kind of thing.
+        what: &'static str,
+        /// What was asked for.
+        name: String,
+        /// What there is instead.
+        known: Vec<String>,
+    },
     /// A key names an axis or a value that the program does not have.
-    BadKey { key: String, reason: String },
+    BadKey {
+        /// The key as it was given.
+        key: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The bundle has no such permutation.
     Miss(Box<Miss>),
     /// Two bundles to merge disagree.

@@ -18,6 +18,7 @@ const DYNAMIC: &str = "dynamic";
 /// A word of a key, without the blanks around it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Word<'k> {
+    /// Its characters.
     pub text: &'k str,
     /// Bytes of the key before it.
     pub start: usize,

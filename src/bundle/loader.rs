@@ -51,8 +51,11 @@ pub struct Shader<'a> {
 /// One permutation in one target.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
+    /// The output: text, or the words of SPIR-V.
     pub bytes: Vec<u8>,
+    /// What is bound, and what enters and leaves the stage.
     pub reflection: Arc<Reflection>,
+    /// Names and numbers that the target has for what the reflection lists.
     pub native: Arc<Native>,
     /// The values that the key chooses for overrides: pass each as [`Native::choices`] says.
     pub constants: Vec<Constant>,

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Language {
+    /// WESL, of which WGSL is a part.
     Wesl,
+    /// GLSL for Vulkan.
     Glsl,
 }
 
@@ -14,8 +16,11 @@ pub enum Language {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
+    /// Once for each vertex.
     Vertex,
+    /// Once for each fragment.
     Fragment,
+    /// Once for each invocation of a grid.
     Compute,
 }
 
@@ -23,16 +28,20 @@ pub enum Stage {
 /// strides are in bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Reflection {
+    /// Stage of the entry point.
     pub stage: Stage,
     /// Of compute shaders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub workgroup_size: Option<[u32; 3]>,
+    /// What the entry point takes: vertex attributes, or what the vertex stage gave.
     pub inputs: Vec<Varying>,
+    /// What it gives: to the fragment stage, or to the attachments.
     pub outputs: Vec<Varying>,
     /// Resources that are used, by group and binding.
     pub bindings: Vec<Binding>,
     /// Which textures are sampled with which samplers, sorted.
     pub pairs: Vec<Pair>,
+    /// Constants that the host may choose when it creates a pipeline.
     pub overrides: Vec<Override>,
 }
 
@@ -63,6 +72,7 @@ pub struct Varying {
     /// `@builtin`, by its WGSL name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub builtin: Option<String>,
+    /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
     /// `perspective`, `linear` or `flat`, between stages.
@@ -77,21 +87,32 @@ pub struct Varying {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
+    /// A buffer of constants.
     Uniform,
+    /// A storage buffer.
     Storage,
+    /// A texture that is sampled or loaded from.
     Texture,
+    /// A texture that is written to.
     StorageTexture,
+    /// A sampler that filters.
     Sampler,
+    /// A sampler that compares with a reference depth.
     ComparisonSampler,
 }
 
 /// A resource.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Binding {
+    /// Group in WGSL, descriptor set in Vulkan.
     pub group: u32,
+    /// Number within the group.
     pub binding: u32,
+    /// As the author calls it.
     pub name: String,
+    /// What is bound there.
     pub kind: Kind,
+    /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
     /// Of buffers; without the elements of a trailing array of unknown length.
@@ -108,11 +129,14 @@ pub struct Binding {
 /// A member of a struct in a buffer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Member {
+    /// As the author calls it.
     pub name: String,
+    /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
     /// From the start of the struct it is in.
     pub offset: u32,
+    /// Bytes of the member.
     pub size: u32,
     /// Between elements of an array.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -128,17 +152,22 @@ pub type Place = [u32; 2];
 /// A texture and the sampler it is sampled with.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Pair {
+    /// Where the texture is bound.
     pub texture: Place,
+    /// Where the sampler is bound.
     pub sampler: Place,
 }
 
 /// A constant that is chosen when the pipeline is made: [`Native::choices`] says how.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Override {
+    /// As the author calls it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
+    /// The number that the author gave it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u16>,
+    /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
     /// As a WGSL literal, where it is one.
@@ -179,8 +208,10 @@ pub struct Native {
 pub struct Choice {
     /// As in the reflection.
     pub name: String,
+    /// Number of the specialisation or function constant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u32>,
+    /// Name of the macro that chooses the value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub symbol: Option<String>,
 }
@@ -188,7 +219,9 @@ pub struct Choice {
 /// The place of one binding in a target.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Slot {
+    /// Group in WGSL, descriptor set in Vulkan.
     pub group: u32,
+    /// Number within the group.
     pub binding: u32,
     /// Register space or descriptor set, where the target has them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -206,7 +239,9 @@ pub struct Slot {
 pub struct Semantic {
     /// As in the reflection.
     pub location: u32,
+    /// Name of the semantic, such as `LOC`.
     pub name: String,
+    /// Its number.
     pub index: u32,
 }
 
@@ -218,6 +253,7 @@ pub struct SamplerHeap {
     pub name: String,
     /// Sampler register and register space of its first element.
     pub register: u32,
+    /// Space of the heap's registers.
     pub space: u32,
     /// Elements that the output declares.
     pub size: u32,
@@ -231,11 +267,15 @@ pub struct SamplerHeap {
 /// the heap it is.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct HeapSampler {
+    /// Group of the sampler in WGSL.
     pub group: u32,
+    /// Binding of the sampler in WGSL.
     pub binding: u32,
     /// Shader resource register (`t`) and register space of the buffer of numbers.
     pub buffer_register: u32,
+    /// Space of that buffer's register.
     pub buffer_space: u32,
+    /// Number of its element that holds the place in the heap.
     pub element: u32,
 }
 
@@ -251,9 +291,11 @@ pub struct BufferSizes {
 /// A texture and its sampler as one object.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Combined {
+    /// Where the texture is bound.
     pub texture: Place,
     /// `None` for a texture that is only loaded from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampler: Option<Place>,
+    /// Name of the one object that the target has for both.
     pub name: String,
 }

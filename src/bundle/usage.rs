@@ -24,6 +24,7 @@ const MOST_BYTES: u64 = 256 << 20;
 /// Keys by program, in canonical form.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Usage {
+    /// Keys that were asked for, by program.
     pub keys: BTreeMap<String, BTreeSet<String>>,
 }
 

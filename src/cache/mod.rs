@@ -54,19 +54,25 @@ pub struct Job<'a> {
     pub text: &'a str,
     /// The composition it stands for, whose places errors have.
     pub composed: &'a Composed,
+    /// Name of the entry point.
     pub entry: &'a str,
+    /// How the text was composed.
     pub options: &'a Options,
+    /// Targets that are asked for, in order.
     pub targets: &'a [Target],
 }
 
 /// What comes of a text: a unit, and what its author can mend.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Made {
+    /// The outputs.
     pub unit: Unit,
+    /// What was warned of when they were made.
     pub warnings: Diagnostics,
 }
 
 impl Cache {
+    /// A cache in storages that are asked one after the other.
     pub fn new(storages: Vec<Box<dyn Storage>>) -> Self {
         let counted = |storage| Counted { storage, failures: AtomicUsize::new(0) };
         Self { storages: storages.into_iter().map(counted).collect(), hits: AtomicUsize::new(0) }

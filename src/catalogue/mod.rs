@@ -8,6 +8,7 @@
 mod outline;
 pub mod pages;
 pub mod plot;
+pub mod prefix;
 pub mod preset;
 pub mod probe;
 pub(crate) mod reader;

@@ -144,7 +144,8 @@ fn glsl_name(line: &str) -> Option<(Kind, String)> {
     if let Some((_, name)) = line.strip_prefix("const ").and_then(|rest| rest.split_once(' ')) {
         return Some((Kind::Constant, identifier(name)));
     }
-    let (before, _) = line.split_once('(')?;
+    // A line that is moved in continues the list of parameters.
+    let (before, _) = line.split_once('(').filter(|_| !line.starts_with(' '))?;
     let (result, name) = before.rsplit_once(' ')?;
     let plain = |word: &str| {
         !word.is_empty()

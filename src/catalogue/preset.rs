@@ -26,7 +26,7 @@ use super::probe::Probe;
 use super::reader;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Manifest, Program, Quoted, key};
-use crate::scene::sets::SETS;
+use crate::scene::sets;
 use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
 
 /// One example.
@@ -40,7 +40,7 @@ pub struct Preset {
     pub program: String,
     /// Its permutation, canonical.
     pub key: String,
-    /// One of [`SETS`](crate::scene::sets::SETS).
+    /// One of [`sets::ALL`].
     pub scene: String,
     /// One of the light probes, where the example is about one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -166,7 +166,7 @@ struct Checker<'s> {
 
 impl Checker<'_> {
     fn preset(&mut self, name: String, entry: Entry) -> Preset {
-        self.known("scene", &entry.scene, SETS.iter().map(|(name, _, _)| *name));
+        self.known("scene", &entry.scene, sets::ALL.iter().map(|set| set.name));
         if let Some(probe) = &entry.probe {
             self.known("light probe", probe, self.probes.iter().map(|probe| probe.name.as_str()));
         }

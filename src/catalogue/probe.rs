@@ -80,6 +80,9 @@ const HEAD: &str = "\
 //! Made from `data/sh9_probes.toml` by `cargo xtask docs`: edit that file, not this one.
 ";
 
+/// What a module in GLSL has before its declarations and after them.
+const PREFIXED: &str = "#ifdef LAMPLIGHT_PREFIX\n#include \"../prefix.glsl\"\n#endif\n";
+
 /// The module `ambient::probes` in WESL.
 pub fn wesl(probes: &[Probe]) -> String {
     let mut text = HEAD.to_owned();
@@ -101,13 +104,13 @@ pub fn wesl(probes: &[Probe]) -> String {
 /// The same in GLSL.
 pub fn glsl(probes: &[Probe]) -> String {
     let mut text = format!(
-        "{HEAD}\n#ifndef LAMPLIGHT_AMBIENT_PROBES_GLSL\n#define LAMPLIGHT_AMBIENT_PROBES_GLSL\n"
+        "{HEAD}\n#ifndef LAMPLIGHT_AMBIENT_PROBES_GLSL\n#define LAMPLIGHT_AMBIENT_PROBES_GLSL\n\n{PREFIXED}"
     );
     for probe in probes {
         let _ = write!(
             text,
-            "\n/// {}\nvec3[9] probe_{}() {{\n    return vec3[9](\n",
-            summary(probe),
+            "\n{}vec3[9] probe_{}() {{\n    return vec3[9](\n",
+            doc(probe),
             probe.name
         );
         let rows: Vec<String> = probe
@@ -118,7 +121,7 @@ pub fn glsl(probes: &[Probe]) -> String {
         text.push_str(&rows.join(",\n"));
         text.push_str("\n    );\n}\n");
     }
-    text.push_str("\n#endif\n");
+    let _ = write!(text, "\n{PREFIXED}\n#endif\n");
     text
 }
 

@@ -14,7 +14,7 @@ use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
 use crate::execute::on_thread;
 use crate::output::{self, Replace};
-use crate::project;
+use crate::project::{self, LIBRARY};
 use crate::proof::check::{Open, Options, Report, failures, lacking, stricter, table};
 use crate::proof::library::Library;
 use crate::proof::ratchet::{FILE, Ratchet};
@@ -24,8 +24,8 @@ use crate::source::{Disk, SourceSet};
 /// Run numeric cases and compare with their references.
 #[derive(Args)]
 pub struct Arguments {
-    /// Modules of the library (`lighting::spot`, `lighting`), or case files and folders of your
-    /// own [default: the whole library].
+    /// Modules of the library (`lighting::spot`, `lighting`; `lamplight` for all of it), or case
+    /// files and folders of your own [default: the package here, else the whole library].
     path: Vec<String>,
     /// What runs the cases; may be given several times.
     #[arg(long, value_name = "E", default_value = "eval")]
@@ -154,8 +154,11 @@ fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
 }
 
 fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
+    let here =
+        project::package_above(Path::new("")).map(|root| root.to_string_lossy().into_owned());
+    let default: Vec<String> = here.into_iter().filter(|_| arguments.path.is_empty()).collect();
     let (own, of_library): (Vec<&String>, Vec<&String>) =
-        arguments.path.iter().partition(|path| Path::new(path).exists());
+        arguments.path.iter().chain(&default).partition(|path| Path::new(path).exists());
     let mut selections = Vec::new();
     if own.is_empty() || !of_library.is_empty() {
         let library = Library::embedded();
@@ -258,7 +261,9 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
         let stem = |file: &str| file.trim_end_matches(".toml").to_owned();
         let matching: Vec<String> = files
             .iter()
-            .filter(|file| stem(file) == wanted || file.starts_with(&format!("{wanted}/")))
+            .filter(|file| {
+                wanted == LIBRARY || stem(file) == wanted || file.starts_with(&format!("{wanted}/"))
+            })
             .cloned()
             .collect();
         if matching.is_empty() {

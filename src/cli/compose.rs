@@ -1,19 +1,24 @@
 //! `lamplight compose FILE`: the composed text.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
 use super::input::Input;
 use super::terminal::data;
+use crate::source::SourceSet;
 
 /// Print a root module with all it reaches as one text.
 #[derive(Args)]
 pub struct Arguments {
+    /// Path to the root module; `-` is standard input.
+    file: PathBuf,
     #[command(flatten)]
     input: Input,
 }
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let ready = arguments.input.compose(form)?;
+    let ready = arguments.input.compose(&arguments.file, SourceSet::default(), form)?;
     Ok(data(ready.composed.text.as_bytes())?)
 }

@@ -5,11 +5,10 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::compile::target;
+use super::compile::{Wanted, wanted, wanted_one};
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
 use super::work::{Places, Work};
-use crate::bundle::Target;
 use crate::generate::{Request, Shard};
 use crate::permute::Quoted;
 use crate::source::SourceSet;
@@ -26,8 +25,8 @@ pub struct Arguments {
     #[arg(long, value_name = "KEY")]
     only: Option<String>,
     /// Only these targets.
-    #[arg(long, value_name = "T,...", value_delimiter = ',', value_parser = target)]
-    target: Vec<Target>,
+    #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
+    target: Vec<Wanted>,
     /// Only the k-th of n parts, for `lamplight merge`.
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
@@ -62,7 +61,7 @@ fn request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
     Request {
         program: arguments.program.clone(),
         only,
-        targets: arguments.target.clone(),
+        targets: wanted(&arguments.target),
         shard: arguments.shard,
     }
 }

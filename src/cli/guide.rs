@@ -25,6 +25,7 @@ const PAGES: &[(&str, &str)] = &[
     ("render", "First shader in five minutes"),
     ("mutate", "Numeric cases"),
     ("export", "WESL without this tool"),
+    ("cost", "Cost on GPUs"),
     ("explain", "Troubleshooting by diagnostic"),
 ];
 

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::failure::{DiagnosticForm, Failure, warn};
-use crate::bundle::Language;
+use super::{features, stream};
+use crate::bundle::{Language, Stage};
 use crate::compose::{self, Composed, Keep, Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::permute::{Assignment, Program, Quoted, Setting, Settings, key};
@@ -13,29 +14,51 @@ use crate::project::{self, Project};
 use crate::resolve::{self, Graph};
 use crate::source::{SourceId, SourceSet, Span};
 
-/// A root module with its settings.
+/// How a root module is read and what is chosen of it.
 #[derive(Args)]
 pub struct Input {
-    /// Path to the root module.
-    pub file: PathBuf,
-    /// The package's root directory [default: from the nearest wesl.toml, else the file's folder].
+    /// The package's root directory [default: from the nearest wesl.toml or lamplight.toml, else
+    /// the file's folder].
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
     /// The source language [default: by the file's extension].
     #[arg(long, value_enum)]
     lang: Option<LanguageName>,
+    /// The stage of GLSL from standard input.
+    #[arg(long, value_enum)]
+    stage: Option<StageName>,
     /// Choose an axis's value.
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
     set: Vec<(String, Setting)>,
     /// Turn a feature on, or off with `=false`.
     #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = feature)]
     feature: Vec<(String, Setting)>,
+    #[command(flatten)]
+    features: features::Arguments,
     /// How imported items are named.
     #[arg(long, value_enum, default_value_t)]
     mangle: MangleName,
     /// Keep items that no entry point reaches.
     #[arg(long)]
     keep_all: bool,
+}
+
+/// [`Stage`] as an option's value.
+#[derive(Clone, Copy, ValueEnum)]
+enum StageName {
+    Vertex,
+    Fragment,
+    Compute,
+}
+
+impl From<StageName> for Stage {
+    fn from(name: StageName) -> Self {
+        match name {
+            StageName::Vertex => Self::Vertex,
+            StageName::Fragment => Self::Fragment,
+            StageName::Compute => Self::Compute,
+        }
+    }
 }
 
 /// [`Language`] as an option's value.
@@ -107,14 +130,16 @@ pub fn broken(
 
 /// A composed root module with what diagnostics need.
 pub struct Ready {
-    pub project: Project,
+    pub sources: SourceSet,
     pub composed: Composed,
     pub context: Context,
 }
 
-/// What an error of a composed text is told with.
+/// What a composed text was made of, and what its errors are told with.
 pub struct Context {
-    graph: Graph,
+    pub graph: Graph,
+    pub settings: Settings,
+    pub options: Options,
     permutation: Option<String>,
 }
 
@@ -148,32 +173,64 @@ struct Chosen {
 }
 
 impl Input {
-    /// Opens the package, chooses the settings and composes.
-    pub fn compose(&self, form: DiagnosticForm) -> Result<Ready, Failure> {
+    /// Opens the package of a root module, chooses the settings and composes.
+    pub fn compose(
+        &self,
+        file: &Path,
+        sources: SourceSet,
+        form: DiagnosticForm,
+    ) -> Result<Ready, Failure> {
         self.check_usage()?;
-        let language = self.language()?;
-        let root = self.root.clone().unwrap_or_else(|| project::root_of(&self.file));
-        let mut project = project::open(&root, SourceSet::default())
-            .map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
-        match self.compose_in(&mut project, &root, language) {
+        let language = self.language(file)?;
+        let root = self.root_of(file);
+        let opened = project::open(&root, sources);
+        let mut project =
+            opened.map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
+        let path = if stream::is_stream(file) {
+            let name = stream::name(language, self.stage.map(Stage::from));
+            let text = stream::read(file)?;
+            let below = project.packages.root.files;
+            project.packages.root.files =
+                Box::new(stream::Overlay { below, name: name.clone(), text });
+            Ok(name)
+        } else {
+            project::relative(file, &root)
+        };
+        let composed = path
+            .map_err(|diagnostic| vec![diagnostic])
+            .and_then(|path| self.compose_in(&mut project, &root, &path, language));
+        match composed {
             Ok((composed, context)) => {
                 warn(&project.sources, &composed.warnings, form);
-                Ok(Ready { project, composed, context })
+                Ok(Ready { sources: project.sources, composed, context })
             }
             Err(diagnostics) => Err(Failure::Input(project.sources, diagnostics)),
         }
+    }
+
+    /// The root that was asked for, or that the file belongs to; a stream is in the current folder.
+    fn root_of(&self, file: &Path) -> PathBuf {
+        let found = || {
+            if stream::is_stream(file) {
+                project::package_above(Path::new(".")).unwrap_or_else(|| PathBuf::from("."))
+            } else {
+                project::root_of(file)
+            }
+        };
+        self.root.clone().unwrap_or_else(found)
     }
 
     fn compose_in(
         &self,
         project: &mut Project,
         root: &Path,
+        path: &str,
         language: Language,
     ) -> Result<(Composed, Context), Diagnostics> {
-        let path = project::relative(&self.file, root).map_err(|diagnostic| vec![diagnostic])?;
-        let mut chosen = self.settings(project, root, &path)?;
-        let graph = resolve::load(&mut project.sources, &project.packages, &path, language)?;
-        let mut composed = compose::compose(&graph, &chosen.settings, &self.options())
+        let mut chosen = self.settings(project, root, path)?;
+        let graph = resolve::load(&mut project.sources, &project.packages, path, language)?;
+        let options = self.options();
+        let mut composed = compose::compose(&graph, &chosen.settings, &options)
             .map_err(|errors| of_permutation(errors, chosen.permutation.as_deref()))?;
         chosen.warnings.extend(self.unused(&graph, &chosen.axes));
         if chosen.declared {
@@ -181,24 +238,22 @@ impl Input {
         }
         chosen.warnings.append(&mut composed.warnings);
         composed.warnings = chosen.warnings;
-        Ok((composed, Context { graph, permutation: chosen.permutation }))
+        let Chosen { settings, permutation, .. } = chosen;
+        Ok((composed, Context { graph, settings, options, permutation }))
     }
 
     /// The language asked for, or else what the extension says.
-    pub fn language(&self) -> Result<Language, Failure> {
-        let extension = self
-            .file
-            .extension()
-            .map(|extension| extension.to_string_lossy().into_owned())
-            .unwrap_or_default();
-        match (self.lang, extension.as_str()) {
+    fn language(&self, file: &Path) -> Result<Language, Failure> {
+        let extension = file.extension().unwrap_or_default().to_string_lossy();
+        match (self.lang, &*extension) {
             (Some(name), _) => Ok(name.into()),
+            (None, _) if self.stage.is_some() => Ok(Language::Glsl),
             (None, "glsl" | "vert" | "frag" | "comp") => Ok(Language::Glsl),
             (None, "wesl" | "wgsl") => Ok(Language::Wesl),
-            (None, _) if self.file.is_dir() => Ok(Language::Wesl),
+            (None, _) if file.is_dir() => Ok(Language::Wesl),
             (None, _) => Err(Failure::usage(format!(
                 "the name of `{}` does not tell its language: add `--lang`",
-                self.file.display()
+                file.display()
             ))),
         }
     }
@@ -254,7 +309,11 @@ impl Input {
     }
 
     fn free(&self) -> Chosen {
-        let settings = Settings { values: self.chosen().cloned().collect(), ..Settings::default() };
+        let settings = Settings {
+            values: self.chosen().cloned().collect(),
+            undeclared: self.features.undeclared(None),
+            ..Settings::default()
+        };
         let parts: Vec<String> =
             settings.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
         let permutation =
@@ -283,6 +342,7 @@ impl Input {
             .into_iter()
             .map(|error| Diagnostic { severity: Severity::Warning, ..error });
         let mut settings = program.space.settings(&point);
+        settings.undeclared = self.features.undeclared(settings.undeclared);
         settings.values.extend(self.feature.iter().filter(|(name, _)| !is_axis(name)).cloned());
         let permutation = Some(format!(
             "in permutation `{}` of program `{}`",

@@ -17,7 +17,8 @@ use crate::source::SourceSet;
 /// Write typed keys for Rust, C or TypeScript, or the lock file of dense keys.
 #[derive(Args)]
 pub struct Arguments {
-    /// The manifest [default: that of the library].
+    /// The manifest [default: `lamplight.toml` here or in the nearest folder above, else that of
+    /// the library].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
     /// The language of the keys.
@@ -27,7 +28,7 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE", requires = "lang")]
     out: Option<PathBuf>,
     /// Write the lock file beside the manifest: axes and values that it lacks are appended.
-    #[arg(long, requires = "manifest")]
+    #[arg(long)]
     lock: bool,
     /// Write nothing; exit code 3 if a file is not up to date.
     #[arg(long)]
@@ -42,9 +43,13 @@ fn language(name: &str) -> Result<&'static Language, String> {
 }
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let (mut sources, manifest) = open(arguments.manifest.as_deref())?;
+    let named = arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
+    if arguments.lock && named.is_none() {
+        return Err(Failure::usage("`--lock` needs a manifest: add `--manifest FILE`"));
+    }
+    let (mut sources, manifest) = open(named.as_deref())?;
     warn(&sources, &manifest.warnings, form);
-    if let Some(path) = arguments.manifest.as_deref().filter(|_| arguments.lock) {
+    if let Some(path) = named.as_deref().filter(|_| arguments.lock) {
         let lock = match project::lock(path, &mut sources) {
             Ok(lock) => extended(&lock, &manifest),
             Err(diagnostics) => return Err(Failure::Input(sources, diagnostics)),

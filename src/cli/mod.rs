@@ -8,11 +8,13 @@ mod catalogue;
 mod check;
 mod compile;
 mod compose;
+mod cost;
 mod eval;
 mod executor;
 mod explain;
 mod export;
 mod failure;
+mod features;
 mod generate;
 mod guide;
 mod input;
@@ -25,6 +27,7 @@ mod partial;
 mod progress;
 mod render;
 mod show;
+mod stream;
 mod terminal;
 mod text;
 mod variants;
@@ -66,6 +69,7 @@ enum Command {
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
     Render(render::Arguments),
+    Cost(cost::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
     Export(export::Arguments),
@@ -83,6 +87,15 @@ impl Command {
         };
         names.iter().filter_map(|name| executors::find(name)).collect()
     }
+
+    /// The GPUs that it asks for, opened while there is one thread.
+    fn gpus(&self) -> cost::Opened {
+        match self {
+            Self::Cost(arguments) => arguments.gpus.open(),
+            Self::Variants(arguments) if arguments.cost => arguments.gpus.open(),
+            _ => Ok(Vec::new()),
+        }
+    }
 }
 
 /// Runs the command line of this process.
@@ -91,7 +104,8 @@ pub fn main() -> ExitCode {
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(wrong_usage);
     // While there is one thread.
     executors::prepare(&cli.command.executors());
-    match dispatch(cli.command, cli.diagnostics) {
+    let gpus = cli.command.gpus();
+    match dispatch(cli.command, gpus, cli.diagnostics) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(cli.diagnostics),
     }
@@ -106,7 +120,11 @@ fn wrong_usage<T>(error: clap::Error) -> T {
     std::process::exit(error.exit_code())
 }
 
-fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failure> {
+fn dispatch(
+    command: Command,
+    gpus: cost::Opened,
+    form: failure::DiagnosticForm,
+) -> Result<(), Failure> {
     match command {
         Command::List(arguments) => list::run(arguments),
         Command::Show(arguments) => show::run(arguments),
@@ -114,7 +132,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Compile(arguments) => compile::run(arguments, form),
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Merge(arguments) => merge::run(arguments),
-        Command::Variants(arguments) => variants::run(arguments, form),
+        Command::Variants(arguments) => variants::run(arguments, gpus, form),
         Command::Watch(arguments) => watch::run(arguments, form),
         Command::Bundle(arguments) => bundle::run(arguments),
         Command::Keys(arguments) => keys::run(arguments, form),
@@ -122,6 +140,7 @@ fn dispatch(command: Command, form: failure::DiagnosticForm) -> Result<(), Failu
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
         Command::Render(arguments) => render::run(arguments, form),
+        Command::Cost(arguments) => cost::run(arguments, gpus),
         Command::Mutate(arguments) => mutate::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),

@@ -5,9 +5,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use serde::Serialize;
+
+use super::cost;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::progress::Bar;
 use super::terminal::stdout;
+use crate::cost::permutations::Change;
 use crate::diagnostic::{Diagnostics, nearest};
 use crate::generate::{self, Discard, Request, Tools};
 use crate::permute::axis::Mode;
@@ -20,13 +24,14 @@ use crate::source::SourceSet;
 /// Report how many permutations a manifest has, and what each axis costs.
 #[derive(Args)]
 pub struct Arguments {
-    /// The manifest [default: that of the library].
+    /// The manifest [default: `lamplight.toml` here or in the nearest folder above, else that of
+    /// the library].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
     /// As JSON.
     #[arg(long)]
     json: bool,
-    /// Also list every key of this program.
+    /// List every key of this program instead.
     #[arg(long, value_name = "PROGRAM")]
     keys: Option<String>,
     /// Compose every permutation: count the distinct texts, and say which axes each stage sees.
@@ -35,17 +40,28 @@ pub struct Arguments {
     /// Compile them too, and count the distinct outputs.
     #[arg(long)]
     compile: bool,
+    /// Compile every permutation for GPUs, and tell what each value of an axis adds to a stage.
+    #[arg(long)]
+    pub cost: bool,
+    #[command(flatten)]
+    pub gpus: cost::Gpus,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run(
+    arguments: Arguments,
+    opened: cost::Opened,
+    form: DiagnosticForm,
+) -> Result<(), Failure> {
     let mut sources = SourceSet::default();
-    let opened = open(arguments.manifest.as_deref(), &mut sources);
+    let manifest = arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
+    let read = open(manifest.as_deref(), &mut sources);
     let (manifest, packages) =
-        opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+        read.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
     warn(&sources, &manifest.warnings, form);
     if let Some(name) = &arguments.keys {
-        return keys(&manifest, name);
+        return keys(&manifest, name, arguments.json);
     }
+    let devices = opened.map_err(Failure::environment)?;
     let reports = manifest.programs.iter().map(|program| {
         let mut report = report(&program.name, &program.space);
         if program.glsl.is_some() {
@@ -59,17 +75,44 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
             bar.clear();
             composed.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
         }
-        Ok(report)
+        let changes = match devices.as_slice() {
+            [] => Vec::new(),
+            devices => cost::changes(&mut sources, &packages, &manifest, &program.name, devices)?,
+        };
+        Ok(Told { report, changes })
     });
-    let reports = reports.collect::<Result<Vec<Report>, Failure>>()?;
+    let reports = reports.collect::<Result<Vec<Told>, Failure>>()?;
     if arguments.json {
         return Ok(writeln!(stdout(), "{:#}", serde_json::json!(reports))?);
     }
-    let texts: Vec<String> = reports.iter().map(ToString::to_string).collect();
+    let texts: Vec<String> = reports.iter().map(Told::text).collect();
     Ok(stdout().write_all(texts.join("\n").as_bytes())?)
 }
 
-fn open(path: Option<&Path>, sources: &mut SourceSet) -> Result<(Manifest, Packages), Diagnostics> {
+/// The report of one program.
+#[derive(Serialize)]
+struct Told {
+    #[serde(flatten)]
+    report: Report,
+    /// What values of axes change on GPUs, where that was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    changes: Vec<Change>,
+}
+
+impl Told {
+    fn text(&self) -> String {
+        match self.changes.as_slice() {
+            [] => self.report.to_string(),
+            changes => format!("{}\n{}", self.report, cost::changes_table(changes)),
+        }
+    }
+}
+
+/// The manifest of a path, or the library's, with its packages.
+pub fn open(
+    path: Option<&Path>,
+    sources: &mut SourceSet,
+) -> Result<(Manifest, Packages), Diagnostics> {
     match path {
         Some(path) => project::declared(path, sources),
         None => {
@@ -114,16 +157,22 @@ fn compose(
     Ok(())
 }
 
-fn keys(manifest: &Manifest, name: &str) -> Result<(), Failure> {
+fn keys(manifest: &Manifest, name: &str, json: bool) -> Result<(), Failure> {
     let program = manifest.program(name).ok_or_else(|| {
         let known = manifest.programs.iter().map(|program| program.name.as_str());
         let hint =
             nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         Failure::input(format!("the manifest declares no program `{name}`{hint}"))
     })?;
+    let points = program.space.enumerate();
+    let keys = points.iter().map(|point| program.space.key(point).to_string());
     let mut out = std::io::BufWriter::new(stdout());
-    for point in program.space.enumerate() {
-        writeln!(out, "{}", program.space.key(&point))?;
+    if json {
+        writeln!(out, "{:#}", serde_json::json!(keys.collect::<Vec<_>>()))?;
+    } else {
+        for key in keys {
+            writeln!(out, "{key}")?;
+        }
     }
     Ok(out.flush()?)
 }

@@ -42,9 +42,10 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
                 }
             }
             Err(failure) => {
-                let before = text(&arguments.places.manifest);
+                let manifest = arguments.places.manifest();
+                let before = text(&manifest);
                 told(Err(failure), form)?;
-                while text(&arguments.places.manifest) == before {
+                while text(&manifest) == before {
                     sleep(PAUSE);
                 }
             }

@@ -25,9 +25,9 @@ use crate::store;
 /// Where things are.
 #[derive(Args)]
 pub struct Places {
-    /// The manifest.
-    #[arg(long, value_name = "FILE", default_value = project::MANIFEST)]
-    pub manifest: PathBuf,
+    /// The manifest [default: `lamplight.toml` here or in the nearest folder above].
+    #[arg(long, value_name = "FILE")]
+    manifest: Option<PathBuf>,
     /// Folder of the bundle, or a single file that ends in `.lamplight`.
     #[arg(short, long, value_name = "DIR", default_value = "bundle")]
     pub out: PathBuf,
@@ -43,6 +43,14 @@ pub struct Places {
     store: Option<String>,
     #[command(flatten)]
     overwrite: Overwrite,
+}
+
+impl Places {
+    /// The manifest that was named, or else the nearest.
+    pub fn manifest(&self) -> PathBuf {
+        let named = self.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
+        named.unwrap_or_else(|| PathBuf::from(project::MANIFEST))
+    }
 }
 
 /// Everything a run needs, read and ready.
@@ -63,7 +71,8 @@ pub struct Work {
 impl Work {
     pub fn open(places: &Places) -> Result<Self, Failure> {
         let mut sources = SourceSet::default();
-        let opened = project::declared(&places.manifest, &mut sources);
+        let path = places.manifest();
+        let opened = project::declared(&path, &mut sources);
         let (manifest, packages) =
             opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
         let recorder = Recorder::default();
@@ -71,11 +80,11 @@ impl Work {
             declared: sources.clone(),
             sources,
             out: places.out.clone(),
-            path: places.manifest.clone(),
             packages: recorder.observe(packages),
             manifest,
             recorder,
-            cache: cache(places)?,
+            cache: cache(places, &path)?,
+            path,
             replace: places.overwrite.replace(),
         })
     }
@@ -189,11 +198,11 @@ impl Work {
     }
 }
 
-fn cache(places: &Places) -> Result<Option<Cache>, Failure> {
+fn cache(places: &Places, manifest: &Path) -> Result<Option<Cache>, Failure> {
     if places.no_cache {
         return Ok(None);
     }
-    let folder = places.cache.clone().or_else(|| project::cache_folder(&places.manifest));
+    let folder = places.cache.clone().or_else(|| project::cache_folder(manifest));
     let mut storages: Vec<Box<dyn Storage>> = Vec::new();
     if let Some(folder) = folder {
         storages.push(Box::new(Folder::new(folder)?));

@@ -41,17 +41,22 @@ pub enum Keep {
 /// How to compose.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Hash)]
 pub struct Options {
+    /// Names of imported items.
     pub mangle: Mangle,
+    /// What is written.
     pub keep: Keep,
 }
 
 /// A composed text and where each part of it came from.
 #[derive(Debug, Clone)]
 pub struct Composed {
+    /// The language of the text.
     pub language: Language,
     /// Stage of the text as a whole: always known for GLSL, `None` for WESL.
     pub stage: Option<Stage>,
+    /// The text itself.
     pub text: String,
+    /// Leads from the text back to the authors' files.
     pub map: SourceMap,
     /// The declarations of the text, in its order. Beside them it has only comments and blanks.
     pub parts: Vec<Part>,
@@ -86,6 +91,7 @@ impl Composed {
 pub struct Decision {
     /// The directive's line.
     pub span: Span,
+    /// What the condition gave.
     pub holds: bool,
     /// `#elif`: an earlier branch was not taken.
     pub later: bool,

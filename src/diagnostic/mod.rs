@@ -1,7 +1,8 @@
 //! The one error type: what is wrong, where in the author's text, and what to do about it.
 //!
-//! Adding a diagnostic is adding a Markdown file to `codes/`: its name is the code, its first
-//! line the title, the rest what `lamplight explain` prints.
+//! Adding a diagnostic is adding a Markdown file to `codes/`. Its name is the code, its first line
+//! the title. `Page: NAME` names the page of the guide that explains it. The rest is what
+//! `lamplight explain` prints.
 
 mod excerpt;
 pub mod guide;
@@ -22,6 +23,8 @@ pub struct Code {
     pub title: &'static str,
     /// Markdown paragraphs: when it happens, an example, how to mend it.
     pub explanation: &'static str,
+    /// Name of the page of the guide that explains it, without its extension.
+    pub page: &'static str,
 }
 
 /// Every code, one constant for each file of `codes/`.
@@ -38,14 +41,18 @@ pub mod codes {
 /// How much a diagnostic weighs. Only errors fail a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
+    /// The run fails.
     Error,
+    /// The run goes on.
     Warning,
 }
 
 /// A span with a few words. The first label of a diagnostic is its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
+    /// The place in the author's text.
     pub span: Span,
+    /// A few words at the place.
     pub message: String,
 }
 
@@ -53,10 +60,15 @@ pub struct Label {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[must_use]
 pub struct Diagnostic {
+    /// Whether it fails the run.
     pub severity: Severity,
+    /// What kind it is, with an explanation.
     pub code: &'static Code,
+    /// One line.
     pub message: String,
+    /// Places, the main one first.
     pub labels: Vec<Label>,
+    /// Lines under the excerpt.
     pub notes: Vec<String>,
     /// The item that it is about, where that was asked for by name and not in a text: whoever asked
     /// knows the place.

@@ -35,6 +35,7 @@ use crate::validate::{Validated, guard, on_large_stack};
 /// An output language.
 #[derive(Debug)]
 pub struct Entry {
+    /// Its name.
     pub target: Target,
     /// Of files, without the dot.
     pub extension: &'static str,
@@ -59,9 +60,13 @@ pub mod targets {
 
 /// What a target writes from.
 pub struct Source<'a> {
+    /// A valid module without overrides.
     pub module: &'a naga::Module,
+    /// What naga's validator found out about the module.
     pub info: &'a naga::valid::ModuleInfo,
+    /// Stage of the entry point.
     pub stage: ShaderStage,
+    /// Name of the entry point.
     pub entry: &'a str,
     /// Index of the entry point in the module.
     pub index: usize,
@@ -70,6 +75,7 @@ pub struct Source<'a> {
 /// One shader in one output language.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Emitted {
+    /// The output: text, or the words of SPIR-V.
     pub bytes: Vec<u8>,
     /// Its entry point's name, slots and combined samplers.
     pub native: Native,

@@ -68,11 +68,17 @@ pub enum Ternary {
 /// Comparisons of floats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compare {
+    /// `reference == stored`
     Equal,
+    /// `reference != stored`
     NotEqual,
+    /// `reference < stored`
     Less,
+    /// `reference <= stored`
     LessEqual,
+    /// `reference > stored`
     Greater,
+    /// `reference >= stored`
     GreaterEqual,
 }
 

@@ -7,8 +7,11 @@ use naga::Span;
 #[derive(Debug, Clone, PartialEq)]
 #[must_use]
 pub struct Error {
+    /// What kind of error it is.
     pub code: &'static Code,
+    /// One line.
     pub message: String,
+    /// The place in the text that naga parsed.
     pub span: Span,
 }
 
@@ -66,7 +69,10 @@ pub enum Kind {
 /// Something noticed, where and how often.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
+    /// What was computed.
     pub kind: Kind,
+    /// The place in the text that naga parsed.
     pub span: Span,
+    /// How often.
     pub count: u64,
 }

@@ -9,9 +9,13 @@ pub const MAX_SLOTS: u32 = crate::limits::EVAL_SLOTS;
 /// What one slot of an argument or result holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
+    /// A number with a fraction.
     Float,
+    /// An integer with a sign.
     Sint,
+    /// An integer without a sign.
     Uint,
+    /// True or false.
     Bool,
     /// Address of a slot.
     Pointer,

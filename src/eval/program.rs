@@ -40,6 +40,7 @@ impl From<Handle<naga::Function>> for FunctionId {
 /// A function as the caller sees it.
 #[derive(Debug, Clone)]
 pub struct Function {
+    /// As in the module.
     pub name: String,
     /// Kinds of the flattened arguments; for a pointer, those of what it points to.
     pub arguments: Vec<Kind>,
@@ -47,6 +48,7 @@ pub struct Function {
     pub result: Vec<Kind>,
     /// For entry points: the built-in or location each argument and each result slot belongs to.
     pub inputs: Vec<Option<naga::Binding>>,
+    /// The same for each slot of the result.
     pub outputs: Vec<Option<naga::Binding>>,
     /// Slots of the returned value alone.
     pub(super) returned: u32,
@@ -71,7 +73,9 @@ pub(super) struct Parameter {
 /// A block of statements that coverage counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
+    /// The function that it is in.
     pub function: FunctionId,
+    /// Which block of a statement begins there.
     pub branch: Branch,
     /// All statements that run if the block is reached.
     pub span: Span,
@@ -80,11 +84,17 @@ pub struct Point {
 /// How a block is reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Branch {
+    /// The body of the function.
     Entry,
+    /// What an `if` does where its condition holds.
     Accept,
+    /// What it does elsewhere.
     Reject,
+    /// A case of a `switch`.
     Case,
+    /// The body of a loop.
     Body,
+    /// The `continuing` block of a loop.
     Continuing,
     /// Statements behind a branch that may have left.
     After,

@@ -8,15 +8,20 @@ use std::collections::BTreeMap;
 pub struct Resources {
     /// Uniform and storage buffers as bytes, laid out as the shader declares.
     pub buffers: BTreeMap<(u32, u32), Vec<u8>>,
+    /// Textures by group and binding.
     pub textures: BTreeMap<(u32, u32), Texture>,
+    /// Samplers by group and binding.
     pub samplers: BTreeMap<(u32, u32), Sampler>,
 }
 
 /// How a texture is addressed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
+    /// A row.
     D1,
+    /// A rectangle.
     D2,
+    /// A box.
     D3,
     /// Six layers make one cube: +x, -x, +y, -y, +z, -z.
     Cube,
@@ -25,6 +30,7 @@ pub enum Shape {
 /// A texture. Depth is in the first component.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
+    /// How its texels are arranged.
     pub shape: Shape,
     /// The largest level first.
     pub levels: Vec<Level>,
@@ -33,27 +39,35 @@ pub struct Texture {
 /// One level of a texture: texels row by row, layer by layer (or slice by slice).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
+    /// Texels in a row.
     pub width: u32,
+    /// Rows.
     pub height: u32,
     /// Layers of an array, faces of cubes, slices of a 3D texture.
     pub layers: u32,
+    /// Row by row, layer by layer.
     pub texels: Vec<[f64; 4]>,
 }
 
 /// How coordinates outside of a texture are answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Address {
+    /// The texel at the edge.
     #[default]
     Clamp,
+    /// The image again.
     Repeat,
+    /// The image again, mirrored each second time.
     Mirror,
 }
 
 /// Between texels and between levels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Filter {
+    /// The one texel that is nearest.
     #[default]
     Nearest,
+    /// The mean of the texels around, weighted by distance.
     Linear,
 }
 
@@ -62,11 +76,15 @@ pub enum Filter {
 pub struct Sampler {
     /// For u, v and w.
     pub address: [Address; 3],
+    /// Where a texel covers more than a fragment.
     pub mag: Filter,
+    /// Where a fragment covers more than a texel.
     pub min: Filter,
+    /// Between two levels.
     pub mipmap: Filter,
     /// Least and greatest level; `(0, 0)` keeps the first.
     pub levels: (f64, f64),
+    /// How a reference is compared with what is stored, in a sampler that compares.
     pub compare: Option<Compare>,
 }
 

@@ -16,6 +16,7 @@ use crate::emit::{self, Emitted};
 use crate::eval::{Sampler, Shape, Texture};
 use crate::metal::request::{Bound, Format, Fragment, Image, ImageLevel};
 use crate::metal::{Missing, Program, version};
+use crate::validate::on_large_stack;
 
 /// A session: programs, each of many kernels.
 pub struct Metal {
@@ -50,10 +51,9 @@ impl Metal {
         if new.is_empty() {
             return;
         }
-        let outputs: Vec<Result<(String, Native), Diagnostic>> = new
-            .par_iter()
-            .map(|kernel| emitted::emit(kernel, Target::MSL).and_then(text))
-            .collect();
+        let emit = |kernel: &&Kernel| emitted::emit(kernel, Target::MSL).and_then(text);
+        let outputs: Vec<Result<(String, Native), Diagnostic>> =
+            on_large_stack(|| new.par_iter().map(emit).collect());
         let texts: Vec<&str> = outputs.iter().flatten().map(|(text, _)| text.as_str()).collect();
         let program = Program::build(&texts).map_err(|missing| failed(missing.reason));
         let (index, mut next) = (self.programs.len(), 0);

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::shader;
 use crate::bundle::Language;
-use crate::compose::{self, Keep, Options};
+use crate::compose::{self, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::manifest::File;
 use crate::permute::{Assignment, Program};
@@ -56,10 +57,7 @@ pub fn entries(
             return Err(of_permutation(vec![error], program, point));
         }
         for found in points {
-            let keep = match language {
-                Language::Wesl => Keep::Items(vec![found.name.clone()]),
-                Language::Glsl => Keep::EntryPoints,
-            };
+            let keep = shader::kept(&graph, &Options::default(), &found.name);
             let options = Options { keep, ..Options::default() };
             let label = label(&entries, language, &found);
             let (program, graph) = (program.name.clone(), graph.clone());

@@ -10,12 +10,14 @@
 mod compile;
 mod entry;
 mod lint;
+mod shader;
 mod shard;
 mod sink;
 mod summary;
 mod trace;
 mod weave;
 
+pub use shader::{Root, Shader};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
 pub use summary::{EntrySummary, ProgramSummary, Summary, WholeSummary};
@@ -60,6 +62,7 @@ pub struct Tools<'a> {
     pub sink: &'a dyn Sink,
     /// Where results are kept between runs, and looked up.
     pub cache: Option<&'a Cache>,
+    /// Told how far the run is.
     pub progress: &'a (dyn Fn(Progress) + Sync),
 }
 
@@ -70,6 +73,7 @@ pub struct Progress {
     pub stage: String,
     /// Permutations done, of how many.
     pub done: usize,
+    /// Permutations of that entry point.
     pub total: usize,
 }
 
@@ -78,7 +82,9 @@ pub struct Progress {
 pub struct Generated {
     /// Keys refer to units that the sink has: the entry points themselves have none.
     pub contents: Contents,
+    /// Counts and times.
     pub summary: Summary,
+    /// What the author should know.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -98,7 +104,7 @@ pub fn generate(
     let mut generated = Generated {
         contents: Contents::default(),
         summary: Summary::default(),
-        warnings: Vec::new(),
+        warnings: manifest.warnings.clone(),
     };
     let mut outputs = Outputs::default();
     let mut lints = Lints::default();
@@ -123,8 +129,9 @@ pub fn generate(
         let woven = on_large_stack(|| {
             weave::weave(&entries, &program.space, points, &make, tools.progress)
         })?;
-        // One permutation says nothing about the others, and a part of them not enough.
-        if request.only.is_none() && request.shard.is_none() {
+        // One permutation says nothing about the others, a part of them not enough, and none at all
+        // has been told of.
+        if request.only.is_none() && request.shard.is_none() && !points.is_empty() {
             lints.see(sources, program, &entries, points);
             lints.see_woven(sources, program, &entries, &woven);
         }

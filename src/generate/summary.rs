@@ -12,7 +12,9 @@ use crate::link::Reason;
 /// How much there was to do, how much was done, and what came out.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Summary {
+    /// In the order of the manifest.
     pub programs: Vec<ProgramSummary>,
+    /// By name.
     pub targets: Vec<TargetSummary>,
     /// Texts whose results came from the cache; all others were compiled.
     pub cached: usize,
@@ -21,21 +23,27 @@ pub struct Summary {
     pub whole: Vec<WholeSummary>,
     /// Whether nothing was done, since neither the inputs nor the bundle changed since they were made.
     pub up_to_date: bool,
+    /// Time of the whole run.
     pub seconds: f64,
 }
 
 /// One program.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ProgramSummary {
+    /// Name of the program.
     pub name: String,
+    /// Permutations that were asked for.
     pub permutations: usize,
+    /// Its entry points.
     pub entries: Vec<EntrySummary>,
 }
 
 /// One entry point of one language.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct EntrySummary {
+    /// Name of the entry point.
     pub entry: String,
+    /// Language of its source.
     pub language: Language,
     /// Compositions made, of all permutations.
     pub compositions: usize,
@@ -48,11 +56,17 @@ pub struct EntrySummary {
 /// Texts of one entry point that a target compiled as a whole for one reason.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct WholeSummary {
+    /// Name of the program.
     pub program: String,
+    /// Name of the entry point.
     pub entry: String,
+    /// Language of its source.
     pub language: Language,
+    /// Name of the target.
     pub target: String,
+    /// Why naga compiled the text as a whole.
     pub reason: Reason,
+    /// How many texts had that reason.
     pub texts: usize,
     /// The key of the first permutation with such a text.
     pub example: String,

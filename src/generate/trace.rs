@@ -62,7 +62,9 @@ pub struct Trace {
     reads: Vec<(String, String, String)>,
     /// Of the bundle that was written.
     output: String,
+    /// The summary of the run that made the bundle.
     pub summary: Summary,
+    /// What that run said.
     pub told: Told,
 }
 
@@ -78,6 +80,7 @@ pub struct Told {
 const FORMS: [Form; 3] = [Form::Human, Form::Short, Form::Json];
 
 impl Told {
+    /// The warnings of a run, as each form writes them.
     pub fn new(manifest: &Path, sources: &SourceSet, warnings: &[Diagnostic]) -> Self {
         let texts = FORMS.map(|form| {
             if warnings.is_empty() { String::new() } else { render(sources, warnings, form) }
@@ -103,10 +106,13 @@ impl Told {
 /// A run that may already have been made.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
+    /// The manifest's file.
     pub manifest: &'a Path,
     /// What was read before the packages were: the manifest and what declares them.
     pub declared: &'a SourceSet,
+    /// What of the manifest is asked for.
     pub request: &'a Request,
+    /// Where its files come from.
     pub packages: &'a Packages,
     /// The bundle.
     pub out: &'a Path,
@@ -197,6 +203,10 @@ impl Files for Observed {
 
     fn display(&self, path: &str) -> String {
         self.files.display(path)
+    }
+
+    fn on_disk(&self, path: &str) -> bool {
+        self.files.on_disk(path)
     }
 }
 

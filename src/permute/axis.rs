@@ -10,8 +10,11 @@ pub const MAX: usize = crate::limits::AXES;
 /// What the values of an axis are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
+    /// False or true.
     Bool,
+    /// Integers.
     Int,
+    /// Names.
     Enum,
 }
 
@@ -62,12 +65,15 @@ impl Mode {
 /// One thing a program varies in.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
+    /// As keys name it.
     pub name: String,
+    /// What its values are.
     pub kind: Kind,
     /// All of one kind, distinct, in the order declared, at least one, at most [`MAX`].
     pub values: Vec<Setting>,
     /// Ordinal in `values` of the value that keys leave out.
     pub default: usize,
+    /// How its values reach the shader.
     pub mode: Mode,
     /// What the manifest says about it.
     pub doc: Option<String>,
@@ -127,18 +133,22 @@ impl ValueSet {
         Self(u128::MAX.checked_shr((MAX - count) as u32).unwrap_or(0))
     }
 
+    /// Whether the value is in the set.
     pub fn contains(self, ordinal: usize) -> bool {
         self.0 >> ordinal & 1 == 1
     }
 
+    /// Whether no value is in the set.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
+    /// Values that are in both sets.
     pub fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
+    /// Values that are in one of the sets.
     pub fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }

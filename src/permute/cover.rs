@@ -11,7 +11,9 @@ use super::space::Space;
 /// Two axes, the first before the second, with the ordinal of a value of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair {
+    /// An axis and the ordinal of its value.
     pub first: (usize, usize),
+    /// Another axis and the ordinal of its value.
     pub second: (usize, usize),
 }
 

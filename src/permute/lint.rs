@@ -30,7 +30,16 @@ pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
             .flat_map(|(axis, valid)| never_valid(axis, valid)),
     );
     warnings.extend(space.lists().only.iter().filter_map(|slice| empty(space, slice)));
+    warnings.extend(nothing_wanted(space, what, place));
     warnings
+}
+
+/// A space whose lists leave nothing of it.
+pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnostic> {
+    (space.count() == 0).then(|| {
+        let message = format!("the lists of {what} leave no permutation");
+        Diagnostic::warning(codes::NO_PERMUTATION, message).at(place, "ships empty")
+    })
 }
 
 /// A space that cannot be counted has been refused by now, so a single condition of it can; all of
@@ -50,7 +59,8 @@ fn trivial(space: &Space, constraint: &Constraint, steps: &mut usize) -> Option<
     };
     let warning =
         Diagnostic::warning(code, format!("the constraint `{}` is always {word}", constraint.text));
-    Some(warning.at(constraint.span, format!("{word} whatever the axes are")))
+    let warning = warning.at(constraint.span, format!("{word} whatever the axes are"));
+    Some(if satisfying == 0 { warning.note("so the program ships empty") } else { warning })
 }
 
 fn never_valid(axis: &Axis, valid: ValueSet) -> Option<Diagnostic> {

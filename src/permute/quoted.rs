@@ -7,6 +7,7 @@ use crate::source::{SourceId, SourceSet, Span};
 /// Text that came out of a source, perhaps through quotes and escapes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quoted {
+    /// The text without its quotes and escapes.
     pub text: String,
     /// What stands for it in the source, quotes included.
     pub span: Span,

@@ -10,6 +10,7 @@ use super::space::Space;
 /// The report of one program. Displays as text; serialises as data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
+    /// Name of the program.
     pub program: String,
     /// Points of the full product.
     pub full: Count,
@@ -36,7 +37,9 @@ pub struct Report {
 /// Distinct compositions of one stage or entry point.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct StageCount {
+    /// Name of the stage or entry point.
     pub stage: String,
+    /// How many permutations it can tell apart.
     pub unique: u64,
     /// Axes that never change it.
     pub blind: Vec<String>,
@@ -45,9 +48,13 @@ pub struct StageCount {
 /// What one axis does to the number of permutations.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AxisCost {
+    /// Name of the axis.
     pub name: String,
+    /// What its values are.
     pub kind: &'static str,
+    /// How they reach the shader.
     pub mode: &'static str,
+    /// How many there are.
     pub values: usize,
     /// Values that occur in a valid permutation.
     pub valid_values: usize,

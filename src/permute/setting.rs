@@ -6,7 +6,9 @@ use std::fmt;
 /// The value of an axis or a feature.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Setting {
+    /// False or true.
     Bool(bool),
+    /// An integer.
     Int(i64),
     /// A value of an enum axis, by name.
     Name(String),
@@ -47,4 +49,16 @@ pub struct Settings {
     /// Axes whose numbers are left open for the pipeline to choose, with their defaults:
     /// `constants::NAME` is an override then. Conditions see the value all the same.
     pub open: BTreeMap<String, Setting>,
+    /// What a feature is that has no value here; where there is nothing, to ask for it is an error.
+    pub undeclared: Option<bool>,
+}
+
+impl Settings {
+    /// The value of an axis or a feature.
+    pub fn value(&self, name: &str) -> Option<&Setting> {
+        const ON: &Setting = &Setting::Bool(true);
+        const OFF: &Setting = &Setting::Bool(false);
+        let undeclared = || self.undeclared.map(|on| if on { ON } else { OFF });
+        self.values.get(name).or_else(undeclared)
+    }
 }

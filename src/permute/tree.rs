@@ -62,9 +62,7 @@ impl<T> ReadTree<T> {
         loop {
             match self.nodes.get(node)? {
                 Node::Leaf(value) => return Some(value),
-                Node::Question { name, answers } => {
-                    node = *answers.get(settings.values.get(name)?)?
-                }
+                Node::Question { name, answers } => node = *answers.get(settings.value(name)?)?,
             }
         }
     }

@@ -1,7 +1,10 @@
 //! Lists of keys that engines asked for, as a bundle's loader records them.
 
+use std::collections::BTreeSet;
+
 use super::axis::ValueSet;
 use super::key::parse;
+use super::lint;
 use super::manifest::Program;
 use super::quoted::Quoted;
 use super::space::{Lists, Slice, Space};
@@ -43,6 +46,7 @@ pub fn narrow(
         span: program.span,
     };
     let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
+    let undeclared = program.space.undeclared;
     program.space = Space::new(axes.to_vec(), program.space.constraints().to_vec(), lists)
         .map_err(|_| {
             let message =
@@ -52,20 +56,45 @@ pub fn narrow(
                     .at(program.span, "declared here"),
             ]
         })?;
+    program.space.undeclared = undeclared;
+    let what = format!("program `{}`", program.name);
+    warnings.extend(lint::nothing_wanted(&program.space, &what, program.span));
     Ok(warnings)
+}
+
+/// A warning for each program that a list names and the manifest does not declare, once.
+pub fn unknown(programs: &[Program], sources: &SourceSet, list: SourceId) -> Vec<Diagnostic> {
+    let known = || programs.iter().map(|program| program.name.as_str());
+    let mut seen = BTreeSet::new();
+    let of_line = |(span, text): (Span, &str)| {
+        let (name, _) = text.split_once(char::is_whitespace)?;
+        if known().any(|known| known == name) || !seen.insert(name.to_owned()) {
+            return None;
+        }
+        let message = format!("the manifest declares no program `{name}`");
+        let place = Span { end: span.start + name.len() as u32, ..span };
+        let warning = Diagnostic::warning(codes::UNKNOWN_PROGRAM, message).at(place, "left out");
+        Some(warning.suggest(name, known()))
+    };
+    lines(sources, list).filter_map(of_line).collect()
+}
+
+/// The lines of a list that say something, each with its place.
+fn lines(sources: &SourceSet, list: SourceId) -> impl Iterator<Item = (Span, &str)> {
+    let mut start = 0;
+    sources.get(list).text.split_inclusive('\n').filter_map(move |line| {
+        let text = line.trim();
+        let at = start + line.len() - line.trim_start().len();
+        start += line.len();
+        let says = !text.is_empty() && !text.starts_with('#');
+        says.then(|| (Span::new(list, at..at + text.len()), text))
+    })
 }
 
 /// The keys that the list has for the program, each with its place.
 fn keys(program: &str, sources: &SourceSet, list: SourceId) -> Result<Vec<Quoted>, Diagnostics> {
-    let (mut keys, mut problems, mut start) = (Vec::new(), Vec::new(), 0);
-    for line in sources.get(list).text.split_inclusive('\n') {
-        let text = line.trim();
-        let at = start + line.len() - line.trim_start().len();
-        start += line.len();
-        if text.is_empty() || text.starts_with('#') {
-            continue;
-        }
-        let span = Span::new(list, at..at + text.len());
+    let (mut keys, mut problems) = (Vec::new(), Vec::new());
+    for (span, text) in lines(sources, list) {
         match text.split_once(char::is_whitespace) {
             Some((found, key)) if found == program => {
                 keys.push(Quoted::plain(

@@ -17,7 +17,7 @@ use crate::source::SourceSet;
 /// Everything about a picture but how it is photographed.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Of the scene, one of [`SETS`](crate::scene::sets::SETS).
+    /// Of the scene, one of [`sets::ALL`](crate::scene::sets::ALL).
     pub scene: String,
     /// In order; the last one draws the picture.
     pub passes: Vec<Pass>,

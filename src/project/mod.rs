@@ -2,8 +2,10 @@
 //!
 //! This is the input end of the pipeline; the stages after it read through [`Packages`] only.
 
+mod place;
 mod wesl_toml;
 
+pub use place::{manifest_above, package_above, root_of};
 pub use wesl_toml::declared_name;
 
 use std::path::{Component, Path, PathBuf};
@@ -11,7 +13,7 @@ use std::path::{Component, Path, PathBuf};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Lock, Manifest, lock, manifest, usage};
 use crate::resolve::Packages;
-use crate::source::{self, Disk, Embedded, Package, SourceSet};
+use crate::source::{self, Disk, Embedded, Package, SourceId, SourceSet};
 
 /// Import name of the shader library, which every package may use without declaring it.
 pub const LIBRARY: &str = "lamplight";
@@ -64,17 +66,6 @@ pub fn library() -> Packages {
     }
 }
 
-/// The package root that a file belongs to when none is given: what the nearest `wesl.toml`
-/// above it declares, or else its folder.
-pub fn root_of(file: &Path) -> PathBuf {
-    let folder =
-        file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    folder
-        .ancestors()
-        .find_map(|ancestor| wesl_toml::declared_root(ancestor).filter(|root| is_below(file, root)))
-        .unwrap_or_else(|| folder.to_owned())
-}
-
 /// The path of `file` relative to `root`, `/`-separated.
 pub fn relative(file: &Path, root: &Path) -> Result<String, Diagnostic> {
     let real = |path: &Path| {
@@ -101,10 +92,6 @@ pub fn relative(file: &Path, root: &Path) -> Result<String, Diagnostic> {
     }
 }
 
-fn is_below(file: &Path, root: &Path) -> bool {
-    relative(file, root).is_ok()
-}
-
 fn slashed(path: &Path) -> String {
     let parts = path.components().filter_map(|component| match component {
         Component::Normal(part) => Some(part.to_string_lossy()),
@@ -125,13 +112,13 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Diagnostic {
 /// File name of a manifest.
 pub const MANIFEST: &str = "lamplight.toml";
 
-/// The manifest in the root folder of a package, if there is one.
+/// The manifest of the package with that root folder, if there is one: in the root, or beside the
+/// `wesl.toml` that declares the root.
 pub fn manifest(root: &Path, sources: &mut SourceSet) -> Result<Option<Manifest>, Diagnostics> {
-    let path = root.join(MANIFEST);
-    if path.is_file() { read_manifest(&path, sources).map(Some) } else { Ok(None) }
+    place::manifest_of(root).map(|path| read_manifest(&path, sources)).transpose()
 }
 
-/// Reads a manifest by its path.
+/// Reads a manifest by its path. Its files are named from the package's root.
 pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
     if path.is_dir() {
         return Err(vec![Diagnostic::error(
@@ -143,13 +130,17 @@ pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, D
     let disk = Disk::new(folder).map_err(|error| vec![unreadable(path, &error)])?;
     let package = Package { name: String::new(), files: Box::new(disk) };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    parse_manifest(&package, &name, sources)
+    let mut manifest = parse_manifest(&package, &name, sources)?;
+    place::below_root(&mut manifest.programs, folder)?;
+    Ok(manifest)
 }
 
-/// A manifest by its path, and the package whose root folder it is in.
+/// A manifest by its path, and the package that it belongs to: the one whose root the `wesl.toml`
+/// beside the manifest declares, or else the manifest's folder.
 pub fn declared(path: &Path, sources: &mut SourceSet) -> Result<(Manifest, Packages), Diagnostics> {
     let manifest = read_manifest(path, sources)?;
-    Ok((manifest, packages(path.parent().unwrap_or(Path::new("")), sources)?))
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Ok((manifest, packages(&place::root_beside(folder), sources)?))
 }
 
 /// File name of the lock that lies beside a manifest.
@@ -210,6 +201,7 @@ fn parse_manifest(
         )]
     })?;
     let mut manifest = manifest::parse(sources, id)?;
+    let mut lists: Vec<(String, SourceId)> = Vec::new();
     for program in &mut manifest.programs {
         let Some(file) = program.usage.clone() else { continue };
         let list = source::read(sources, package, &file.path)
@@ -217,6 +209,12 @@ fn parse_manifest(
         let list = list.ok_or_else(|| vec![no_list(&file)])?;
         let warnings = usage::narrow(program, sources, list)?;
         manifest.warnings.extend(warnings);
+        if lists.iter().all(|(path, _)| *path != file.path) {
+            lists.push((file.path, list));
+        }
+    }
+    for (_, list) in lists {
+        manifest.warnings.extend(usage::unknown(&manifest.programs, sources, list));
     }
     Ok(manifest)
 }

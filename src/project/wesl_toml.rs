@@ -37,19 +37,30 @@ pub fn declared_name(root: &Path) -> Option<String> {
 pub fn dependencies(root: &Path, sources: &mut SourceSet) -> Result<Vec<Package>, Diagnostics> {
     broken(root, sources)?;
     let Some(folder) = home(root) else { return Ok(Vec::new()) };
-    let mut found =
-        Found { packages: Vec::new(), visited: vec![folder.clone()], diagnostics: Vec::new() };
-    found.collect(&folder, sources);
+    let shown = shown_home(root, &folder);
+    let mut found = Found { packages: Vec::new(), visited: vec![folder], diagnostics: Vec::new() };
+    found.collect(&shown, sources);
     if found.diagnostics.is_empty() { Ok(found.packages) } else { Err(found.diagnostics) }
 }
 
 /// The folder of the `wesl.toml` that declares `root`.
-fn home(root: &Path) -> Option<PathBuf> {
+pub fn home(root: &Path) -> Option<PathBuf> {
+    let root = if root.as_os_str().is_empty() { Path::new(".") } else { root };
     let real = root.canonicalize().ok()?;
-    [Some(real.as_path()), real.parent()].into_iter().flatten().find_map(|folder| {
+    real.ancestors().find_map(|folder| {
         let declared = declared_root(folder)?.canonicalize().ok()?;
         (declared == real || folder == real).then(|| folder.to_owned())
     })
+}
+
+/// The same folder as the author would name it.
+pub fn shown_home(root: &Path, home: &Path) -> PathBuf {
+    let root = if root.as_os_str().is_empty() { Path::new(".") } else { root };
+    let below = root
+        .canonicalize()
+        .ok()
+        .and_then(|real| Some(real.strip_prefix(home).ok()?.components().count()));
+    (0..below.unwrap_or(0)).fold(root.to_owned(), |path, _| path.join(".."))
 }
 
 /// Refuses a `wesl.toml` of the root or above it that cannot be understood: to ignore it would
@@ -155,8 +166,11 @@ impl Files for Shown {
     }
 
     fn display(&self, path: &str) -> String {
-        let shown = self.folder.join(path).to_string_lossy().replace('\\', "/");
-        shown.strip_prefix("./").map(str::to_owned).unwrap_or(shown)
+        source::shown(&self.folder.join(path))
+    }
+
+    fn on_disk(&self, path: &str) -> bool {
+        self.disk.on_disk(path)
     }
 }
 
@@ -177,11 +191,12 @@ struct Found {
 }
 
 impl Found {
+    /// Adds what the `wesl.toml` of a folder lists.
     fn collect(&mut self, folder: &Path, sources: &mut SourceSet) {
         if !folder.join(NAME).is_file() {
             return;
         }
-        let (table, id) = match parse(folder, Path::new(""), sources) {
+        let (table, id) = match parse(folder, folder, sources) {
             Ok(found) => found,
             Err(error) => return self.diagnostics.push(error),
         };
@@ -192,25 +207,14 @@ impl Found {
         };
         for (name, entry) in dependencies {
             let Some(path) = entry.get("path").and_then(|path| path.as_str()) else { continue };
-            self.add(
-                name,
-                (Path::new(path), &folder.join(path)),
-                Span::new(id, key_range(&text, name)),
-                sources,
-            );
+            self.add(name, &folder.join(path), Span::new(id, key_range(&text, name)), sources);
         }
     }
 
-    /// Adds the dependency in `folder`, which its dependent calls `shown`.
-    fn add(
-        &mut self,
-        name: &str,
-        (shown, folder): (&Path, &Path),
-        span: Span,
-        sources: &mut SourceSet,
-    ) {
+    /// Adds the dependency in `folder`.
+    fn add(&mut self, name: &str, folder: &Path, span: Span, sources: &mut SourceSet) {
         if folder.join(NAME).is_file()
-            && let Err(error) = parse(folder, shown, sources)
+            && let Err(error) = parse(folder, folder, sources)
         {
             return self.diagnostics.push(error.at(span, "of this dependency"));
         }

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use super::library::Library;
 use super::plots;
 use crate::catalogue::pages::{Contents, pages as written};
-use crate::catalogue::{self, Module, plot, preset, probe};
+use crate::catalogue::{self, Module, plot, prefix, preset, probe};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::{Session, executors, on_thread};
 use crate::permute::Manifest;
@@ -24,7 +24,8 @@ pub fn pages() -> Result<Files, (SourceSet, Diagnostics)> {
     made.map_err(|problems| (sources.into_inner().unwrap_or_default(), problems))
 }
 
-/// Modules of the library, and their cases, that are made from its data, by path below the library.
+/// Files of the library that are made from others: modules and cases from its data, and the names
+/// with a prefix. By path below the library.
 pub fn modules() -> Result<Files, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let probes = match probe::library(&mut sources) {
@@ -32,14 +33,12 @@ pub fn modules() -> Result<Files, (SourceSet, Diagnostics)> {
         Err(problems) => return Err((sources, problems)),
     };
     let made = [
-        ("wesl", probe::wesl(&probes)),
-        ("glsl", probe::glsl(&probes)),
-        ("toml", probe::cases(&probes)),
+        ("ambient/probes.wesl", probe::wesl(&probes)),
+        ("ambient/probes.glsl", probe::glsl(&probes)),
+        ("ambient/probes.toml", probe::cases(&probes)),
+        (prefix::PATH, prefix::glsl(&Embedded)),
     ];
-    Ok(made
-        .into_iter()
-        .map(|(extension, text)| (format!("ambient/probes.{extension}"), text))
-        .collect())
+    Ok(made.into_iter().map(|(path, text)| (path.to_owned(), text)).collect())
 }
 
 fn contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Diagnostics> {

@@ -26,7 +26,9 @@ impl Packages {
 /// All that a root file may reach, ready to be composed any number of times.
 #[derive(Debug)]
 pub enum Graph {
+    /// Modules and imports.
     Wesl(wesl::Graph),
+    /// Files and includes.
     Glsl(glsl::Graph),
 }
 

@@ -7,11 +7,17 @@ use super::{Clip, Depth};
 /// A box in view space; `near` and `far` are distances along -z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
+    /// Lowest x.
     pub left: f64,
+    /// Highest x.
     pub right: f64,
+    /// Lowest y.
     pub bottom: f64,
+    /// Highest y.
     pub top: f64,
+    /// Distance of the near plane.
     pub near: f64,
+    /// Distance of the far plane.
     pub far: f64,
 }
 

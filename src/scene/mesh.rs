@@ -11,9 +11,17 @@ pub const UNUSED_NORMAL: DVec3 = DVec3::Z;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshError {
     /// The number of corners is not a multiple of three.
-    Incomplete { corners: usize },
+    Incomplete {
+        /// How many there are.
+        corners: usize,
+    },
     /// An index is beyond the last vertex.
-    Beyond { index: u32, vertices: usize },
+    Beyond {
+        /// The index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
 }
 
 impl std::fmt::Display for MeshError {

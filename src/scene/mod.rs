@@ -8,7 +8,9 @@
 mod environment;
 mod frustum;
 mod kernel;
+mod maps;
 mod mesh;
+mod palette;
 mod probe;
 mod projection;
 pub mod sets;

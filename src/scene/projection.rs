@@ -16,6 +16,7 @@ pub enum Clip {
 /// Which end of the depth range is near.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Depth {
+    /// 0 at the near plane, 1 at the far plane.
     Normal,
     /// Near is 1: with floating-point depth buffers the precision is spread evenly.
     Reversed,

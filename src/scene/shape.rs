@@ -9,6 +9,7 @@ use super::mesh::{face_normals, normal_matrix};
 /// A corner with everything that `forward` may read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
+    /// In object space.
     pub position: DVec3,
     /// Of unit length.
     pub normal: DVec3,
@@ -25,7 +26,9 @@ pub struct Vertex {
 /// Indexed triangles; counter-clockwise ones look at you.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Shape {
+    /// Corners.
     pub vertices: Vec<Vertex>,
+    /// Three for each triangle.
     pub indices: Vec<u32>,
 }
 

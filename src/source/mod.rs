@@ -3,8 +3,8 @@
 mod package;
 mod read;
 
-pub(crate) use package::is_inside;
 pub use package::{Disk, Embedded, Files, LIMITS, Limits, Memory, Package, ReadError};
+pub(crate) use package::{is_inside, shown};
 pub use read::{ReadFailure, read};
 
 /// One text an author wrote, as shown in diagnostics.
@@ -14,6 +14,8 @@ pub struct Source {
     pub path: String,
     /// The whole text.
     pub text: std::sync::Arc<str>,
+    /// Whether the path is that of a file on the disk.
+    pub on_disk: bool,
 }
 
 /// Index of a [`Source`] in its [`SourceSet`].
@@ -56,8 +58,13 @@ impl SourceSet {
         path: impl Into<String>,
         text: impl Into<std::sync::Arc<str>>,
     ) -> SourceId {
-        self.sources.push(Source { path: path.into(), text: text.into() });
+        self.sources.push(Source { path: path.into(), text: text.into(), on_disk: false });
         SourceId(self.sources.len() as u32 - 1)
+    }
+
+    /// Notes that a text was read from a file on the disk.
+    pub fn mark_on_disk(&mut self, id: SourceId) {
+        self.sources[id.0 as usize].on_disk = true;
     }
 
     /// The source behind an index of this set.

@@ -42,9 +42,17 @@ pub enum ReadError {
     /// `..` or a symbolic link leads out of the root.
     OutsideRoot,
     /// The bytes are not UTF-8: the lossy text and the offset of the first bad byte in it.
-    NotUtf8 { lossy: String, offset: usize },
+    NotUtf8 {
+        /// The text with replacement characters.
+        lossy: String,
+        /// Where the first of those is.
+        offset: usize,
+    },
     /// More bytes than [`Limits::file_bytes`].
-    TooLarge { bytes: u64 },
+    TooLarge {
+        /// Size of the file.
+        bytes: u64,
+    },
     /// The operating system's words.
     Io(String),
 }
@@ -60,6 +68,11 @@ pub trait Files: Send + Sync {
     /// How diagnostics name a file of this package.
     fn display(&self, path: &str) -> String {
         path.to_owned()
+    }
+
+    /// Whether a file of this package is one that other programs find under its shown name.
+    fn on_disk(&self, _path: &str) -> bool {
+        false
     }
 }
 
@@ -143,9 +156,34 @@ impl Files for Disk {
     }
 
     fn display(&self, path: &str) -> String {
-        let shown = self.shown.join(path).to_string_lossy().replace('\\', "/");
-        shown.strip_prefix("./").map(str::to_owned).unwrap_or(shown)
+        shown(&self.shown.join(path))
     }
+
+    fn on_disk(&self, _path: &str) -> bool {
+        true
+    }
+}
+
+/// A path as its author would write it: without `.`, and without `..` where the file has a name
+/// below the current folder.
+pub fn shown(path: &Path) -> String {
+    let tidy: PathBuf =
+        path.components().filter(|component| *component != Component::CurDir).collect();
+    let short = if tidy.components().any(|component| component == Component::ParentDir) {
+        below_here(&tidy).unwrap_or(tidy)
+    } else {
+        tidy
+    };
+    short.to_string_lossy().replace('\\', "/")
+}
+
+/// The name of a file from the current folder, if it is below that.
+fn below_here(path: &Path) -> Option<PathBuf> {
+    let here = Path::new(".").canonicalize().ok()?;
+    let (folder, name) = (path.parent()?, path.file_name()?);
+    let real =
+        if folder.as_os_str().is_empty() { here.clone() } else { folder.canonicalize().ok()? };
+    Some(real.strip_prefix(&here).ok()?.join(name))
 }
 
 /// The shader library, carried by the binary.

@@ -26,7 +26,13 @@ pub fn read(
 ) -> Result<Option<SourceId>, ReadFailure> {
     let shown = package.files.display(path);
     match package.files.read(path) {
-        Ok(text) => Ok(text.map(|text| sources.add(shown, text))),
+        Ok(text) => Ok(text.map(|text| {
+            let id = sources.add(shown, text);
+            if package.files.on_disk(path) {
+                sources.mark_on_disk(id);
+            }
+            id
+        })),
         Err(error) => {
             let place = bad_byte(sources, &shown, &error);
             Err(ReadFailure { path: path.to_owned(), shown, error, place })

@@ -24,8 +24,11 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 /// A module that naga accepts, with what it found out about it.
 #[derive(Debug, Clone)]
 pub struct Validated {
+    /// Language of the text.
     pub language: Language,
+    /// As naga's front end read it.
     pub module: naga::Module,
+    /// What naga's validator found out about it.
     pub info: ModuleInfo,
 }
 

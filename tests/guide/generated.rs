@@ -38,7 +38,7 @@ fn text() -> String {
     let mut text = HEAD.to_owned();
     for page in guide::PAGES {
         let _ = write!(text, "\n## {}\n", heading(page));
-        for code in page.codes {
+        for code in page.codes() {
             section(&mut text, code);
         }
     }

@@ -4,12 +4,14 @@
 
 mod bench;
 mod ci;
+mod create;
 mod docs;
 mod external;
 mod fuzz;
 mod generate;
 mod machine;
 mod mutate;
+mod new;
 mod test;
 mod validate;
 
@@ -52,6 +54,11 @@ impl Failure {
 const COMMANDS: &[Command] = &[
     ("gen", "write the library's bundle to target/bundles/ and validate it", generate::run),
     ("test", "install what the tests need, then run every test", test::run),
+    (
+        "new",
+        "write the files for a new function, axis-value, target, executor, scene or diagnostic",
+        create::run,
+    ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
     ("validate", "run the external validators over a bundle", validate::run),
     (

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::super::preset::Preset;
 use super::super::probe::{ORDER, Probe};
 use super::markdown::{cell, prose};
-use crate::scene::sets::SETS;
+use crate::scene::sets;
 
 /// The page: presets, scenes, light probes.
 pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
@@ -32,8 +32,8 @@ pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
         row(&mut text, preset, place);
     }
     text.push_str("\n## Scenes\n\n| scene | what it is |\n|---|---|\n");
-    for (name, about, _) in SETS {
-        let _ = writeln!(text, "| `{name}` | {about} |");
+    for set in sets::ALL {
+        let _ = writeln!(text, "| `{}` | {} |", set.name, set.about);
     }
     light_probes(&mut text, probes);
     text.push_str("\n---\n[Catalogue](README.md)\n");

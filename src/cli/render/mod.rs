@@ -149,7 +149,7 @@ fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
         )?,
     };
     if let Some(scene) = &arguments.scene {
-        let known = sets::SETS.iter().map(|(name, _, _)| *name);
+        let known = sets::ALL.iter().map(|set| set.name);
         if !known.clone().any(|name| name == scene) {
             return Err(unknown("scene", scene, known));
         }

@@ -217,6 +217,9 @@ impl Parser<'_, '_, '_> {
                 "used in a condition",
             ));
         }
+        if let Some(on) = self.expander.reads.undeclared {
+            return Ok(i32::from(on));
+        }
         let error = self.coded(
             codes::UNDEFINED_MACRO,
             token,

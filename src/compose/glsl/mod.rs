@@ -70,7 +70,10 @@ fn stage(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
                 codes::UNKNOWN_STAGE,
                 format!("the name `{}` does not say for which stage it is", graph.root),
             )
-            .note("help: end it in `.vert.glsl`, `.frag.glsl` or `.comp.glsl`"),
+            .note(
+                "help: end it in `.vert.glsl`, `.frag.glsl` or `.comp.glsl`; for standard input \
+                 add `--stage`",
+            ),
         ]),
     }
 }

@@ -10,6 +10,8 @@ pub struct Reads<'s> {
     order: Vec<u16>,
     /// How often any was read.
     pub count: usize,
+    /// What a condition takes a macro for that is not defined.
+    pub undeclared: Option<bool>,
 }
 
 struct Entry<'s> {
@@ -31,7 +33,12 @@ impl<'s> Reads<'s> {
             symbol: Symbol(0),
             read: false,
         });
-        Self { entries: entries.collect(), order: Vec::new(), count: 0 }
+        Self {
+            entries: entries.collect(),
+            order: Vec::new(),
+            count: 0,
+            undeclared: settings.undeclared,
+        }
     }
 
     /// Defines the macro of every setting, and those of the values of enum axes.

@@ -113,7 +113,7 @@ impl<'a> Evaluator<'a> {
     /// The value of a setting, recorded; an error at `span` if it has none.
     pub fn setting(&mut self, name: Name, span: Span) -> Option<Setting> {
         let text = self.graph.names.text(name);
-        let Some(value) = self.settings.values.get(text) else {
+        let Some(value) = self.settings.value(text) else {
             if self.unknown.insert(name) {
                 let error =
                     Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value"))

@@ -10,6 +10,7 @@ use crate::emit::glsl;
 use crate::emit::slots::Numbering;
 use crate::emit::{Emitted, Entry, Source};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry {
     target: Target::ESSL300,
     extension: "essl300.glsl",

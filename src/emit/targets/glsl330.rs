@@ -10,6 +10,7 @@ use crate::emit::glsl;
 use crate::emit::slots::Numbering;
 use crate::emit::{Emitted, Entry, Source};
 
+/// The target, for the table of all.
 pub const TARGET: Entry =
     Entry { target: Target::GLSL330, extension: "glsl330.glsl", binary: false, about: "GLSL 3.30 core, for OpenGL 3.3", write };
 

@@ -11,6 +11,7 @@ use crate::emit::glsl;
 use crate::emit::slots::Numbering;
 use crate::emit::{Emitted, Entry, Source};
 
+/// The target, for the table of all.
 pub const TARGET: Entry =
     Entry { target: Target::GLSL450, extension: "glsl450.glsl", binary: false, about: "GLSL 4.50 core, for OpenGL 4.5", write };
 

@@ -14,6 +14,7 @@ use crate::emit::slots::{Numbering, assign, native};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Source};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry {
     target: Target::MSL,
     extension: "metal",

@@ -9,6 +9,7 @@ use crate::bundle::Target;
 use crate::emit::slots::{Numbering, native};
 use crate::emit::{Emitted, Entry, Source};
 
+/// The target, for the table of all.
 pub const TARGET: Entry =
     Entry { target: Target::SPIRV, extension: "spv", binary: true, about: "SPIR-V 1.3 (Vulkan 1.1), little-endian words", write };
 

@@ -9,6 +9,7 @@ use crate::emit::slots::{Numbering, native};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Source};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry { target: Target::WGSL, extension: "wgsl", binary: false, about: "WGSL (WebGPU)", write };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {

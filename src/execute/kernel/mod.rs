@@ -15,9 +15,11 @@
 //! Pixels after the last invocation repeat it: no fragment returns early.
 
 mod shape;
+mod varying;
 mod wrap;
 
 pub use shape::Shape;
+pub use varying::varying;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

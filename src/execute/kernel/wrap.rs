@@ -8,17 +8,28 @@ use naga::{
     Span, Statement, SwizzleComponent, Type, TypeInner, VectorSize,
 };
 
-use super::{ECHO, ENTRY, INPUT_WIDTH, Kernel, ParameterKind, TARGET_WIDTH, pointee};
+use super::{ECHO, ENTRY, INPUT_WIDTH, Kernel, Parameter, ParameterKind, TARGET_WIDTH, pointee};
 use crate::diagnostic::{Diagnostic, codes};
 
-type Value = Handle<Expression>;
+pub(super) type Value = Handle<Expression>;
 
 /// The module with its entry points replaced by the kernel's, and the function's handle in it.
 pub fn wrap(module: &Module, kernel: &Kernel) -> Result<(Module, Handle<Function>), Diagnostic> {
+    let module = entered(module, |body| body.main(kernel))?;
+    let function = called(&module).ok_or_else(|| lost(&kernel.name))?;
+    Ok((module, function))
+}
+
+/// The module with its entry points replaced by one fragment stage, and without what that does not
+/// reach.
+pub(super) fn entered(
+    module: &Module,
+    write: impl FnOnce(&mut Body<'_>) -> Result<(), Diagnostic>,
+) -> Result<Module, Diagnostic> {
     let mut module = module.clone();
     module.entry_points.clear();
     let mut body = Body { module: &mut module, function: Function::default() };
-    body.main(kernel)?;
+    write(&mut body)?;
     let function = body.function;
     module.entry_points.push(EntryPoint {
         name: ENTRY.to_owned(),
@@ -32,8 +43,7 @@ pub fn wrap(module: &Module, kernel: &Kernel) -> Result<(Module, Handle<Function
         incoming_ray_payload: None,
     });
     naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-    let function = called(&module).ok_or_else(|| lost(&kernel.name))?;
-    Ok((module, function))
+    Ok(module)
 }
 
 /// The function that the entry point calls: compaction renumbers handles.
@@ -49,9 +59,26 @@ fn lost(name: &str) -> Diagnostic {
 }
 
 /// The entry point while it grows.
-struct Body<'a> {
-    module: &'a mut Module,
-    function: Function,
+pub(super) struct Body<'a> {
+    pub(super) module: &'a mut Module,
+    pub(super) function: Function,
+}
+
+/// Where an argument comes from.
+pub(super) enum Source {
+    /// A texture or a sampler, by its binding in group 0.
+    Binding(u32),
+    /// Words, from this one on.
+    Words(u32),
+}
+
+impl Source {
+    fn of(parameter: &Parameter) -> Self {
+        match &parameter.kind {
+            ParameterKind::Resource(resource) => Self::Binding(resource.binding),
+            ParameterKind::Words { offset, .. } => Self::Words(*offset),
+        }
+    }
 }
 
 /// What the fragment's position says.
@@ -84,7 +111,8 @@ impl Body<'_> {
         let inputs = self.inputs();
         let place = self.place(inputs, kernel);
         let words = self.arguments(inputs, &place, kernel);
-        let results = self.call(kernel, &words)?;
+        let sources: Vec<Source> = kernel.parameters.iter().map(Source::of).collect();
+        let results = self.call(&kernel.name, kernel.function, &sources, &words)?;
         let chosen = self.choose(&results, place.part);
         let value = self.echo(&place, chosen);
         self.function.body.push(Statement::Return { value: Some(value) }, Span::UNDEFINED);
@@ -168,22 +196,28 @@ impl Body<'_> {
     }
 
     /// Calls the function and flattens what it returns and what it leaves behind pointers.
-    fn call(&mut self, kernel: &Kernel, words: &[Value]) -> Result<Vec<Value>, Diagnostic> {
-        let declared = self.module.functions[kernel.function].arguments.clone();
-        let returned =
-            self.module.functions[kernel.function].result.as_ref().map(|result| result.ty);
+    pub(super) fn call(
+        &mut self,
+        name: &str,
+        function: Handle<Function>,
+        sources: &[Source],
+        words: &[Value],
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let declared = self.module.functions[function].arguments.clone();
+        let returned = self.module.functions[function].result.as_ref().map(|result| result.ty);
         let mut arguments = Vec::new();
         let mut written = Vec::new();
-        for (parameter, argument) in kernel.parameters.iter().zip(&declared) {
-            let value = match &parameter.kind {
-                ParameterKind::Resource(resource) => {
-                    self.global(&parameter.name, argument.ty, resource.binding)
+        for (source, argument) in sources.iter().zip(&declared) {
+            let value = match source {
+                Source::Binding(binding) => {
+                    let name = argument.name.as_deref().unwrap_or("resource");
+                    self.global(name, argument.ty, *binding)
                 }
-                ParameterKind::Words { offset, .. } => {
+                Source::Words(offset) => {
                     let base = pointee(self.module, argument.ty);
                     let value = self
                         .unflatten(base, &mut words[*offset as usize..].iter().copied())
-                        .ok_or_else(|| lost(&kernel.name))?;
+                        .ok_or_else(|| lost(name))?;
                     if base == argument.ty {
                         value
                     } else {
@@ -194,14 +228,9 @@ impl Body<'_> {
             arguments.push(value);
         }
         let result = returned.map(|_| {
-            self.function
-                .expressions
-                .append(Expression::CallResult(kernel.function), Span::UNDEFINED)
+            self.function.expressions.append(Expression::CallResult(function), Span::UNDEFINED)
         });
-        self.function.body.push(
-            Statement::Call { function: kernel.function, arguments, result },
-            Span::UNDEFINED,
-        );
+        self.function.body.push(Statement::Call { function, arguments, result }, Span::UNDEFINED);
         let mut flat = Vec::new();
         if let (Some(result), Some(ty)) = (result, returned) {
             self.flatten(result, ty, &mut flat);
@@ -336,7 +365,7 @@ impl Body<'_> {
         self.add(Expression::Select { condition, accept, reject: value })
     }
 
-    fn add(&mut self, expression: Expression) -> Value {
+    pub(super) fn add(&mut self, expression: Expression) -> Value {
         let emitted = !expression.needs_pre_emit();
         let value = self.function.expressions.append(expression, Span::UNDEFINED);
         if emitted {
@@ -355,7 +384,7 @@ impl Body<'_> {
         self.ty(TypeInner::Scalar(scalar))
     }
 
-    fn vector(&mut self, size: VectorSize, kind: ScalarKind) -> Handle<Type> {
+    pub(super) fn vector(&mut self, size: VectorSize, kind: ScalarKind) -> Handle<Type> {
         let width = if kind == ScalarKind::Bool { naga::BOOL_WIDTH } else { 4 };
         self.ty(TypeInner::Vector { size, scalar: Scalar { kind, width } })
     }
@@ -364,11 +393,11 @@ impl Body<'_> {
         self.add(Expression::Literal(Literal::U32(value)))
     }
 
-    fn component(&mut self, base: Value, index: u32) -> Value {
+    pub(super) fn component(&mut self, base: Value, index: u32) -> Value {
         self.add(Expression::AccessIndex { base, index })
     }
 
-    fn binary(&mut self, op: Op, left: Value, right: Value) -> Value {
+    pub(super) fn binary(&mut self, op: Op, left: Value, right: Value) -> Value {
         self.add(Expression::Binary { op, left, right })
     }
 

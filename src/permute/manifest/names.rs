@@ -14,7 +14,8 @@ use crate::source::Span;
 const IN: &str = "in";
 
 /// Macros that GLSL compilers or the library define.
-const MACROS: &[&str] = &["VULKAN", "LAMPLIGHT_COMBINED_SAMPLERS"];
+const MACROS: &[&str] =
+    &["VULKAN", "LAMPLIGHT_COMBINED_SAMPLERS", "LAMPLIGHT_PREFIX", "LAMPLIGHT_PREFIXED"];
 
 /// What a program or a value is called must be an identifier.
 pub fn check(name: &str, what: &str, span: Span) -> Option<Diagnostic> {

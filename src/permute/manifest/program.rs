@@ -14,13 +14,17 @@ use crate::source::{LIMITS, Span};
 /// Entry points in one or both languages, and what they vary in.
 #[derive(Debug, Clone)]
 pub struct Program {
+    /// As the manifest and bundles call it.
     pub name: String,
+    /// What it is, in the manifest's words.
     pub doc: Option<String>,
     /// The root module. There is this, or `glsl`, or both.
     pub wesl: Option<File>,
+    /// Its root files in GLSL, one for each stage.
     pub glsl: Option<Glsl>,
     /// In the order declared; all, where the manifest names none.
     pub targets: Vec<Target>,
+    /// Its permutations.
     pub space: Space,
     /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
     pub usage: Option<File>,
@@ -36,6 +40,12 @@ impl Program {
         let glsl = self.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
         self.wesl.iter().chain(glsl)
     }
+
+    /// The same, to be changed.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut File> {
+        let glsl = self.glsl.iter_mut().flat_map(|glsl| [&mut glsl.vertex, &mut glsl.fragment]);
+        self.wesl.iter_mut().chain(glsl.flatten())
+    }
 }
 
 /// A file that a manifest names.
@@ -50,7 +60,9 @@ pub struct File {
 /// The stages of a GLSL program, at least one of them.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Glsl {
+    /// Root file of the vertex stage.
     pub vertex: Option<File>,
+    /// Root file of the fragment stage.
     pub fragment: Option<File>,
 }
 
@@ -65,6 +77,7 @@ const KEYS: &[&str] = &[
     "exclude",
     "usage",
     "limit",
+    "features_default",
     "doc",
 ];
 
@@ -89,7 +102,10 @@ pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> 
     let usage = table.get("usage").and_then(|value| file(reader, value, "`usage`"));
     let targets = table.get("targets").map_or(Target::ALL.to_vec(), |value| targets(reader, value));
     let limit = table.get("limit").map_or(Some(LIMITS.permutations), |value| limit(reader, value));
-    let space = space(reader, table, &what, span)?;
+    let undeclared =
+        table.get("features_default").and_then(|value| features_default(reader, value));
+    let mut space = space(reader, table, &what, span)?;
+    space.undeclared = undeclared;
     let program = Program { name, doc, wesl, glsl, targets, space, usage, limit: limit?, span };
     check_limit(reader, &program);
     (self::errors(reader) == errors).then_some(program)
@@ -145,6 +161,22 @@ fn target(reader: &mut Reader, value: &Value) -> Option<Target> {
         );
     }
     found
+}
+
+/// What the words of `features_default` say of a feature that no axis declares.
+const FEATURES: &[(&str, Option<bool>)] =
+    &[("on", Some(true)), ("off", Some(false)), ("error", None)];
+
+fn features_default(reader: &mut Reader, value: &Value) -> Option<bool> {
+    let text = reader.string(value, "`features_default`")?;
+    let found = FEATURES.iter().find(|(name, _)| *name == text.text);
+    if found.is_none() {
+        let message = format!("`features_default` is `on`, `off` or `error`, not `{}`", text.text);
+        let unknown =
+            Diagnostic::error(codes::UNKNOWN_VALUE, message).at(text.span, "not a choice");
+        reader.problems.push(unknown.suggest(&text.text, FEATURES.iter().map(|(name, _)| *name)));
+    }
+    found.and_then(|(_, undeclared)| *undeclared)
 }
 
 fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {

@@ -14,8 +14,11 @@ use crate::permute::axis::ValueSet;
 pub enum Formula {
     /// The axis's value is in the set.
     Is(usize, ValueSet),
+    /// The formula does not hold.
     Not(Box<Formula>),
+    /// All of them hold.
     All(Vec<Formula>),
+    /// At least one of them holds.
     Any(Vec<Formula>),
 }
 

@@ -18,7 +18,9 @@ use formula::Store;
 pub struct Constraint {
     /// As the manifest has it.
     pub text: String,
+    /// Why, in the manifest's words.
     pub doc: Option<String>,
+    /// What must hold.
     pub formula: Formula,
     /// The text in the manifest, quotes included.
     pub span: Span,
@@ -27,6 +29,7 @@ pub struct Constraint {
 /// A box of the space: the values that each axis may have, by axis.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Slice {
+    /// By axis: the values that are in the slice.
     pub values: Vec<ValueSet>,
     /// The entry in the manifest.
     pub span: Span,
@@ -44,8 +47,11 @@ impl Slice {
 /// of `exclude`, and in any case those of `include`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Lists {
+    /// Where there are any, nothing else ships.
     pub only: Vec<Slice>,
+    /// These do not ship.
     pub exclude: Vec<Slice>,
+    /// These ship whatever the slices say.
     pub include: Vec<Assignment>,
 }
 
@@ -70,6 +76,8 @@ pub struct Space {
     lists: Lists,
     valid: Diagram,
     wanted: Diagram,
+    /// [`Settings::undeclared`] at every point.
+    pub undeclared: Option<bool>,
 }
 
 impl Space {
@@ -87,7 +95,7 @@ impl Space {
         } else {
             diagram(&axes, &constraints, &lists, order)?
         };
-        Ok(Self { axes, constraints, lists, valid, wanted })
+        Ok(Self { axes, constraints, lists, valid, wanted, undeclared: None })
     }
 
     /// The axes, by name.
@@ -100,10 +108,12 @@ impl Space {
         self.axes.iter().find(|axis| axis.name == name)
     }
 
+    /// What each permutation has to fulfil.
     pub fn constraints(&self) -> &[Constraint] {
         &self.constraints
     }
 
+    /// Slices and keys that decide what ships.
     pub fn lists(&self) -> &Lists {
         &self.lists
     }
@@ -219,6 +229,7 @@ impl Space {
                 .filter(|axis| axis.mode == Mode::Spec)
                 .map(|axis| (axis.name.clone(), axis.values[axis.default].clone()))
                 .collect(),
+            undeclared: self.undeclared,
         }
     }
 

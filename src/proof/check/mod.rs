@@ -25,6 +25,7 @@ use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::kernel::Kernel;
 use crate::execute::{STACK, Session};
+use crate::validate::on_large_stack;
 use job::Job;
 
 /// Gives the module that holds functions of a library module, in a language: composed, parsed
@@ -170,10 +171,14 @@ pub fn check_with(
     open: &mut [Open],
     options: &Options<'_>,
 ) -> Result<Report, Diagnostics> {
-    let prepared: Vec<_> = files
-        .par_iter()
-        .map(|(module, file)| job::prepare(module, file, languages, subjects, options))
-        .collect();
+    // One batch on the large stacks: a thread that waits for a part of its job takes up other jobs
+    // meanwhile, on top of it.
+    let prepared: Vec<_> = on_large_stack(|| {
+        files
+            .par_iter()
+            .map(|(module, file)| job::prepare(module, file, languages, subjects, options))
+            .collect()
+    });
     let (mut jobs, mut errors) = (Vec::new(), Vec::new());
     for result in prepared {
         match result {

@@ -9,6 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::execute::interpreter::Interpreter;
 use crate::proof::cases::Oracle;
 use crate::proof::tolerance;
+use crate::validate::on_large_stack;
 use naga::ScalarKind;
 
 /// Largest relative difference of the two languages in f64.
@@ -93,7 +94,7 @@ impl Proof {
 
 /// Proves what there is to prove of each job.
 pub fn prove(jobs: &[Job<'_>]) -> Vec<Proof> {
-    jobs.par_iter().map(one).collect()
+    on_large_stack(|| jobs.par_iter().map(one).collect())
 }
 
 fn one(job: &Job<'_>) -> Proof {

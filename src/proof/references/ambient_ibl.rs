@@ -2,8 +2,10 @@
 
 use super::{Arguments, Entry, Expected};
 
-pub const REFERENCES: Entry =
-    Entry { module: "ambient::ibl", functions: &[("ibl_mix", ibl_mix), ("reflect_world", reflect_world), ("split_sum", split_sum)] };
+pub const REFERENCES: Entry = Entry {
+    module: "ambient::ibl",
+    functions: &[("ibl_mix", ibl_mix), ("reflect_world", reflect_world), ("split_sum", split_sum)],
+};
 
 /// c = mix(B, D*B, dp), then mix(c, S + c, sp).
 fn ibl_mix(a: &mut Arguments<'_>) -> Expected {

@@ -1,8 +1,8 @@
 //! Sources: Belcour and Barla, 2017, and the coefficients of its supplement; Khronos Group,
 //! KHR_materials_iridescence, 2022.
 
-use super::brdf_fresnel::dielectric;
 use super::Entry;
+use super::brdf_fresnel::dielectric;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -10,9 +10,7 @@ pub const REFERENCES: Entry = Entry {
     module: "brdf::film",
     functions: &[
         ("film_sensitivity", |a| sensitivity(a.f64() * 1e-9, a.vec3()).into()),
-        ("iridescence", |a| {
-            iridescence(a.f64(), a.f64(), a.vec3(), a.f64(), a.f64()).into()
-        }),
+        ("iridescence", |a| iridescence(a.f64(), a.f64(), a.vec3(), a.f64(), a.f64()).into()),
     ],
 };
 
@@ -21,10 +19,15 @@ pub const REFERENCES: Entry = Entry {
 fn sensitivity(difference: f64, signs: DVec3) -> DVec3 {
     let phase = 2.0 * PI * difference;
     let gaussian = |value: f64, place: f64, variance: f64, sign: f64| {
-        value * (2.0 * PI * variance).sqrt() * (place * phase).cos() * sign * (-variance * phase * phase).exp()
+        value
+            * (2.0 * PI * variance).sqrt()
+            * (place * phase).cos()
+            * sign
+            * (-variance * phase * phase).exp()
     };
     let xyz = DVec3::new(
-        gaussian(5.4856e-13, 1.6810e6, 4.3278e9, signs.x) + gaussian(9.7470e-14, 2.2399e6, 4.5282e9, signs.x),
+        gaussian(5.4856e-13, 1.6810e6, 4.3278e9, signs.x)
+            + gaussian(9.7470e-14, 2.2399e6, 4.5282e9, signs.x),
         gaussian(4.4201e-13, 1.7953e6, 9.3046e9, signs.y),
         gaussian(5.2481e-13, 2.2084e6, 6.6121e9, signs.z),
     ) / 1.0685e-7;

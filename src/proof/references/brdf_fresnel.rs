@@ -66,7 +66,8 @@ pub fn conductor(c: f64, n: f64, k: f64) -> f64 {
 fn f_conductor(a: &mut Arguments<'_>) -> Expected {
     let (mu, n, k) = (a.f64(), a.vec3(), a.vec3());
     let [least, thin, most] = [1e-7f32, 1e-4, 1e4].map(f64::from);
-    let one = |n: f64, k: f64| conductor(mu.clamp(least, 1.0), n.clamp(thin, most), k.clamp(0.0, most));
+    let one =
+        |n: f64, k: f64| conductor(mu.clamp(least, 1.0), n.clamp(thin, most), k.clamp(0.0, most));
     DVec3::new(one(n.x, k.x), one(n.y, k.y), one(n.z, k.z)).into()
 }
 

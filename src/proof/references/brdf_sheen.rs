@@ -35,8 +35,11 @@ fn v_neubelt(a: &mut Arguments<'_>) -> Expected {
 fn exponent(x: f64, weight: f64) -> f64 {
     let smooth = [25.3245, 3.32435, 0.16801, -1.27393, -4.85967];
     let rough = [21.5473, 3.82987, 0.19823, -1.97760, -4.32054];
-    let mixed: Vec<f64> =
-        smooth.iter().zip(rough).map(|(smooth, rough)| weight * smooth + (1.0 - weight) * rough).collect();
+    let mixed: Vec<f64> = smooth
+        .iter()
+        .zip(rough)
+        .map(|(smooth, rough)| weight * smooth + (1.0 - weight) * rough)
+        .collect();
     let [a, b, c, d, e] = mixed[..] else { return f64::NAN };
     a / (1.0 + b * x.powf(c)) + d * x + e
 }

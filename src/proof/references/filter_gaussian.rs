@@ -4,8 +4,10 @@ use super::{Arguments, Entry, Expected};
 use crate::execute::sampling;
 use glam::DVec2;
 
-pub const REFERENCES: Entry =
-    Entry { module: "filter::gaussian", functions: &[("gaussian21", |a| weight(a.f64() as i32).into()), ("blur21", blur)] };
+pub const REFERENCES: Entry = Entry {
+    module: "filter::gaussian",
+    functions: &[("gaussian21", |a| weight(a.f64() as i32).into()), ("blur21", blur)],
+};
 
 fn weight(i: i32) -> f64 {
     let bell = |i: i32| (-f64::from(i * i) / 16.0).exp();
@@ -16,6 +18,8 @@ fn blur(a: &mut Arguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (uv, direction) = (a.vec2(), a.vec2());
     let step = direction / DVec2::new(f64::from(map.width), f64::from(map.height));
-    let tap = |i: i32, channel| weight(i) * sampling::read(map, sampler, uv + f64::from(i) * step, channel);
+    let tap = |i: i32, channel| {
+        weight(i) * sampling::read(map, sampler, uv + f64::from(i) * step, channel)
+    };
     Expected::words((0..4).map(|channel| (-10..=10).map(|i| tap(i, channel)).sum()))
 }

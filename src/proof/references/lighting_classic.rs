@@ -40,7 +40,8 @@ fn accumulate(a: &mut Arguments<'_>) -> Expected {
     let (light, sample) = (Light::read(a), Sample::read(a));
     let (ambient, diffuse, specular, visibility) = (a.f64(), a.f64(), a.f64(), a.f64());
     let lit = light.color * sample.attenuation * sample.spot * visibility;
-    let scattered = scattered + light.ambient * material.ambient * ambient + lit * material.diffuse * diffuse;
+    let scattered =
+        scattered + light.ambient * material.ambient * ambient + lit * material.diffuse * diffuse;
     let reflected = reflected + lit * material.specular * specular * light.strength;
     Expected::words(scattered.to_array().into_iter().chain(reflected.to_array()))
 }
@@ -58,7 +59,8 @@ fn shadow_mix(visibility: f64, strength: f64) -> f64 {
 
 /// (tex*Lc + Lc*spec*0.33)*att*lambert + tex*Lc*0.1, specular at 50: the tutorial's code.
 fn shade_ncl(a: &mut Arguments<'_>) -> Expected {
-    let (base, color, n, l, v, attenuation) = (a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.f64());
+    let (base, color, n, l, v, attenuation) =
+        (a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.f64());
     let lit = base * color + color * blinn_phong(n, l, v, 50.0) * 0.33;
     (lit * attenuation * lambert(n, l) + base * color * 0.1).into()
 }
@@ -67,5 +69,6 @@ fn shade_ncl(a: &mut Arguments<'_>) -> Expected {
 fn shade_oglpg_7_21(a: &mut Arguments<'_>) -> Expected {
     let (ambient, diffuse, specular, power) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     let (n, l, v, visibility) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
-    (ambient + visibility * (diffuse * lambert(n, l) + specular * phong_oglpg(n, l, v, power))).into()
+    (ambient + visibility * (diffuse * lambert(n, l) + specular * phong_oglpg(n, l, v, power)))
+        .into()
 }

@@ -56,7 +56,11 @@ impl Sample {
     }
 
     fn words(self) -> Expected {
-        Expected::words(self.l.to_array().into_iter().chain([self.distance, self.attenuation, self.spot]))
+        Expected::words(self.l.to_array().into_iter().chain([
+            self.distance,
+            self.attenuation,
+            self.spot,
+        ]))
     }
 }
 
@@ -67,12 +71,20 @@ fn directional(light: &Light) -> Sample {
 fn point(light: &Light, p: DVec3) -> Sample {
     let offset = light.position - p;
     let distance = offset.length();
-    Sample { l: offset.normalize_or_zero(), distance, attenuation: polynomial(distance, light.attenuation), spot: 1.0 }
+    Sample {
+        l: offset.normalize_or_zero(),
+        distance,
+        attenuation: polynomial(distance, light.attenuation),
+        spot: 1.0,
+    }
 }
 
 fn spot(light: &Light, p: DVec3) -> Sample {
     let sample = point(light, p);
-    Sample { spot: cone_exponent(-sample.l.dot(light.axis), light.cutoff, light.exponent), ..sample }
+    Sample {
+        spot: cone_exponent(-sample.l.dot(light.axis), light.cutoff, light.exponent),
+        ..sample
+    }
 }
 
 /// By kind: 1 directional, 2 point, 3 spot; a light that is off sends nothing.

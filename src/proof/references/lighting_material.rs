@@ -4,7 +4,10 @@ use super::{Arguments, Entry, Expected};
 
 pub const REFERENCES: Entry = Entry {
     module: "lighting::material",
-    functions: &[("material_index", material_index), ("material_index_oglpg", material_index_oglpg)],
+    functions: &[
+        ("material_index", material_index),
+        ("material_index_oglpg", material_index_oglpg),
+    ],
 };
 
 /// Two materials for each index, the front's first.

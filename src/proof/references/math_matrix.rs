@@ -4,8 +4,10 @@
 use super::{Arguments, Entry, Expected};
 use glam::DMat3;
 
-pub const REFERENCES: Entry =
-    Entry { module: "math::matrix", functions: &[("inverse3", |a| inverse(a.mat3()).into()), ("normal_matrix", normal_matrix)] };
+pub const REFERENCES: Entry = Entry {
+    module: "math::matrix",
+    functions: &[("inverse3", |a| inverse(a.mat3()).into()), ("normal_matrix", normal_matrix)],
+};
 
 /// Zero for a matrix that has none in f32.
 fn inverse(m: DMat3) -> DMat3 {

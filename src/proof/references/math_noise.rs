@@ -48,7 +48,8 @@ pub fn unit(bits: u32) -> f64 {
 /// fract(sin(dot(seed, (12.9898, 78.233, 45.164, 94.673)))*43758.5453), with the constants as f32
 /// holds them: in the others' last digits lie whole turns.
 pub fn random_hpg(seed: DVec4) -> f64 {
-    let sine = seed.dot(DVec4::from_array([12.9898f32, 78.233, 45.164, 94.673].map(f64::from))).sin();
+    let sine =
+        seed.dot(DVec4::from_array([12.9898f32, 78.233, 45.164, 94.673].map(f64::from))).sin();
     (sine * f64::from(43758.547f32)).rem_euclid(1.0)
 }
 

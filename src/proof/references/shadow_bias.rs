@@ -12,6 +12,8 @@ pub const REFERENCES: Entry = Entry {
         ("slope_bias", |a| slope(a.f64(), a.f64(), a.f64()).into()),
         ("normal_offset", normal_offset),
         ("receiver_plane", receiver_plane),
+        ("cube_texel", |a| cube_texel(a.f64(), a.f64()).into()),
+        ("cube_bias", cube_bias),
     ],
 };
 
@@ -31,4 +33,14 @@ fn receiver_plane(a: &mut Arguments<'_>) -> Expected {
     let (dx, dy, dz) = (a.vec2(), a.vec2(), a.vec2());
     let rows = DMat2::from_cols(dx, dy).transpose();
     if rows.determinant().abs() < 1e-30 { DVec2::ZERO.into() } else { (rows.inverse() * dz).into() }
+}
+
+/// A face at distance d is 2*d wide.
+fn cube_texel(d: f64, size: f64) -> f64 {
+    2.0 * d / size.max(1.0)
+}
+
+fn cube_bias(a: &mut Arguments<'_>) -> Expected {
+    let texel = cube_texel(a.f64().max(0.0), a.f64());
+    slope(a.f64(), texel, 8.0 * texel).into()
 }

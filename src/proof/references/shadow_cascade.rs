@@ -1,11 +1,17 @@
-//! Sources: Zhang, Sun, Xu and Lun, 2006; Microsoft, "Cascaded Shadow Maps".
+//! Sources: Zhang, Sun, Xu and Lun, 2006; Microsoft, "Cascaded Shadow Maps"; Valient, 2008.
 
 use super::{Arguments, Entry, Expected};
-use glam::DVec4;
+use glam::{DVec2, DVec4};
 
 pub const REFERENCES: Entry = Entry {
     module: "shadow::cascade",
-    functions: &[("cascade_index", |a| (index(a.f64(), a.vec4()) as f64).into()), ("cascade_blend", blend)],
+    functions: &[
+        ("cascade_index", |a| (index(a.f64(), a.vec4()) as f64).into()),
+        ("cascade_blend", blend),
+        ("cascade_split", split),
+        ("cascade_snap", snap),
+        ("bounding_sphere", |a| bounding_sphere(a.f64(), a.f64(), a.vec2()).into()),
+    ],
 };
 
 /// How many cascades end at or before the distance: the first that does not is the one.
@@ -20,4 +26,37 @@ fn blend(a: &mut Arguments<'_>) -> Expected {
         Some(end) if overlap > 0.0 => (1.0 - (end - depth) / overlap).clamp(0.0, 1.0).into(),
         _ => 0.0.into(),
     }
+}
+
+/// The logarithmic split and the even one, mixed.
+fn split(a: &mut Arguments<'_>) -> Expected {
+    let (index, count, near, far, lambda) = (a.f64(), a.f64(), a.f64(), a.f64(), a.f64());
+    let near = near.max(f64::from(1e-6f32));
+    if far <= near || count == 0.0 {
+        return near.into();
+    }
+    let (share, lambda) = (index.min(count) / count, lambda.clamp(0.0, 1.0));
+    (lambda * near * (far / near).powf(share) + (1.0 - lambda) * (near + (far - near) * share)).into()
+}
+
+/// To the nearest whole texel; half way either is right.
+fn snap(a: &mut Arguments<'_>) -> Expected {
+    let (origin, size) = (a.vec2(), a.f64().max(1.0));
+    let texel = origin * size / 2.0;
+    let offset = |tie: DVec2| (((texel + tie).floor() - texel) * 2.0 / size).to_array();
+    let (down, up) = (0.5 - 1e-6 * size, 0.5 + 1e-6 * size);
+    let all = [down, up].map(|x| [down, up].map(|y| Expected::words(offset(DVec2::new(x, y)))));
+    let [[a, b], [c, d]] = all;
+    a.or(b).or(c).or(d)
+}
+
+/// As far from the corners of the near end as from those of the far end, but not beyond it.
+fn bounding_sphere(near: f64, far: f64, tangents: DVec2) -> DVec2 {
+    let to = |centre: f64, end: f64| (centre - end).hypot(tangents.length() * end);
+    let (mut low, mut high) = (near, far);
+    for _ in 0..100 {
+        let centre = 0.5 * (low + high);
+        if to(centre, near) < to(centre, far) { low = centre } else { high = centre }
+    }
+    DVec2::new(high, to(high, far))
 }

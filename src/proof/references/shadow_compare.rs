@@ -70,14 +70,21 @@ fn averaged(a: &mut Arguments<'_>, taps: fn(&mut Arguments<'_>, &At) -> Taps) ->
 }
 
 fn mean(map: &Texture, sampler: Sampler, at: At, taps: &Taps) -> f64 {
-    let tap = |(weight, offset): &(f64, DVec2)| weight * compare(map, sampler, at.uv + *offset / size(map), at.depth);
+    let tap = |(weight, offset): &(f64, DVec2)| {
+        weight * compare(map, sampler, at.uv + *offset / size(map), at.depth)
+    };
     taps.iter().map(tap).sum::<f64>() / taps.iter().map(|(weight, _)| weight).sum::<f64>()
 }
 
 /// Every pair of the weights, `step` texels apart.
 fn bell(weights: &[f64], step: f64) -> Taps {
     let place = |index: usize| (index as f64 - (weights.len() / 2) as f64) * step;
-    let row = |y: usize| weights.iter().enumerate().map(move |(x, weight)| (weight * weights[y], DVec2::new(place(x), place(y))));
+    let row = |y: usize| {
+        weights
+            .iter()
+            .enumerate()
+            .map(move |(x, weight)| (weight * weights[y], DVec2::new(place(x), place(y))))
+    };
     (0..weights.len()).flat_map(row).collect()
 }
 
@@ -98,9 +105,13 @@ fn random16_hpg(a: &mut Arguments<'_>) -> Expected {
     let (sc, least, pixel) = (a.vec4(), a.f64(), a.vec2());
     let ndc = sc.truncate() / sc.w;
     let uv = DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
-    let is_inside = sc.w > least.max(0.0) && ndc.x.abs() <= 1.0 && ndc.y.abs() <= 1.0 && (0.0..=1.0).contains(&ndc.z);
+    let is_inside = sc.w > least.max(0.0)
+        && ndc.x.abs() <= 1.0
+        && ndc.y.abs() <= 1.0
+        && (0.0..=1.0).contains(&ndc.z);
     let place = |i: u32| {
-        let sines = [(pixel.x, pixel.y), (pixel.y, pixel.x)].map(|(x, y)| random_hpg(DVec4::new(x, y, x, f64::from(i))));
+        let sines = [(pixel.x, pixel.y), (pixel.y, pixel.x)]
+            .map(|(x, y)| random_hpg(DVec4::new(x, y, x, f64::from(i))));
         uv + 0.25 * DVec2::from_array(sines) / sc.w
     };
     let mean = || (0..16).map(|i| compare(map, sampler, place(i), ndc.z)).sum::<f64>() / 16.0;
@@ -109,7 +120,9 @@ fn random16_hpg(a: &mut Arguments<'_>) -> Expected {
 
 /// `count` places of the disk, at least one.
 fn disk(count: f64, radius: f64, phi: f64) -> Taps {
-    (0..count.max(1.0) as u32).map(|i| (1.0, radius * vogel_disk(f64::from(i), count, phi))).collect()
+    (0..count.max(1.0) as u32)
+        .map(|i| (1.0, radius * vogel_disk(f64::from(i), count, phi)))
+        .collect()
 }
 
 fn castano_row(a: &mut Arguments<'_>) -> Expected {
@@ -122,7 +135,9 @@ fn castano_row(a: &mut Arguments<'_>) -> Expected {
 /// The different depths that a sample may read which is taken this many texels off its place.
 fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f64> {
     let sides = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
-    let mut depths: Vec<f64> = sides.map(|(x, y)| sampling::read(map, sampler, uv + off * DVec2::new(x, y) / size(map), 0)).into();
+    let mut depths: Vec<f64> = sides
+        .map(|(x, y)| sampling::read(map, sampler, uv + off * DVec2::new(x, y) / size(map), 0))
+        .into();
     depths.sort_by(f64::total_cmp);
     depths.dedup();
     depths
@@ -135,12 +150,16 @@ fn blockers(map: &Texture, sampler: Sampler, at: At, radius: f64, phi: f64) -> V
     let mut sums = vec![(0u32, 0.0)];
     for (_, offset) in disk(16.0, radius, phi) {
         let depths = depths_around(map, sampler, at.uv + offset / size(map), off);
-        let add = |(count, sum): &(u32, f64), depth: f64| if depth < at.depth { (count + 1, sum + depth) } else { (*count, *sum) };
+        let add = |(count, sum): &(u32, f64), depth: f64| {
+            if depth < at.depth { (count + 1, sum + depth) } else { (*count, *sum) }
+        };
         sums = sums.iter().flat_map(|sum| depths.iter().map(|depth| add(sum, *depth))).collect();
         sums.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         sums.dedup_by(|a, b| a.0 == b.0 && (a.1 - b.1).abs() < 1e-12);
     }
-    sums.into_iter().map(|(count, sum)| if count == 0 { at.depth } else { sum / f64::from(count) }).collect()
+    sums.into_iter()
+        .map(|(count, sum)| if count == 0 { at.depth } else { sum / f64::from(count) })
+        .collect()
 }
 
 /// Any of the values.

@@ -8,7 +8,9 @@ use glam::DVec4;
 pub const REFERENCES: Entry = Entry {
     module: "shadow::coord",
     functions: &[
-        ("is_on_map", |a| [a.f64(), a.f64()].iter().all(|value| (0.0..=1.0).contains(value)).into()),
+        ("is_on_map", |a| {
+            [a.f64(), a.f64()].iter().all(|value| (0.0..=1.0).contains(value)).into()
+        }),
         ("shadow_coord", shadow_coord),
         ("project", |a| project(a.vec4(), a.f64())),
         ("project_gl", project_gl),

@@ -1,19 +1,28 @@
 //! Sources: OpenGL: Build High Performance Graphics, recipe 7; Donnelly and Lauritzen, 2006;
-//! Lauritzen, GPU Gems 3, chapter 8 (slope, bleeding); Lauritzen and McCool, 2008 (exponential).
+//! Lauritzen, GPU Gems 3, chapter 8 (slope, bleeding); Lauritzen and McCool, 2008 (exponential);
+//! Annen et al., 2008 (exponential shadow maps); Peters and Klein, 2015 (four moments).
 
 use super::{Arguments, Entry, Expected};
-use glam::{DVec2, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 pub const REFERENCES: Entry = Entry {
     module: "shadow::moments",
     functions: &[
         ("vsm_moments", |a| moments(a.f64()).into()),
-        ("vsm_moments_slope", |a| (moments(a.f64()) + DVec2::Y * 0.25 * a.vec2().length_squared()).into()),
+        ("vsm_moments_slope", |a| {
+            (moments(a.f64()) + DVec2::Y * 0.25 * a.vec2().length_squared()).into()
+        }),
         ("chebyshev", |a| chebyshev(a.vec2(), a.f64(), a.f64(), a.f64()).into()),
         ("vsm_visibility", vsm_visibility),
         ("evsm_warp", |a| warp(a.f64(), a.vec2()).into()),
         ("evsm_moments", evsm_moments),
         ("evsm_visibility", evsm_visibility),
+        ("esm_moment", |a| exponent(a.f64(), a.f64()).exp().into()),
+        ("esm_visibility", esm_visibility),
+        ("msm_moments", |a| powers(a.f64()).into()),
+        ("msm_quantise", |a| quantise(a.vec4()).into()),
+        ("msm_dequantise", |a| dequantise(a.vec4()).into()),
+        ("msm_visibility", |a| msm_visibility(a.vec4(), a.f64(), a.f64()).into()),
     ],
 };
 
@@ -56,4 +65,64 @@ fn evsm_visibility(a: &mut Arguments<'_>) -> Expected {
     let least = min_variance * (2.0 * exponents * w).powf(2.0);
     let positive = chebyshev(DVec2::new(m.x, m.y), w.x, least.x, bleed);
     positive.min(chebyshev(DVec2::new(m.z, m.w), w.y, least.y, bleed)).into()
+}
+
+fn exponent(d: f64, c: f64) -> f64 {
+    c.clamp(0.0, 80.0) * d.clamp(0.0, 1.0)
+}
+
+/// The filtered exponential over that of the point.
+fn esm_visibility(a: &mut Arguments<'_>) -> Expected {
+    let (m, t, c) = (a.f64(), a.f64(), a.f64());
+    (m / exponent(t, c).exp()).clamp(0.0, 1.0).into()
+}
+
+fn powers(d: f64) -> DVec4 {
+    DVec4::from([1, 2, 3, 4].map(|power| d.powi(power)))
+}
+
+/// The matrix as it is printed, row by row.
+const ROWS: [[f64; 4]; 4] = [
+    [-2.07224649, 13.7948857237, 0.105877704, 9.7924062118],
+    [32.23703778, -59.4683975703, -1.9077466311, -33.7652110555],
+    [-68.571074599, 82.0359750338, 9.3496555107, 47.9456096605],
+    [39.3703274134, -35.364903257, -6.6543490743, -23.9728048165],
+];
+const OFFSET: DVec4 = DVec4::new(0.035955884801, 0.0, 0.0, 0.0);
+
+/// A row vector times the matrix.
+fn quantise(m: DVec4) -> DVec4 {
+    DMat4::from_cols_array_2d(&ROWS) * m + OFFSET
+}
+
+/// The inverse by elimination, not that which is printed beside it.
+fn dequantise(q: DVec4) -> DVec4 {
+    DMat4::from_cols_array_2d(&ROWS).inverse() * (q - OFFSET)
+}
+
+/// The three depths of the moments of which one is the point's: by Cramer's rule the polynomial
+/// whose roots are the others, then their weights from the first moments.
+fn msm_visibility(m: DVec4, t: f64, bias: f64) -> f64 {
+    let b = m.lerp(DVec4::splat(0.5), bias);
+    if b.y - b.x * b.x <= f64::from(1e-12f32) {
+        return f64::from(u8::from(t <= b.x));
+    }
+    let hankel = [DVec3::new(1.0, b.x, b.y), DVec3::new(b.x, b.y, b.z), DVec3::new(b.y, b.z, b.w)];
+    let side = DVec3::new(1.0, t, t * t);
+    let cramer = |column: usize| {
+        let mut columns = hankel;
+        columns[column] = side;
+        DMat3::from_cols_array_2d(&columns.map(|column| column.to_array())).determinant()
+    };
+    // The determinant of the matrix itself is a common factor.
+    let [k0, k1, k2] = [cramer(0), cramer(1), cramer(2)];
+    let root = (k1 * k1 - 4.0 * k2 * k0).max(0.0).sqrt();
+    let far = -0.5 * (k1 + root.copysign(k1));
+    let depths = [t, far / k2, k0 / far];
+    let weight = |index: usize| {
+        let (x, y, z) = (depths[index], depths[(index + 1) % 3], depths[(index + 2) % 3]);
+        (b.y - (y + z) * b.x + y * z) / ((x - y) * (x - z))
+    };
+    let before: f64 = (1..3).filter(|index| depths[*index] < t).map(weight).sum();
+    (1.0 - before).clamp(0.0, 1.0)
 }

@@ -8,7 +8,9 @@ pub const REFERENCES: Entry = Entry {
     module: "surface::normal",
     functions: &[
         ("face_normal_area", |a| area(a.vec3(), a.vec3(), a.vec3()).into()),
-        ("face_normal", |a| area(a.vec3(), a.vec3(), a.vec3()).try_normalize().unwrap_or(DVec3::Z).into()),
+        ("face_normal", |a| {
+            area(a.vec3(), a.vec3(), a.vec3()).try_normalize().unwrap_or(DVec3::Z).into()
+        }),
         ("perturb_normal", perturb),
     ],
 };

@@ -5,5 +5,8 @@ use glam::DVec3;
 
 pub const REFERENCES: Entry = Entry {
     module: "surface::view",
-    functions: &[("view_local", |a| (-a.vec3()).try_normalize().unwrap_or(DVec3::Z).into()), ("view_infinite", |_| DVec3::Z.into())],
+    functions: &[
+        ("view_local", |a| (-a.vec3()).try_normalize().unwrap_or(DVec3::Z).into()),
+        ("view_infinite", |_| DVec3::Z.into()),
+    ],
 };

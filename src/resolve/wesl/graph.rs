@@ -82,6 +82,7 @@ pub struct Bases {
 /// A module in its place.
 #[derive(Debug)]
 pub struct Node {
+    /// Its items, imports and conditions.
     pub module: Module,
     /// 0 for the root package, else one more than the dependency's index.
     pub package: usize,
@@ -101,6 +102,7 @@ pub struct Node {
     pub lints: Vec<Diagnostic>,
     /// What led here first; nothing for the root module.
     pub importer: Option<Importer>,
+    /// What its references mean.
     pub bases: Bases,
 }
 
@@ -116,6 +118,7 @@ pub struct Importer {
 pub struct Candidate {
     /// All must hold; of the module that uses it.
     pub conditions: Vec<ConditionId>,
+    /// What the import leads to.
     pub target: Target,
 }
 
@@ -123,7 +126,12 @@ pub struct Candidate {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// The items of that name in a node; conditions choose.
-    Items { node: u32, name: Name },
+    Items {
+        /// Number of the module.
+        node: u32,
+        /// Name of its items.
+        name: Name,
+    },
     /// Index into [`Graph::constants`].
     Constant(u32),
     /// A module: fine to import, no value in itself.
@@ -135,6 +143,7 @@ pub enum Target {
 /// `constants::NAME`, used somewhere.
 #[derive(Debug)]
 pub struct Constant {
+    /// The name that is imported.
     pub name: Name,
     /// Its first use.
     pub span: Span,

@@ -118,7 +118,7 @@ pub fn undeclared(graph: &Graph, settings: &Settings) -> Diagnostics {
         for expression in &node.module.expressions {
             let Expression::Flag(name, range) = expression else { continue };
             let text = graph.names.text(*name);
-            if !settings.values.contains_key(text) {
+            if settings.value(text).is_none() {
                 let warning = Diagnostic::warning(
                     codes::UNDECLARED_FLAG,
                     format!("no axis declares the flag `{text}`"),

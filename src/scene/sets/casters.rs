@@ -4,9 +4,17 @@ use glam::{DMat4, DVec3};
 
 use super::floor::tiles;
 use super::palette::{self, AMBER, CHALK, CORAL, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
 use crate::scene::shape::Shape;
 
+/// The scene, for the table of all.
+pub const SET: Set = Set {
+    name: "casters",
+    about: "a sphere, a box and a torus over a floor that their shadows fall on",
+    make: scene,
+};
+
+/// The scene itself.
 pub fn scene() -> Scene {
     let floor = tiles(10, 1.4, [CHALK, CHALK * 0.8], 2);
     let matt = Material::default().glossy(0.08).shiny(20.0);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::palette::{self, CHALK, SLATE};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, base};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base};
 use crate::scene::shape::Shape;
 use glam::DMat4;
 
@@ -24,6 +24,11 @@ pub fn tiles(count: i32, side: f64, colors: [DVec3; 2], quads: u32) -> Shape {
     })
 }
 
+/// The scene, for the table of all.
+pub const SET: Set =
+    Set { name: "floor", about: "a tessellated floor with a light above it", make: scene };
+
+/// The scene itself.
 pub fn scene() -> Scene {
     let floor = tiles(TILES, 1.0, [CHALK, SLATE * 1.4], 5);
     let glossy = Material::default().glossy(0.3).shiny(60.0);

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
-use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, base, maps, placed};
+use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base, maps, placed};
 use crate::scene::shape::Shape;
 
 /// Half of the room along each axis, its middle at the origin.
@@ -61,6 +61,14 @@ fn chart(index: usize, uv: DVec2) -> DVec2 {
     (place + inside) / DVec2::new(CHARTS.0 as f64, CHARTS.1 as f64)
 }
 
+/// The scene, for the table of all.
+pub const SET: Set = Set {
+    name: "room",
+    about: "a box seen from inside, with textures and a baked lightmap",
+    make: scene,
+};
+
+/// The scene itself.
 pub fn scene() -> Scene {
     let plaster = Material::default().glossy(0.08);
     let mut objects: Vec<Object> = walls()

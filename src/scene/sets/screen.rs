@@ -2,8 +2,16 @@
 
 use glam::DVec3;
 
-use super::{Lamp, Scene, casters};
+use super::{Lamp, Scene, Set, casters};
 
+/// The scene, for the table of all.
+pub const SET: Set = Set {
+    name: "screen",
+    about: "one triangle that covers the picture, before it the casters as the light sees them",
+    make: scene,
+};
+
+/// The scene itself.
 pub fn scene() -> Scene {
     let mut scene = casters::scene();
     if let Some(key) = scene.lamps.first_mut() {

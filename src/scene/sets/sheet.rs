@@ -3,9 +3,17 @@
 use glam::{DMat4, DVec3};
 
 use super::palette::{self, CHALK};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
 use crate::scene::shape::Shape;
 
+/// The scene, for the table of all.
+pub const SET: Set = Set {
+    name: "sheet",
+    about: "an open, curled sheet: both of its sides are visible",
+    make: scene,
+};
+
+/// The scene itself.
 pub fn scene() -> Scene {
     let curl = Shape::surface(96, 24, |u, v| {
         // A spiral that opens towards the viewer.

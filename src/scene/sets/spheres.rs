@@ -3,11 +3,19 @@
 use glam::DVec3;
 
 use super::palette::{self, AMBER, CORAL, INDIGO, LEAF, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
 use crate::scene::shape::Shape;
 
 const COLORS: [DVec3; 5] = [CORAL, AMBER, LEAF, TEAL, INDIGO];
 
+/// The scene, for the table of all.
+pub const SET: Set = Set {
+    name: "spheres",
+    about: "a row of spheres of rising shininess before the viewer",
+    make: scene,
+};
+
+/// The scene itself.
 pub fn scene() -> Scene {
     let ball = Shape::sphere(0.95, (48, 24));
     let object = |(index, color): (usize, &DVec3)| {

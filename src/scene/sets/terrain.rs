@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette;
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, base};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base};
 use crate::scene::shape::Shape;
 
 /// Along each side, scene units.
@@ -19,6 +19,11 @@ pub fn height(x: f64, z: f64) -> f64 {
     valley * (1.5 * ridge * ridge + 0.4) + bumps
 }
 
+/// The scene, for the table of all.
+pub const SET: Set =
+    Set { name: "terrain", about: "a field of heights under a low sun", make: scene };
+
+/// The scene itself.
 pub fn scene() -> Scene {
     let at = |u: f64, v: f64| {
         let (x, z) = (SIDE * (u - 0.5), SIDE * (0.5 - v));

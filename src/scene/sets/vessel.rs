@@ -4,7 +4,7 @@ use glam::{DMat4, DVec2, DVec3};
 
 use super::floor::tiles;
 use super::palette::{self, CHALK, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
 use crate::scene::shape::Shape;
 
 const BODY: &[(f64, f64)] = &[
@@ -74,6 +74,14 @@ const CUP: &[(f64, f64)] = &[
     (0.0, 0.08),
 ];
 
+/// The scene, for the table of all.
+pub const SET: Set = Set {
+    name: "vessel",
+    about: "a turned pot with a spout and a handle, on a table",
+    make: scene,
+};
+
+/// The scene itself.
 pub fn scene() -> Scene {
     let glaze = Material::default().glossy(0.5).shiny(90.0);
     let cup: Vec<DVec2> = CUP.iter().map(|(radius, height)| DVec2::new(*radius, *height)).collect();

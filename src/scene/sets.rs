@@ -1,27 +1,19 @@
 //! The scenes of the pictures: shapes, lamps, materials and a viewer, all by formulas.
 
-mod casters;
-mod floor;
-mod maps;
-mod palette;
-mod room;
-mod screen;
-mod sheet;
-mod spheres;
-mod terrain;
-mod vessel;
-
-pub use maps::{Map, Maps};
+pub use super::maps::{Map, Maps};
 
 use glam::{DMat4, DVec3};
 
 use super::shape::Shape;
 use super::view::look_at;
+use super::{maps, palette};
 
 /// Everything that is drawn, and what it is seen with.
 #[derive(Debug, Clone)]
 pub struct Scene {
+    /// What is drawn.
     pub objects: Vec<Object>,
+    /// Where it is seen from.
     pub eye: Eye,
     /// Up to ten, the most important one first; the first casts the shadow.
     pub lamps: Vec<Lamp>,
@@ -29,18 +21,24 @@ pub struct Scene {
     pub materials: Vec<[Material; 2]>,
     /// Light from everywhere: of one colour, from above, from below.
     pub ambient: DVec3,
+    /// Ambient light from above.
     pub sky: DVec3,
+    /// Ambient light from below.
     pub ground: DVec3,
     /// What distance fades into, and over which distances.
     pub haze: DVec3,
+    /// Distances at which the haze begins and is full.
     pub haze_range: (f64, f64),
+    /// Textures, made when they are asked for.
     pub maps: fn() -> Maps,
 }
 
 /// A shape in its place.
 #[derive(Debug, Clone)]
 pub struct Object {
+    /// Corners and triangles.
     pub shape: Shape,
+    /// Places the shape in the world.
     pub world_from_object: DMat4,
     /// Multiplied with the colours of the corners.
     pub color: DVec3,
@@ -53,11 +51,15 @@ pub struct Object {
 /// The viewer.
 #[derive(Debug, Clone, Copy)]
 pub struct Eye {
+    /// In world space.
     pub position: DVec3,
+    /// A point that is looked at, in world space.
     pub target: DVec3,
     /// The whole vertical angle, radians.
     pub fov_y: f64,
+    /// Distance of the near plane.
     pub near: f64,
+    /// Distance of the far plane.
     pub far: f64,
 }
 
@@ -67,7 +69,9 @@ pub struct Eye {
 pub struct Lamp {
     /// What arrives at the target, whatever the falloff.
     pub color: DVec3,
+    /// In world space.
     pub position: DVec3,
+    /// A point that it shines at, in world space.
     pub target: DVec3,
     /// Half the angle of the cone, radians.
     pub half_angle: f64,
@@ -79,21 +83,32 @@ pub struct Lamp {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LampKind {
+    /// Shines in one direction everywhere.
     Directional,
+    /// Shines to all sides.
     Point,
+    /// Shines into a cone.
     Spot,
 }
 
 /// What a surface does with light.
 #[derive(Debug, Clone, Copy)]
 pub struct Material {
+    /// Linear colour that it gives off by itself.
     pub emission: DVec3,
+    /// Exponent of the classic highlights.
     pub shininess: f64,
+    /// Share of the ambient light that it reflects.
     pub ambient: DVec3,
+    /// Roughness of the microfacet highlight, [0, 1].
     pub roughness: f64,
+    /// Share of the light that it reflects to all sides.
     pub diffuse: DVec3,
+    /// How far light wraps around the terminator, [0, 1].
     pub wrap: f64,
+    /// Share of the light in its highlight.
     pub specular: DVec3,
+    /// Roughness of Oren and Nayar, radians.
     pub sigma: f64,
 }
 
@@ -115,11 +130,11 @@ impl Default for Material {
 
 impl Material {
     /// A highlight of another sharpness, the roughness to match.
-    fn shiny(self, shininess: f64) -> Self {
+    pub(super) fn shiny(self, shininess: f64) -> Self {
         Self { shininess, roughness: (2.0 / (shininess + 2.0)).powf(0.25), ..self }
     }
 
-    fn glossy(self, share: f64) -> Self {
+    pub(super) fn glossy(self, share: f64) -> Self {
         Self { specular: DVec3::splat(share), ..self }
     }
 }
@@ -175,32 +190,22 @@ impl Scene {
     }
 }
 
-/// A scene's name, what it is, and how it is made.
-pub type Set = (&'static str, &'static str, fn() -> Scene);
+/// A scene, by its name: one file of `sets/` each.
+#[derive(Debug)]
+pub struct Set {
+    /// As presets and the command line name it.
+    pub name: &'static str,
+    /// One line.
+    pub about: &'static str,
+    /// The scene.
+    pub make: fn() -> Scene,
+}
 
-/// All scenes.
-pub const SETS: &[Set] = &[
-    ("spheres", "a row of spheres of rising shininess before the viewer", spheres::scene),
-    ("floor", "a tessellated floor with a light above it", floor::scene),
-    (
-        "casters",
-        "a sphere, a box and a torus over a floor that their shadows fall on",
-        casters::scene,
-    ),
-    ("sheet", "an open, curled sheet: both of its sides are visible", sheet::scene),
-    ("room", "a box seen from inside, with textures and a baked lightmap", room::scene),
-    (
-        "screen",
-        "one triangle that covers the picture, before it the casters as the light sees them",
-        screen::scene,
-    ),
-    ("terrain", "a field of heights under a low sun", terrain::scene),
-    ("vessel", "a turned pot with a spout and a handle, on a table", vessel::scene),
-];
+include!(concat!(env!("OUT_DIR"), "/sets.rs"));
 
 /// The scene of that name.
 pub fn scene(name: &str) -> Option<Scene> {
-    SETS.iter().find(|(known, _, _)| *known == name).map(|(_, _, scene)| scene())
+    ALL.iter().find(|set| set.name == name).map(|set| (set.make)())
 }
 
 /// A place, turned about y by an angle in radians.

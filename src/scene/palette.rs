@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Lamp, LampKind, Material};
+use super::sets::{Lamp, LampKind, Material};
 
 pub const CORAL: DVec3 = DVec3::new(0.82, 0.26, 0.2);
 pub const AMBER: DVec3 = DVec3::new(0.86, 0.52, 0.13);

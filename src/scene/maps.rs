@@ -5,17 +5,22 @@ use glam::{DVec2, DVec3, DVec4};
 /// Texels, row by row, linear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Map {
+    /// Texels in a row.
     pub width: usize,
+    /// Rows.
     pub height: usize,
+    /// Row by row, from the top.
     pub texels: Vec<DVec4>,
 }
 
 /// What the axes `base_map`, `normal_map` and `lightmap` read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Maps {
+    /// Colours.
     pub base: Map,
     /// Normals in tangent space, from -1 to 1 written as 0 to 1.
     pub normal: Map,
+    /// Light that was computed beforehand.
     pub light: Map,
 }
 

@@ -1,0 +1,211 @@
+//! Lights with an area: spheres, disks, tubes, and rectangles by linearly transformed cosines.
+
+#ifndef LAMPLIGHT_LIGHTING_AREA_GLSL
+#define LAMPLIGHT_LIGHTING_AREA_GLSL
+
+#include "../math/safe.glsl"
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
+/// The part of one edge in the vector irradiance of a polygon.
+///
+/// Parameters: `a`, `b` unit directions to the ends of the edge, in a frame whose z is the normal.
+/// Returns: the unit normal of the plane of both, times the angle between them over 2*pi; components in [-0.5, 0.5].
+/// Source: Lambert, Photometria, 1760; the rational fit of the angle: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016, code of the supplement.
+/// Edges: zero for equal directions, for opposite ones, whose plane is not known, and for a zero vector.
+/// Error model: relative 2e-6 + 2^-22/s, with s the sine of the angle.
+vec3 ltc_edge(vec3 a, vec3 b) {
+    vec3 c = cross(a, b);
+    float x = dot(a, b);
+    float y = abs(x);
+    float fit = (0.8543985 + (0.4965155 + 0.0145206 * y) * y) / (3.417594 + (4.1616724 + y) * y);
+    // The fit is of acute angles; the obtuse one is what is left of a half turn.
+    float obtuse = 0.5 / sqrt(max(dot(c, c), 1e-14)) - fit;
+    return c * (x > 0.0 ? fit : obtuse);
+}
+
+/// A vector at right angles to another.
+///
+/// Parameters: `n` unit.
+/// Returns: a unit vector, the same for the same `n`.
+/// Source: the cross product with an axis that is not along `n`.
+/// Edges: (1, 0, 0) for a zero vector.
+/// Error model: absolute 4*2^-23.
+vec3 any_tangent(vec3 n) {
+    vec3 axis = (abs(n.x) > 0.6 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0));
+    return safe_normalize(cross(n, axis), vec3(1.0, 0.0, 0.0));
+}
+
+/// The share of a linearly transformed cosine that falls onto a rectangle.
+///
+/// With the identity for `minv` it is the rectangle's form factor: irradiance over pi of a light of radiance 1.
+///
+/// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, that space, scene units; `minv` inverse of the lobe's matrix in the frame of `n` and `v`, as from `ltc_matrix`, with a positive determinant; `quad` corners of a plane convex quadrilateral, the space of `p`: it shines to the side that sees them counter-clockwise.
+/// Returns: the share, from 0 to 1 but for rounding; times the light's radiance and the lobe's albedo it is radiance.
+/// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016; the polygon is cut exactly at the horizon.
+/// Edges: 0 from behind the light, below the horizon, and for a rectangle without area; the frame's azimuth is any where `v` is along `n`.
+/// Error model: absolute 2^-17 for a light that is as large as it is far away; differences of corners and `p` cancel for a point far from the origin.
+float ltc_rect(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 quad[4]) {
+    vec3 t1 = safe_normalize(v - n * dot(v, n), any_tangent(n));
+    vec3 t2 = cross(n, t1);
+    vec3 corners[4] = quad;
+    for (int i = 0; i < 4; i++) {
+        vec3 q = corners[i] - p;
+        corners[i] = minv * vec3(dot(t1, q), dot(t2, q), dot(n, q));
+    }
+    float sum = 0.0;
+    // Where the outline goes below the horizon, and where it comes back: at most once each.
+    vec3 leaves = vec3(0.0);
+    vec3 enters = vec3(0.0);
+    for (int i = 0; i < 4; i++) {
+        vec3 tail = corners[i];
+        vec3 head = corners[(i + 1) % 4];
+        vec3 start = tail;
+        vec3 end = head;
+        if ((tail.z > 0.0) != (head.z > 0.0)) {
+            vec3 cut = tail + (head - tail) * (tail.z / (tail.z - head.z));
+            if (tail.z > 0.0) {
+                end = vec3(cut.xy, 0.0);
+                leaves = end;
+            } else {
+                start = vec3(cut.xy, 0.0);
+                enters = start;
+            }
+        }
+        if (tail.z > 0.0 || head.z > 0.0) {
+            sum += ltc_edge(safe_normalize(start, vec3(0.0)), safe_normalize(end, vec3(0.0))).z;
+        }
+    }
+    sum += ltc_edge(safe_normalize(leaves, vec3(0.0)), safe_normalize(enters, vec3(0.0))).z;
+    return max(-sum, 0.0);
+}
+
+/// Where a table of 64 by 64 lobes is read.
+///
+/// Parameters: `nv` cosine n.v, [0, 1]; `roughness` perceptual, [0, 1].
+/// Returns: texture coordinates from the centre of the first texel to that of the last.
+/// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016, code of the supplement.
+/// Edges: parameters outside [0, 1] are clamped to it.
+/// Error model: absolute 3*2^-24 + 2^-24/sqrt(1 - nv).
+vec2 ltc_uv(float nv, float roughness) {
+    vec2 at = vec2(clamp(roughness, 0.0, 1.0), sqrt(1.0 - clamp(nv, 0.0, 1.0)));
+    return at * 0.984375 + 0.0078125;
+}
+
+/// The inverse matrix of a lobe from the four numbers that a table holds of it.
+///
+/// Parameters: `t` entries of the inverse, column by column: x of the first column, z of the first, x of the third, z of the third.
+/// Returns: the matrix for `ltc_rect`: its middle entry is 1, the others are 0.
+/// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016, code of the supplement.
+/// Edges: (1, 0, 0, 1) is the identity: a cosine lobe.
+/// Error model: exact.
+mat3 ltc_matrix(vec4 t) {
+    return mat3(vec3(t.x, 0.0, t.y), vec3(0.0, 1.0, 0.0), vec3(t.z, 0.0, t.w));
+}
+
+/// Irradiance from a sphere of radiance 1, the part below the horizon cut off.
+///
+/// Parameters: `mu` cosine of the angle between the normal and the direction to the centre, [-1, 1]; `sin2` squared sine of the angle that the sphere's radius is seen under, [0, 1]: `R^2/d^2`, 1 on the sphere and within it.
+/// Returns: irradiance, [0, pi].
+/// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.7.2.1 "Sphere area lights".
+/// Edges: 0 for `sin2` of 0 or less; parameters beyond their ranges are clamped; (1 + mu)*pi/2 on the sphere.
+/// Error model: absolute 6e-6, relative 2^-22 where the whole sphere is above the horizon.
+float sphere_irradiance(float mu, float sin2) {
+    float c = min(mu, 1.0);
+    float s2 = clamp(sin2, 0.0, 1.0);
+    if (c * c >= s2) {
+        return 3.1415927 * s2 * max(c, 0.0);
+    }
+    // Of the angles in which the horizon cuts the sphere the tangents are known: no arc cosine loses digits.
+    float x = sqrt((1.0 - s2) / s2);
+    float q = sqrt((s2 - c * c) / s2);
+    float angle = atan(q, -x * c);
+    return max((c * angle - x * q) * s2 + atan(q, x), 0.0);
+}
+
+/// Irradiance from a disk of radiance 1, the part below the horizon cut off.
+///
+/// Parameters: `mu` cosine of the angle between the normal and the direction to the centre, [-1, 1]; `facing` cosine of the angle between the disk's normal and the direction from it, [-1, 1]; `sin2` squared sine of the angle that its radius is seen under from straight ahead: `R^2/(R^2 + d^2)`, [0, 1].
+/// Returns: irradiance, [0, pi].
+/// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.7.2.2 "Disk area lights".
+/// Edges: 0 from behind; as for `sphere_irradiance`; exact for a disk that faces the point.
+/// Error model: that of `sphere_irradiance`, and 1 ULP.
+float disk_irradiance(float mu, float facing, float sin2) {
+    return sphere_irradiance(mu, sin2) * clamp(facing, 0.0, 1.0);
+}
+
+/// The point of a sphere that stands for it in a reflection.
+///
+/// Parameters: `l` vector from the lit point to the centre, scene units, any length; `r` unit, the viewer's direction mirrored; `radius` of the sphere, scene units, at least 0.
+/// Returns: vector from the lit point to that point: where `r` meets the sphere the nearest point of the ray, else the sphere's point nearest to it.
+/// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Representative Point Method"; for a mirrored direction away from the light the ray ends at the lit point.
+/// Edges: `l` for a radius of 0 or less, and where the ray goes through the centre.
+/// Error model: absolute 2^-20*|l|.
+vec3 nearest_sphere(vec3 l, vec3 r, float radius) {
+    vec3 c = r * max(dot(l, r), 0.0) - l;
+    float far = length(c);
+    float reach = max(radius, 0.0);
+    if (!(far > reach)) {
+        return l + c;
+    }
+    return l + c * (reach / far);
+}
+
+/// The point of a tube that stands for it in a reflection.
+///
+/// Parameters: `l0`, `l1` vectors from the lit point to the ends of its axis, scene units; `r` unit, the viewer's direction mirrored; `radius` of the tube, scene units, at least 0.
+/// Returns: vector from the lit point to that point, as from `nearest_sphere` at the axis' point nearest to the line of `r`.
+/// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Tube lights": the smallest distance of the axis to the line.
+/// Edges: the sphere at `l0` for an axis along `r` or without length.
+/// Error model: absolute 2^-20*(|l0| + |l1|)/sin(a)^2, with a the angle between the axis and `r`.
+vec3 nearest_tube(vec3 l0, vec3 l1, vec3 r, float radius) {
+    vec3 axis = l1 - l0;
+    vec3 across = axis - r * dot(axis, r);
+    float d2 = dot(across, across);
+    if (!(d2 > 1e-10 * dot(axis, axis))) {
+        return nearest_sphere(l0, r, radius);
+    }
+    return nearest_sphere(l0 + axis * clamp(-dot(l0, across) / d2, 0.0, 1.0), r, radius);
+}
+
+/// The roughness of a lobe widened by the size of a light.
+///
+/// Parameters: `alpha` squared perceptual roughness, [0, 1]; `radius` of the light, scene units, at least 0; `d` distance to it, scene units, above 0.
+/// Returns: `alpha + radius/(2*d)`, clamped to [0, 1].
+/// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Specular D Modification": half the tangent; published with a third too.
+/// Edges: 1 for a distance of 0 or less from a light with a size; `alpha` for no size.
+/// Error model: 3 ULP.
+float area_alpha(float alpha, float radius, float d) {
+    float size = max(radius, 0.0);
+    // Nearer than a quarter of the size the sum is above 1.
+    if (!(d > 0.25 * size)) {
+        return (size > 0.0 ? 1.0 : clamp(alpha, 0.0, 1.0));
+    }
+    return clamp(alpha + 0.5 * size / d, 0.0, 1.0);
+}
+
+/// What keeps the energy of a lobe widened by the size of a light.
+///
+/// Parameters: `alpha` squared perceptual roughness, at least 0; `wide` the same after `area_alpha`.
+/// Returns: `(alpha/wide)^2`, [0, 1], a factor of the distribution for a sphere; its root is that for a tube.
+/// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Specular D Modification".
+/// Edges: 1 where `wide` is not larger than `alpha`; 0 for an `alpha` of 0 or less that was widened.
+/// Error model: 6 ULP.
+float area_energy(float alpha, float wide) {
+    if (!(wide > alpha)) {
+        return 1.0;
+    }
+    if (!(alpha > 0.0)) {
+        return 0.0;
+    }
+    float ratio = alpha / wide;
+    return ratio * ratio;
+}
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
+#endif

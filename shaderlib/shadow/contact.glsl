@@ -1,0 +1,56 @@
+//! Shadows of small things by a march through the depth buffer.
+
+#ifndef LAMPLIGHT_SHADOW_CONTACT_GLSL
+#define LAMPLIGHT_SHADOW_CONTACT_GLSL
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
+/// Whether a point of the march is behind what the depth buffer shows, and not far behind.
+///
+/// Parameters: `ray`, `scene` linear distances along the view axis of the point and of the surface seen there, scene units; `bias` least distance behind, scene units, at least 0; `thickness` what surfaces are taken to be deep, scene units.
+/// Returns: whether `bias < ray - scene < thickness`.
+/// Source: Sousa, Kasyan, Schulz, "Secrets of CryENGINE 3 Graphics Technology", 2011: screen space local shadows.
+/// Edges: false where the thickness is not above the bias.
+/// Error model: exact but within 2^-23*(|ray| + |scene|) of either bound.
+bool contact_hit(float ray, float scene, float bias, float thickness) {
+    float behind = ray - scene;
+    return behind > bias && behind < thickness;
+}
+
+/// A point of a march from a surface towards the light.
+///
+/// Parameters: `start` the lit point; `l` unit, the same space, towards the light; `reach` length of the march, scene units; `index` of the step, from 0; `count` number of steps, at least 1; `jitter` [0, 1): moves all points by a part of a step, by pixel.
+/// Returns: `start + l*reach*(index + jitter)/count`, the space of `start`.
+/// Source: even steps along the ray, as in Sousa, Kasyan, Schulz, "Secrets of CryENGINE 3 Graphics Technology", 2011.
+/// Edges: a count of 0 counts as 1.
+/// Error model: absolute 2^-22*(|start| + reach).
+vec3 march_point(vec3 start, vec3 l, float reach, uint index, uint count, float jitter) {
+    return start + l * (reach * ((float(index) + jitter) / float(max(count, 1u))));
+}
+
+/// How much of an effect of the screen is left near the screen's edge.
+///
+/// Parameters: `uv` place on the screen, [0, 1]; `border` width of the fade, in parts of the screen, at least 0.
+/// Returns: 1 within, falling linearly to 0 at the nearest edge, [0, 1].
+/// Source: the usual guard of effects that see no further than the screen; a distance over a width.
+/// Edges: 0 beside the screen; a hard edge for a border of 0.
+/// Error model: absolute 2^-22 + 2^-23/border.
+float edge_fade(vec2 uv, float border) {
+    vec2 inside = min(uv, vec2(1.0) - uv);
+    float nearest = min(inside.x, inside.y);
+    if (!(nearest > 0.0)) {
+        return 0.0;
+    }
+    if (!(nearest < border)) {
+        return 1.0;
+    }
+    return nearest / border;
+}
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
+#endif

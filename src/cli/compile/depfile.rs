@@ -1,0 +1,42 @@
+//! A rule for make and ninja: the outputs, and the files that they were made of.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::cli::failure::Failure;
+use crate::output::{self, Replace};
+use crate::source::SourceSet;
+
+/// Writes the rule. The library is in the program and no file.
+pub fn write(
+    path: &Path,
+    outputs: impl Iterator<Item = PathBuf>,
+    sources: &SourceSet,
+    replace: Replace,
+) -> Result<(), Failure> {
+    let inputs: BTreeSet<&str> = sources
+        .iter()
+        .filter(|(_, source)| source.on_disk)
+        .map(|(_, source)| source.path.as_str())
+        .collect();
+    let outputs: Vec<String> = outputs.map(|path| escaped(&path.to_string_lossy())).collect();
+    let inputs: String = inputs.iter().map(|path| format!(" \\\n  {}", escaped(path))).collect();
+    let rule = format!("{}:{inputs}\n", outputs.join(" "));
+    // What is there may be replaced if it is a rule for the same outputs.
+    let is_ours =
+        |known: &[u8]| outputs.first().is_some_and(|output| known.starts_with(output.as_bytes()));
+    Ok(output::write_file(path, rule.as_bytes(), is_ours, replace)?)
+}
+
+/// A name as make reads it.
+fn escaped(path: &str) -> String {
+    let mut text = String::with_capacity(path.len());
+    for letter in path.chars() {
+        match letter {
+            ' ' | '#' | '\\' => text.extend(['\\', letter]),
+            '$' => text.push_str("$$"),
+            _ => text.push(letter),
+        }
+    }
+    text
+}

@@ -1,0 +1,119 @@
+//! The files that `compile` writes: `NAME.ENTRY.STAGE.EXTENSION`, so that no two shaders share a
+//! name.
+
+use std::collections::BTreeSet;
+use std::io::Write;
+use std::path::Path;
+
+use crate::bundle::Target;
+use crate::cli::failure::Failure;
+use crate::cli::stream;
+use crate::cli::terminal::{data, is_terminal, stdout};
+use crate::emit::targets;
+use crate::generate::Shader;
+use crate::output::{self, Replace};
+
+/// An output.
+pub struct File {
+    pub name: String,
+    binary: bool,
+    bytes: Vec<u8>,
+}
+
+/// Endings of root modules, which their outputs do not have: `forward.frag.glsl` has two.
+const ENDINGS: &[&str] = &[".wesl", ".wgsl", ".glsl", ".vert", ".frag", ".comp"];
+
+/// The name of a root module without its endings.
+pub fn stem(file: &Path) -> String {
+    if stream::is_stream(file) {
+        return "stdin".to_owned();
+    }
+    let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut stem = name.as_str();
+    while let Some(rest) = ENDINGS.iter().find_map(|ending| stem.strip_suffix(ending)) {
+        stem = rest;
+    }
+    if stem.is_empty() { name } else { stem.to_owned() }
+}
+
+/// A file for each target of a shader, and one for its reflection.
+pub fn of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool) -> Vec<File> {
+    let named = |ending: &str| format!("{stem}.{}.{ending}", shader.entry);
+    let stage = stage(shader.stage);
+    let mut files = Vec::new();
+    for &target in wanted {
+        let (Some(entry), Some(artifact)) =
+            (targets::find(target), shader.made.unit.targets.get(target.name()))
+        else {
+            continue;
+        };
+        let name = named(&ending(target, stage, entry.extension));
+        files.push(File { name, binary: entry.binary, bytes: artifact.bytes.to_vec() });
+    }
+    if reflection {
+        let unit = &shader.made.unit;
+        let natives: serde_json::Map<String, serde_json::Value> = unit
+            .targets
+            .iter()
+            .map(|(target, artifact)| (target.clone(), serde_json::json!(&*artifact.native)))
+            .collect();
+        let json = serde_json::json!({
+            "entry": shader.entry, "reflection": &*unit.reflection, "targets": natives,
+        });
+        let name = named(&format!("{stage}.json"));
+        files.push(File { name, binary: false, bytes: format!("{json:#}\n").into_bytes() });
+    }
+    files
+}
+
+fn stage(stage: naga::ShaderStage) -> &'static str {
+    match stage {
+        naga::ShaderStage::Vertex => "vert",
+        naga::ShaderStage::Fragment => "frag",
+        _ => "comp",
+    }
+}
+
+/// Files of several targets must not share a name; GLSL files end as glslang expects.
+fn ending(target: Target, stage: &str, extension: &str) -> String {
+    match target {
+        Target::GLSL450 | Target::GLSL330 | Target::ESSL300 => format!("{target}.{stage}"),
+        _ => format!("{stage}.{extension}"),
+    }
+}
+
+/// Two root modules may have one name, in folders of their own.
+pub fn distinct(files: &[File]) -> Result<(), Failure> {
+    let mut names = BTreeSet::new();
+    match files.iter().find(|file| !names.insert(&file.name)) {
+        Some(file) => Err(Failure::usage(format!(
+            "two shaders would both be `{}`: compile them into folders of their own",
+            file.name
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Writes files into a folder, and says where.
+pub fn write(files: &[File], folder: &Path, replace: Replace) -> Result<(), Failure> {
+    let named = files.iter().map(|file| (file.name.as_str(), &*file.bytes));
+    output::write_folder(folder, named, replace)?;
+    for file in files {
+        writeln!(stdout(), "{}", folder.join(&file.name).display())?;
+    }
+    Ok(())
+}
+
+/// Text goes to standard output, with file names where there are several; one binary alone may too.
+pub fn print(files: &[File]) -> Result<(), Failure> {
+    if files.iter().any(|file| file.binary) && (files.len() > 1 || is_terminal()) {
+        return Err(Failure::usage("a binary target needs `-o DIR`"));
+    }
+    for file in files {
+        if files.len() > 1 {
+            writeln!(stdout(), "// ==== {}", file.name)?;
+        }
+        data(&file.bytes)?;
+    }
+    Ok(())
+}

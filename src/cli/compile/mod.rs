@@ -1,0 +1,161 @@
+//! `lamplight compile FILE --target T`: shaders in the languages asked for.
+
+mod depfile;
+mod files;
+mod target;
+
+pub use target::{Wanted, target, wanted, wanted_one};
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::failure::{DiagnosticForm, Failure, warn};
+use super::input::{Context, Input, Ready};
+use super::overwrite::Overwrite;
+use crate::bundle::Target;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::generate::{Root, Shader};
+use crate::source::SourceSet;
+use files::File;
+
+/// Compose, validate and write shaders, a file for each entry point and target.
+#[derive(Args)]
+pub struct Arguments {
+    /// Paths to root modules; `-` is standard input.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    input: Input,
+    /// Output languages: spirv, glsl450, glsl330, essl300, msl, hlsl, wgsl, or all of them.
+    #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
+    #[arg(required_unless_present = "reflection")]
+    target: Vec<Wanted>,
+    /// Only this entry point; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    entry: Vec<String>,
+    /// Also write what an engine must know of each entry point, as JSON.
+    #[arg(long)]
+    reflection: bool,
+    /// Folder for the files [default: standard output].
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Also write which files the outputs depend on, as a rule for make or ninja.
+    #[arg(long, value_name = "FILE", requires = "out")]
+    depfile: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: Overwrite,
+}
+
+pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    let targets = wanted(&arguments.target);
+    let mut made: Vec<File> = Vec::new();
+    let mut failed: Option<Failure> = None;
+    let mut sources = SourceSet::default();
+    for file in &arguments.files {
+        let compiled = arguments
+            .input
+            .compose(file, sources, form)
+            .and_then(|ready| compile(&arguments, file, ready, &targets, form));
+        sources = match compiled {
+            Ok((sources, files)) => {
+                made.extend(files);
+                sources
+            }
+            // What is wrong with one file does not hide what is wrong with the next.
+            Err(Failure::Input(sources, errors)) => {
+                warn(&sources, &errors, form);
+                failed = Some(Failure::Input(sources.clone(), Vec::new()));
+                sources
+            }
+            Err(failure) => return Err(failure),
+        };
+    }
+    if let Some(failed) = failed {
+        return Err(failed);
+    }
+    files::distinct(&made)?;
+    let Some(folder) = &arguments.out else { return files::print(&made) };
+    files::write(&made, folder, arguments.overwrite.replace())?;
+    match &arguments.depfile {
+        Some(path) => {
+            let outputs = made.iter().map(|file| folder.join(&file.name));
+            depfile::write(path, outputs, &sources, arguments.overwrite.replace())
+        }
+        None => Ok(()),
+    }
+}
+
+/// The files of one root module.
+fn compile(
+    arguments: &Arguments,
+    file: &std::path::Path,
+    ready: Ready,
+    targets: &[Target],
+    form: DiagnosticForm,
+) -> Result<(SourceSet, Vec<File>), Failure> {
+    let Ready { sources, composed, context } = ready;
+    let root =
+        Root { graph: &context.graph, settings: &context.settings, options: &context.options };
+    let shaders = root.entries(&composed).and_then(|entries| {
+        let entries = chosen(arguments, file, entries)?;
+        root.compile(&entries, targets)
+    });
+    match shaders {
+        Ok(shaders) => {
+            warn(&sources, &warnings(&context, &shaders), form);
+            let stem = files::stem(file);
+            let of = |shader: &Shader| files::of(&stem, shader, targets, arguments.reflection);
+            Ok((sources, shaders.iter().flat_map(of).collect()))
+        }
+        Err(errors) => Err(Failure::Input(sources, context.explain(errors))),
+    }
+}
+
+/// What two entry points share is told once.
+fn warnings(context: &Context, shaders: &[Shader]) -> Diagnostics {
+    let mut found = Diagnostics::new();
+    for warning in shaders.iter().flat_map(|shader| &shader.made.warnings) {
+        if !found.contains(warning) {
+            found.push(warning.clone());
+        }
+    }
+    context.own(found)
+}
+
+type Entries = Vec<(String, naga::ShaderStage)>;
+
+/// The entry points that `--entry` names, or all.
+fn chosen(
+    arguments: &Arguments,
+    file: &std::path::Path,
+    entries: Entries,
+) -> Result<Entries, Diagnostics> {
+    if entries.is_empty() {
+        let message = format!("`{}` has no entry point", file.display());
+        let error = Diagnostic::error(codes::NO_ENTRY_POINT, message);
+        return Err(vec![error.note(
+            "help: `@vertex`, `@fragment` or `@compute` makes a function one; \
+             `lamplight lint` looks at modules without any",
+        )]);
+    }
+    if arguments.entry.is_empty() {
+        return Ok(entries);
+    }
+    let known = || entries.iter().map(|(name, _)| name.as_str());
+    let errors: Diagnostics = arguments
+        .entry
+        .iter()
+        .filter(|name| !known().any(|known| known == **name))
+        .map(|name| {
+            let message = format!("`{}` has no entry point `{name}`", file.display());
+            Diagnostic::error(codes::UNKNOWN_ENTRY_POINT, message)
+                .suggest(name, known())
+                .note(format!("there are: {}", known().collect::<Vec<_>>().join(", ")))
+        })
+        .collect();
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    Ok(entries.into_iter().filter(|(name, _)| arguments.entry.contains(name)).collect())
+}

@@ -1,0 +1,39 @@
+//! Targets by name.
+
+use crate::bundle::Target;
+use crate::diagnostic::nearest;
+
+/// What `--target` may name.
+#[derive(Debug, Clone, Copy)]
+pub enum Wanted {
+    All,
+    One(Target),
+}
+
+/// `all`, or a target.
+pub fn wanted_one(name: &str) -> Result<Wanted, String> {
+    if name == "all" { Ok(Wanted::All) } else { target(name).map(Wanted::One) }
+}
+
+/// Every target that is wanted, once, in the order of naming.
+pub fn wanted(chosen: &[Wanted]) -> Vec<Target> {
+    let mut targets: Vec<Target> = Vec::new();
+    for one in chosen {
+        let named = match one {
+            Wanted::All => Target::ALL,
+            Wanted::One(target) => std::slice::from_ref(target),
+        };
+        targets.extend(named.iter().filter(|target| !targets.contains(target)).collect::<Vec<_>>());
+    }
+    targets
+}
+
+/// A target by name, as an option's value.
+pub fn target(name: &str) -> Result<Target, String> {
+    Target::find(name).ok_or_else(|| {
+        let names: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
+        let hint = nearest(name, names.iter().copied())
+            .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        format!("no such target{hint} (targets: {})", names.join(", "))
+    })
+}

@@ -1,0 +1,81 @@
+//! Root modules that are no files: `-`, and pipes such as `/dev/stdin` or `<(...)`.
+
+use std::fs::{self, File};
+use std::io::{Read, stdin};
+use std::path::Path;
+
+use super::failure::Failure;
+use crate::bundle::{Language, Stage};
+use crate::source::{Files, LIMITS, ReadError};
+
+/// Stands for standard input.
+pub const STANDARD_INPUT: &str = "-";
+
+/// Whether the path is a stream: its text can be read once, and has no folder.
+pub fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == STANDARD_INPUT
+        || fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
+/// The text of a stream, as long as a file may be.
+pub fn read(path: &Path) -> Result<String, Failure> {
+    let most = LIMITS.file_bytes as u64;
+    let mut bytes = Vec::new();
+    if path.as_os_str() == STANDARD_INPUT {
+        stdin().lock().take(most + 1).read_to_end(&mut bytes)?;
+    } else {
+        let unreadable =
+            |error| Failure::input(format!("cannot read `{}`: {error}", path.display()));
+        let file = File::open(path).map_err(unreadable)?;
+        file.take(most + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    }
+    if bytes.len() as u64 > most {
+        let message =
+            format!("`{}` has more than the {most} bytes that are allowed", path.display());
+        return Err(Failure::input(message));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Failure::input(format!("`{}` is not UTF-8: byte {at} is wrong", path.display()))
+    })
+}
+
+/// What the module of a stream is called in its package: the composer takes the stage of GLSL
+/// from the name.
+pub fn name(language: Language, stage: Option<Stage>) -> String {
+    let stage = match stage {
+        Some(Stage::Vertex) => ".vert",
+        Some(Stage::Fragment) => ".frag",
+        Some(Stage::Compute) => ".comp",
+        None => "",
+    };
+    match language {
+        Language::Wesl => "stdin.wesl".to_owned(),
+        Language::Glsl => format!("stdin{stage}.glsl"),
+    }
+}
+
+/// Files of a package with a text in the place of one of them.
+pub struct Overlay {
+    pub below: Box<dyn Files>,
+    pub name: String,
+    pub text: String,
+}
+
+impl Files for Overlay {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        if path == self.name { Ok(Some(self.text.clone())) } else { self.below.read(path) }
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        self.below.list(extensions)
+    }
+
+    fn display(&self, path: &str) -> String {
+        if path == self.name { "<standard input>".to_owned() } else { self.below.display(path) }
+    }
+
+    fn on_disk(&self, path: &str) -> bool {
+        path != self.name && self.below.on_disk(path)
+    }
+}

@@ -1,0 +1,85 @@
+//! Recorded costs, and what rose since.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::Cost;
+use super::statistics::{FIGURES, Statistics};
+
+/// What a file of recorded costs is recognised by.
+const FORMAT: &str = "lamplight-costs-1";
+
+/// Figures by name, GPU and stage, of one version of the driver.
+#[derive(Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Baseline {
+    /// [`FORMAT`].
+    format: String,
+    /// Figures of another version are not comparable.
+    pub driver: String,
+    pub costs: BTreeMap<String, Statistics>,
+}
+
+/// A figure that is worse than recorded.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Rise {
+    /// Name, GPU and stage.
+    pub key: String,
+    pub figure: &'static str,
+    pub before: i64,
+    pub after: i64,
+}
+
+/// What a cost is recorded under.
+pub fn key(cost: &Cost) -> String {
+    format!("{} {} {:?}", cost.name, cost.gpu.name, cost.stage).to_lowercase()
+}
+
+impl Baseline {
+    /// Of costs.
+    pub fn of(driver: &str, costs: &[Cost]) -> Self {
+        let costs = costs.iter().map(|cost| (key(cost), *cost.figures())).collect();
+        Self { format: FORMAT.to_owned(), driver: driver.to_owned(), costs }
+    }
+
+    /// Reads a file's bytes.
+    ///
+    /// # Errors
+    /// Why they are no recorded costs.
+    pub fn parse(bytes: &[u8]) -> Result<Self, String> {
+        let read: Self = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
+        match read.format == FORMAT {
+            true => Ok(read),
+            false => Err(format!("the format is `{}`, not `{FORMAT}`", read.format)),
+        }
+    }
+
+    /// The text of a file.
+    pub fn text(&self) -> String {
+        serde_json::to_string_pretty(self).map_or(String::new(), |text| text + "\n")
+    }
+
+    /// Whether a file that begins like this holds recorded costs.
+    pub fn is_at(head: &[u8]) -> bool {
+        String::from_utf8_lossy(head).contains(FORMAT)
+    }
+
+    /// Figures that are worse than recorded by more than a share of the recorded figure, such as
+    /// 0.02. What is not recorded is not compared.
+    pub fn rises(&self, costs: &[Cost], share: f64) -> Vec<Rise> {
+        let mut rises = Vec::new();
+        for cost in costs {
+            let key = key(cost);
+            let Some(recorded) = self.costs.get(&key) else { continue };
+            for figure in FIGURES {
+                let (before, after) = (figure.of(recorded), figure.of(cost.figures()));
+                let worse = if figure.more_is_worse { after - before } else { before - after };
+                if worse as f64 > share * before.abs() as f64 {
+                    rises.push(Rise { key: key.clone(), figure: figure.key, before, after });
+                }
+            }
+        }
+        rises
+    }
+}

@@ -1,0 +1,444 @@
+//! Mesa's RADV on GPUs that are not there: pipelines are compiled and asked for their figures.
+//!
+//! With `RADV_FORCE_FAMILY` the driver makes a device of that family on top of no hardware. Nothing
+//! is ever submitted to it. The loader is pointed at RADV alone, so that no other driver, and no
+//! real device, is touched; the environment is put back before anything else reads it.
+
+use std::ffi::CStr;
+use std::path::Path;
+
+use ash::{khr, vk};
+
+use super::gpu::Gpu;
+use super::pipeline::{Attribute, Pipeline, Slot};
+use super::statistics::Statistics;
+use crate::bundle::{Kind, Stage};
+
+/// Names another manifest of the driver.
+const MANIFEST: &str = "LAMPLIGHT_RADV_MANIFEST";
+
+/// Where packages put the driver's manifest.
+const MANIFESTS: &[&str] = &[
+    "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json",
+    "/usr/share/vulkan/icd.d/radeon_icd.json",
+    "/etc/vulkan/icd.d/radeon_icd.x86_64.json",
+];
+
+/// What the device's name has in it where no hardware is behind it.
+const NULL_HARDWARE: &str = "Null hardware";
+
+/// How to get the driver.
+pub const INSTALL: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
+
+/// A GPU that compiles.
+pub struct Device {
+    pub gpu: &'static Gpu,
+    /// The driver's version: figures of two versions differ.
+    pub driver: String,
+    _entry: ash::Entry,
+    instance: ash::Instance,
+    device: ash::Device,
+    executables: khr::pipeline_executable_properties::Device,
+}
+
+impl Device {
+    /// Opens the GPU. To be called while the process has one thread: it changes the environment
+    /// for as long as it takes, and the loader and the driver read it.
+    ///
+    /// # Errors
+    /// Why there is no such device, with the command that installs the driver if it is missing.
+    pub fn open(gpu: &'static Gpu) -> Result<Self, String> {
+        let manifest = manifest().ok_or_else(|| missing("there is no RADV driver"))?;
+        let settings = [
+            ("RADV_FORCE_FAMILY", gpu.name),
+            ("VK_DRIVER_FILES", &manifest),
+            ("VK_ICD_FILENAMES", &manifest),
+            ("VK_LOADER_LAYERS_DISABLE", "~all~"),
+            ("NODEVICE_SELECT", "1"),
+            ("MESA_SHADER_CACHE_DISABLE", "true"),
+        ];
+        let before = settings.map(|(name, _)| (name, std::env::var_os(name)));
+        for (name, value) in settings {
+            // SAFETY: the process has one thread, as the caller promises.
+            unsafe { std::env::set_var(name, value) };
+        }
+        let opened = Self::create(gpu);
+        for (name, value) in before {
+            // SAFETY: as above.
+            match value {
+                Some(value) => unsafe { std::env::set_var(name, value) },
+                None => unsafe { std::env::remove_var(name) },
+            }
+        }
+        opened
+    }
+
+    fn create(gpu: &'static Gpu) -> Result<Self, String> {
+        // SAFETY: the loader is the system's, and outlives what is made with it in `Device`.
+        let entry =
+            unsafe { ash::Entry::load() }.map_err(|_| missing("there is no Vulkan loader"))?;
+        let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
+        let info = vk::InstanceCreateInfo::default().application_info(&application);
+        // SAFETY: the structures live during the call.
+        let instance = unsafe { entry.create_instance(&info, None) }.map_err(refused)?;
+        // SAFETY: `instance` is valid until it is destroyed in `drop`, and here on failure.
+        let found = unsafe { instance.enumerate_physical_devices() }.map_err(refused);
+        let opened = found.and_then(|found| {
+            let physical = found.first().copied().ok_or_else(|| missing("RADV has no device"))?;
+            logical(&instance, physical, gpu)
+        });
+        match opened {
+            Ok((device, driver)) => {
+                let executables =
+                    khr::pipeline_executable_properties::Device::new(&instance, &device);
+                Ok(Self { gpu, driver, _entry: entry, instance, device, executables })
+            }
+            Err(error) => {
+                // SAFETY: nothing was made of it.
+                unsafe { instance.destroy_instance(None) };
+                Err(error)
+            }
+        }
+    }
+
+    /// Compiles a pipeline and gives the figures of each of its stages.
+    ///
+    /// # Errors
+    /// What the driver says where it refuses the pipeline.
+    pub fn measure(&self, pipeline: &Pipeline) -> Result<Vec<(Stage, Statistics)>, String> {
+        let mut made = Made::new(&self.device);
+        let compiled = made.pipeline(pipeline).map_err(refused)?;
+        self.figures(compiled)
+    }
+
+    fn figures(&self, pipeline: vk::Pipeline) -> Result<Vec<(Stage, Statistics)>, String> {
+        let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
+        // SAFETY: the pipeline was made by this device with its statistics captured.
+        let found = unsafe { self.executables.get_pipeline_executable_properties(&info) };
+        let mut stages = Vec::new();
+        for (index, executable) in found.map_err(refused)?.iter().enumerate() {
+            let Some(stage) = stage(executable.stages) else { continue };
+            let info = vk::PipelineExecutableInfoKHR::default()
+                .pipeline(pipeline)
+                .executable_index(index as u32);
+            // SAFETY: as above; the index is one of those just told.
+            let named = unsafe { self.executables.get_pipeline_executable_statistics(&info) };
+            let named = named.map_err(refused)?;
+            let named = named.iter().filter_map(|named| {
+                Some((named.name_as_c_str().ok()?.to_str().ok()?, value(named)))
+            });
+            stages.push((stage, Statistics::from_named(named)));
+        }
+        Ok(stages)
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        // SAFETY: both were made by `create` and nothing of theirs is left.
+        unsafe {
+            self.device.destroy_device(None);
+            self.instance.destroy_instance(None);
+        }
+    }
+}
+
+/// The driver's manifest: that of `LAMPLIGHT_RADV_MANIFEST`, or where packages put it.
+fn manifest() -> Option<String> {
+    let named = std::env::var(MANIFEST).ok();
+    let known = || MANIFESTS.iter().map(|path| (*path).to_owned());
+    let mut paths: Box<dyn Iterator<Item = String>> = match named {
+        Some(named) => Box::new(std::iter::once(named)),
+        None => Box::new(known()),
+    };
+    paths.find(|path| Path::new(path).is_file())
+}
+
+/// The logical device, and the driver's version.
+fn logical(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    gpu: &Gpu,
+) -> Result<(ash::Device, String), String> {
+    let mut driver = vk::PhysicalDeviceDriverProperties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+    // SAFETY: `physical` is one of the instance's.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    let name = text(properties.properties.device_name_as_c_str());
+    if !name.contains(NULL_HARDWARE) {
+        return Err(format!(
+            "RADV gave the device `{name}` instead of {} without hardware",
+            gpu.name
+        ));
+    }
+    let version = text(driver.driver_info_as_c_str());
+    let priorities = [1.0];
+    let queues = [vk::DeviceQueueCreateInfo::default().queue_priorities(&priorities)];
+    let extensions = [khr::pipeline_executable_properties::NAME.as_ptr()];
+    let mut executables = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
+        .pipeline_executable_info(true);
+    let mut rendering =
+        vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
+    // SAFETY: as above.
+    let features = unsafe { instance.get_physical_device_features(physical) };
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&extensions)
+        .enabled_features(&features)
+        .push_next(&mut executables)
+        .push_next(&mut rendering);
+    // SAFETY: the structures live during the call.
+    let device = unsafe { instance.create_device(physical, &info, None) }.map_err(refused)?;
+    Ok((device, version))
+}
+
+fn missing(what: &str) -> String {
+    format!("{what}\ninstall it with: {INSTALL}")
+}
+
+fn refused(error: vk::Result) -> String {
+    format!("the driver answered {error}")
+}
+
+fn text(name: Result<&CStr, std::ffi::FromBytesUntilNulError>) -> String {
+    name.map_or(String::new(), |name| name.to_string_lossy().into_owned())
+}
+
+fn stage(flags: vk::ShaderStageFlags) -> Option<Stage> {
+    if flags.contains(vk::ShaderStageFlags::FRAGMENT) {
+        Some(Stage::Fragment)
+    } else if flags.contains(vk::ShaderStageFlags::VERTEX) {
+        Some(Stage::Vertex)
+    } else if flags.contains(vk::ShaderStageFlags::COMPUTE) {
+        Some(Stage::Compute)
+    } else {
+        None
+    }
+}
+
+fn value(named: &vk::PipelineExecutableStatisticKHR) -> i64 {
+    // SAFETY: the format tells which field was written.
+    unsafe {
+        match named.format {
+            vk::PipelineExecutableStatisticFormatKHR::BOOL32 => i64::from(named.value.b32),
+            vk::PipelineExecutableStatisticFormatKHR::INT64 => named.value.i64,
+            vk::PipelineExecutableStatisticFormatKHR::UINT64 => named.value.u64 as i64,
+            _ => named.value.f64 as i64,
+        }
+    }
+}
+
+/// What is made for one pipeline, and destroyed with it.
+struct Made<'d> {
+    device: &'d ash::Device,
+    modules: Vec<vk::ShaderModule>,
+    sets: Vec<vk::DescriptorSetLayout>,
+    layout: vk::PipelineLayout,
+    pipeline: vk::Pipeline,
+}
+
+impl<'d> Made<'d> {
+    fn new(device: &'d ash::Device) -> Self {
+        let (modules, sets) = (Vec::new(), Vec::new());
+        let (layout, pipeline) = (vk::PipelineLayout::null(), vk::Pipeline::null());
+        Self { device, modules, sets, layout, pipeline }
+    }
+
+    fn pipeline(&mut self, wanted: &Pipeline) -> Result<vk::Pipeline, vk::Result> {
+        for stage in &wanted.stages {
+            let info = vk::ShaderModuleCreateInfo::default().code(&stage.words);
+            // SAFETY: the words are a module that naga wrote and its validator accepted.
+            self.modules.push(unsafe { self.device.create_shader_module(&info, None) }?);
+        }
+        self.layout(&wanted.slots)?;
+        self.pipeline = match wanted.stages.iter().any(|stage| stage.stage == Stage::Compute) {
+            true => self.compute(wanted)?,
+            false => self.graphics(wanted)?,
+        };
+        Ok(self.pipeline)
+    }
+
+    fn layout(&mut self, slots: &[Slot]) -> Result<(), vk::Result> {
+        let groups = slots.iter().map(|slot| slot.group + 1).max().unwrap_or(0);
+        for group in 0..groups {
+            let bindings: Vec<_> = slots
+                .iter()
+                .filter(|slot| slot.group == group)
+                .map(|slot| {
+                    vk::DescriptorSetLayoutBinding::default()
+                        .binding(slot.binding)
+                        .descriptor_type(descriptor(slot.kind))
+                        .descriptor_count(1)
+                        .stage_flags(vk::ShaderStageFlags::ALL)
+                })
+                .collect();
+            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+            // SAFETY: the structures live during the call.
+            self.sets.push(unsafe { self.device.create_descriptor_set_layout(&info, None) }?);
+        }
+        let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&self.sets);
+        // SAFETY: as above.
+        self.layout = unsafe { self.device.create_pipeline_layout(&info, None) }?;
+        Ok(())
+    }
+
+    fn stages<'s>(&self, wanted: &'s Pipeline) -> Vec<vk::PipelineShaderStageCreateInfo<'s>> {
+        let stages = wanted.stages.iter().zip(&self.modules);
+        let info = stages.map(|(stage, module)| {
+            vk::PipelineShaderStageCreateInfo::default()
+                .stage(flags(stage.stage))
+                .module(*module)
+                .name(&stage.entry)
+        });
+        info.collect()
+    }
+
+    fn compute(&self, wanted: &Pipeline) -> Result<vk::Pipeline, vk::Result> {
+        let stages = self.stages(wanted);
+        let infos: Vec<_> = stages
+            .into_iter()
+            .take(1)
+            .map(|stage| {
+                vk::ComputePipelineCreateInfo::default()
+                    .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
+                    .stage(stage)
+                    .layout(self.layout)
+            })
+            .collect();
+        let none = vk::PipelineCache::null();
+        // SAFETY: the structures live during the call.
+        let made = unsafe { self.device.create_compute_pipelines(none, &infos, None) };
+        first(made)
+    }
+
+    fn graphics(&self, wanted: &Pipeline) -> Result<vk::Pipeline, vk::Result> {
+        let stages = self.stages(wanted);
+        let attributes: Vec<_> = wanted.attributes.iter().map(attribute).collect();
+        let strides = wanted.attributes.iter().map(|attribute| {
+            vk::VertexInputBindingDescription::default().binding(attribute.location).stride(16)
+        });
+        let strides: Vec<_> = strides.collect();
+        let vertices = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(&strides)
+            .vertex_attribute_descriptions(&attributes);
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewport =
+            vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+        let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
+        let samples = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let depth = vk::PipelineDepthStencilStateCreateInfo::default();
+        let formats: Vec<_> = wanted.colors.iter().map(color).collect();
+        let blends: Vec<_> = formats
+            .iter()
+            .map(|_| {
+                vk::PipelineColorBlendAttachmentState::default()
+                    .color_write_mask(vk::ColorComponentFlags::RGBA)
+            })
+            .collect();
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default()
+            .color_attachment_formats(&formats)
+            .depth_attachment_format(vk::Format::D32_SFLOAT);
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
+            .stages(&stages)
+            .vertex_input_state(&vertices)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&raster)
+            .multisample_state(&samples)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(self.layout)
+            .push_next(&mut rendering);
+        let none = vk::PipelineCache::null();
+        // SAFETY: the structures live during the call.
+        let made = unsafe { self.device.create_graphics_pipelines(none, &[info], None) };
+        first(made)
+    }
+}
+
+impl Drop for Made<'_> {
+    fn drop(&mut self) {
+        // SAFETY: all were made by this device, and null handles may be destroyed.
+        unsafe {
+            self.device.destroy_pipeline(self.pipeline, None);
+            self.device.destroy_pipeline_layout(self.layout, None);
+            for set in &self.sets {
+                self.device.destroy_descriptor_set_layout(*set, None);
+            }
+            for module in &self.modules {
+                self.device.destroy_shader_module(*module, None);
+            }
+        }
+    }
+}
+
+fn first(
+    made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
+) -> Result<vk::Pipeline, vk::Result> {
+    match made {
+        Ok(made) => made.first().copied().ok_or(vk::Result::ERROR_UNKNOWN),
+        Err((_, error)) => Err(error),
+    }
+}
+
+fn flags(stage: Stage) -> vk::ShaderStageFlags {
+    match stage {
+        Stage::Vertex => vk::ShaderStageFlags::VERTEX,
+        Stage::Fragment => vk::ShaderStageFlags::FRAGMENT,
+        Stage::Compute => vk::ShaderStageFlags::COMPUTE,
+    }
+}
+
+fn descriptor(kind: Kind) -> vk::DescriptorType {
+    match kind {
+        Kind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+        Kind::Storage => vk::DescriptorType::STORAGE_BUFFER,
+        Kind::Texture => vk::DescriptorType::SAMPLED_IMAGE,
+        Kind::StorageTexture => vk::DescriptorType::STORAGE_IMAGE,
+        Kind::Sampler | Kind::ComparisonSampler => vk::DescriptorType::SAMPLER,
+    }
+}
+
+fn attribute(attribute: &Attribute) -> vk::VertexInputAttributeDescription {
+    vk::VertexInputAttributeDescription::default()
+        .location(attribute.location)
+        .binding(attribute.location)
+        .format(format(attribute.scalar, attribute.components))
+}
+
+fn color(attribute: &Option<Attribute>) -> vk::Format {
+    attribute.as_ref().map_or(vk::Format::UNDEFINED, |attribute| format(attribute.scalar, 4))
+}
+
+/// The format of 32-bit components that holds a value as it is.
+fn format(scalar: naga::ScalarKind, components: u8) -> vk::Format {
+    use vk::Format;
+    let formats = match scalar {
+        naga::ScalarKind::Sint => [
+            Format::R32_SINT,
+            Format::R32G32_SINT,
+            Format::R32G32B32_SINT,
+            Format::R32G32B32A32_SINT,
+        ],
+        naga::ScalarKind::Uint => [
+            Format::R32_UINT,
+            Format::R32G32_UINT,
+            Format::R32G32B32_UINT,
+            Format::R32G32B32A32_UINT,
+        ],
+        _ => [
+            Format::R32_SFLOAT,
+            Format::R32G32_SFLOAT,
+            Format::R32G32B32_SFLOAT,
+            Format::R32G32B32A32_SFLOAT,
+        ],
+    };
+    formats[usize::from(components.clamp(1, 4)) - 1]
+}

@@ -1,0 +1,47 @@
+//! The GPUs that shaders can be compiled for.
+
+/// A GPU that Mesa's RADV compiles for without having it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Gpu {
+    /// What Mesa calls the chip.
+    pub name: &'static str,
+    /// The architecture.
+    pub generation: &'static str,
+    /// A card that has it.
+    pub example: &'static str,
+    /// Whether it stands for its generation where no GPU is named.
+    pub is_default: bool,
+}
+
+/// Every GPU, oldest first.
+pub const GPUS: &[Gpu] = &[
+    gpu("tahiti", "GCN 1", "Radeon HD 7970", false),
+    gpu("fiji", "GCN 3", "Radeon R9 Fury", false),
+    gpu("polaris10", "GCN 4", "Radeon RX 480", true),
+    gpu("vega10", "GCN 5", "Radeon RX Vega 64", true),
+    gpu("raven", "GCN 5", "Ryzen 5 2400G", false),
+    gpu("navi10", "RDNA 1", "Radeon RX 5700", true),
+    gpu("navi21", "RDNA 2", "Radeon RX 6800", true),
+    gpu("navi24", "RDNA 2", "Radeon RX 6500 XT", false),
+    gpu("vangogh", "RDNA 2", "Steam Deck", false),
+    gpu("gfx1100", "RDNA 3", "Radeon RX 7900 XTX", true),
+];
+
+const fn gpu(
+    name: &'static str,
+    generation: &'static str,
+    example: &'static str,
+    is_default: bool,
+) -> Gpu {
+    Gpu { name, generation, example, is_default }
+}
+
+/// The GPU of that name.
+pub fn find(name: &str) -> Option<&'static Gpu> {
+    GPUS.iter().find(|gpu| gpu.name == name)
+}
+
+/// One GPU for each generation.
+pub fn defaults() -> impl Iterator<Item = &'static Gpu> {
+    GPUS.iter().filter(|gpu| gpu.is_default)
+}

@@ -1,0 +1,101 @@
+//! One root file under one choice of settings, outside of any manifest: the bytes are those that
+//! a run over a manifest gives for the same settings.
+
+use crate::bundle::{Language, Target};
+use crate::compose::{self, Composed, Keep, Options, lean};
+use crate::diagnostic::Diagnostics;
+use crate::link::{self, Linker, Made};
+use crate::permute::Settings;
+use crate::resolve::Graph;
+use crate::validate::{on_large_stack, validate};
+
+/// An entry point in every target asked for.
+#[derive(Debug)]
+pub struct Shader {
+    /// Its name in the source.
+    pub entry: String,
+    /// Stage of the entry point.
+    pub stage: naga::ShaderStage,
+    /// Its outputs.
+    pub made: Made,
+}
+
+/// The entry points of a graph's root, by `options` its whole text, in the order of the source.
+#[derive(Debug)]
+pub struct Root<'a> {
+    /// The modules that its file reaches.
+    pub graph: &'a Graph,
+    /// The settings of the permutation.
+    pub settings: &'a Settings,
+    /// How it is composed.
+    pub options: &'a Options,
+}
+
+impl Root<'_> {
+    /// Name and stage of each entry point of the composed root.
+    ///
+    /// # Errors
+    /// What naga finds wrong with the text.
+    pub fn entries(
+        &self,
+        composed: &Composed,
+    ) -> Result<Vec<(String, naga::ShaderStage)>, Diagnostics> {
+        // As it is compiled; the text as its author wrote it tells what is wrong.
+        let validated = validate(&lean(composed)).or_else(|_| validate(composed))?;
+        let points = validated.module.entry_points.into_iter();
+        Ok(points.map(|point| (point.name, point.stage)).collect())
+    }
+
+    /// Compiles entry points, each from a text of its own as `gen` does.
+    ///
+    /// # Errors
+    /// What is wrong with any of them, each mistake once.
+    pub fn compile(
+        &self,
+        entries: &[(String, naga::ShaderStage)],
+        targets: &[Target],
+    ) -> Result<Vec<Shader>, Diagnostics> {
+        let linker = Linker::new(targets);
+        let (mut shaders, mut errors) = (Vec::new(), Diagnostics::new());
+        for (entry, stage) in entries {
+            match on_large_stack(|| self.one(entry, targets, &linker)) {
+                Ok(made) => shaders.push(Shader { entry: entry.clone(), stage: *stage, made }),
+                Err(found) => errors.extend(found),
+            }
+        }
+        errors.sort_by_key(|error| error.labels.first().map(|label| label.span));
+        errors.dedup_by(|one, other| {
+            (one.code, &one.message, &one.labels) == (other.code, &other.message, &other.labels)
+        });
+        if errors.is_empty() { Ok(shaders) } else { Err(errors) }
+    }
+
+    fn one(
+        &self,
+        entry: &str,
+        targets: &[Target],
+        linker: &Linker<'_>,
+    ) -> Result<Made, Diagnostics> {
+        let options =
+            Options { mangle: self.options.mangle, keep: kept(self.graph, self.options, entry) };
+        let composed = compose::compose(self.graph, self.settings, &options)?;
+        let lean = lean(&composed);
+        link::compile(&link::Text { composed: &composed, lean: &lean }, entry, targets, linker)
+    }
+}
+
+/// What a text of one entry point keeps: in GLSL an entry point is a file.
+pub fn kept(graph: &Graph, options: &Options, entry: &str) -> Keep {
+    match (language(graph), &options.keep) {
+        (_, Keep::All) => Keep::All,
+        (Language::Wesl, _) => Keep::Items(vec![entry.to_owned()]),
+        (Language::Glsl, _) => Keep::EntryPoints,
+    }
+}
+
+fn language(graph: &Graph) -> Language {
+    match graph {
+        Graph::Wesl(_) => Language::Wesl,
+        Graph::Glsl(_) => Language::Glsl,
+    }
+}

@@ -1,0 +1,102 @@
+//! Which package a file or a manifest belongs to: every command asks here, so that they agree.
+
+use std::path::{Component, Path, PathBuf};
+
+use super::{MANIFEST, relative, wesl_toml};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::manifest::{File, Program};
+
+/// The root folder of the package that a file belongs to, where none is given: what the nearest
+/// `wesl.toml` above the file declares, or the folder of the nearest manifest, whichever is
+/// nearer, or else the file's own folder.
+pub fn root_of(file: &Path) -> PathBuf {
+    let folder =
+        file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    above(folder)
+        .iter()
+        .find_map(|ancestor| declared_root(ancestor).filter(|root| relative(file, root).is_ok()))
+        .unwrap_or_else(|| folder.to_owned())
+}
+
+/// The root of the package whose `wesl.toml` or manifest is in the folder or above it.
+pub fn package_above(folder: &Path) -> Option<PathBuf> {
+    let root = above(folder).iter().find_map(|ancestor| declared_root(ancestor))?;
+    Some(if root.as_os_str().is_empty() { PathBuf::from(".") } else { root })
+}
+
+/// The nearest manifest in a folder or above it.
+pub fn manifest_above(folder: &Path) -> Option<PathBuf> {
+    above(folder).into_iter().map(|ancestor| ancestor.join(MANIFEST)).find(|path| path.is_file())
+}
+
+/// The root that a folder's `wesl.toml` declares, or the folder itself if it has a manifest.
+fn declared_root(folder: &Path) -> Option<PathBuf> {
+    let declared = wesl_toml::declared_root(folder).filter(|root| root.is_dir());
+    declared.or_else(|| folder.join(MANIFEST).is_file().then(|| folder.to_owned()))
+}
+
+/// The root of the package whose manifest is in the folder.
+pub fn root_beside(folder: &Path) -> PathBuf {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let declared = wesl_toml::declared_root(folder).filter(|root| root.is_dir());
+    declared.map_or_else(|| folder.to_owned(), |root| tidy(&root))
+}
+
+/// The manifest of a package: in its root, or beside the `wesl.toml` that declares the root.
+pub fn manifest_of(root: &Path) -> Option<PathBuf> {
+    let inside = root.join(MANIFEST);
+    if inside.is_file() {
+        return Some(inside);
+    }
+    let beside = wesl_toml::shown_home(root, &wesl_toml::home(root)?).join(MANIFEST);
+    beside.is_file().then_some(beside)
+}
+
+/// A manifest names files from its own folder: their paths from the package's root.
+pub fn below_root(programs: &mut [Program], folder: &Path) -> Result<(), Diagnostics> {
+    let root = root_beside(folder);
+    let prefix = tidy(root.strip_prefix(folder).unwrap_or(&root));
+    let mut errors = Vec::new();
+    for file in programs.iter_mut().flat_map(Program::files_mut) {
+        match tidy(Path::new(&file.path)).strip_prefix(&prefix) {
+            Ok(path) => file.path = path.to_string_lossy().replace('\\', "/"),
+            Err(_) => errors.push(outside(file, &prefix)),
+        }
+    }
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+fn outside(file: &File, root: &Path) -> Diagnostic {
+    let root = root.display();
+    let message = format!("`{}` is not below the package root `{root}`", file.path);
+    Diagnostic::error(codes::OUTSIDE_ROOT, message).at(file.span, "named here").note(format!(
+        "a manifest names files from its own folder, such as `{root}/main.wesl`; `wesl.toml` \
+             beside it says that the root is `{root}`"
+    ))
+}
+
+/// A path without `.`.
+fn tidy(path: &Path) -> PathBuf {
+    path.components().filter(|component| *component != Component::CurDir).collect()
+}
+
+/// A folder and all above it, by the names that were given as far as they reach and by `..` from
+/// there on.
+fn above(folder: &Path) -> Vec<PathBuf> {
+    let is_up = |path: &Path| path.components().next_back() == Some(Component::ParentDir);
+    let mut found: Vec<PathBuf> = Vec::new();
+    for ancestor in folder.ancestors() {
+        found.push(ancestor.to_owned());
+        if is_up(ancestor) {
+            break;
+        }
+    }
+    let mut last = found.last().cloned().unwrap_or_default();
+    let here = if last.as_os_str().is_empty() { Path::new(".") } else { &last };
+    let levels = here.canonicalize().map_or(0, |real| real.components().count());
+    for _ in 1..levels {
+        last = tidy(&last).join("..");
+        found.push(last.clone());
+    }
+    found
+}

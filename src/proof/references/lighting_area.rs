@@ -1,0 +1,126 @@
+//! Sources: Lambert, "Photometria", 1760; Heitz, Dupuy, Hill and Neubelt, 2016; Lagarde and de
+//! Rousiers, 2014, section 4.7; Karis, 2013.
+
+use super::{Arguments, Entry, Expected};
+use glam::{DMat3, DVec2, DVec3};
+use std::f64::consts::PI;
+
+pub const REFERENCES: Entry = Entry {
+    module: "lighting::area",
+    functions: &[
+        ("ltc_edge", |a| edge(a.vec3(), a.vec3()).into()),
+        ("any_tangent", |a| any_tangent(a.vec3()).into()),
+        ("ltc_rect", ltc_rect),
+        ("ltc_uv", |a| ltc_uv(a.f64(), a.f64()).into()),
+        ("ltc_matrix", ltc_matrix),
+        ("sphere_irradiance", |a| sphere(a.f64(), a.f64()).into()),
+        ("disk_irradiance", disk),
+        ("nearest_sphere", |a| nearest_sphere(a.vec3(), a.vec3(), a.f64()).into()),
+        ("nearest_tube", nearest_tube),
+        ("area_alpha", area_alpha),
+        ("area_energy", |a| area_energy(a.f64(), a.f64()).into()),
+    ],
+};
+
+/// The angle by its tangent, in the direction of the plane's normal.
+fn edge(a: DVec3, b: DVec3) -> DVec3 {
+    let normal = a.cross(b);
+    normal.normalize_or_zero() * normal.length().atan2(a.dot(b)) / (2.0 * PI)
+}
+
+/// At right angles to x, or to y where that is too near.
+fn any_tangent(n: DVec3) -> DVec3 {
+    let axis = if n.x.abs() > f64::from(0.6f32) { DVec3::Y } else { DVec3::X };
+    n.cross(axis).try_normalize().unwrap_or(DVec3::X)
+}
+
+/// The polygon cut at the horizon by Sutherland and Hodgman, then the sum of its edges.
+fn ltc_rect(a: &mut Arguments<'_>) -> Expected {
+    let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
+    let t1 = (v - n * v.dot(n)).try_normalize().unwrap_or(any_tangent(n));
+    let frame = DMat3::from_cols(t1, n.cross(t1), n).transpose();
+    let corners = [(); 4].map(|()| minv * (frame * (a.vec3() - p)));
+    let mut above: Vec<DVec3> = Vec::new();
+    for (index, &corner) in corners.iter().enumerate() {
+        let next = corners[(index + 1) % 4];
+        if corner.z >= 0.0 {
+            above.push(corner);
+        }
+        if (corner.z > 0.0 && next.z < 0.0) || (corner.z < 0.0 && next.z > 0.0) {
+            above.push(corner.lerp(next, corner.z / (corner.z - next.z)));
+        }
+    }
+    let unit: Vec<DVec3> = above.iter().map(|corner| corner.normalize_or_zero()).collect();
+    let around = unit.iter().zip(unit.iter().cycle().skip(1));
+    let sum: f64 = around.map(|(a, b)| edge(*a, *b).z).sum();
+    (-sum).clamp(0.0, 1.0).into()
+}
+
+/// Centres of the first and the last of 64 texels.
+fn ltc_uv(nv: f64, roughness: f64) -> DVec2 {
+    let texel = |x: f64| (0.5 + 63.0 * x) / 64.0;
+    DVec2::new(texel(roughness.clamp(0.0, 1.0)), texel((1.0 - nv.clamp(0.0, 1.0)).sqrt()))
+}
+
+fn ltc_matrix(a: &mut Arguments<'_>) -> Expected {
+    let t = a.vec4();
+    DMat3::from_cols_array_2d(&[[t.x, 0.0, t.y], [0.0, 1.0, 0.0], [t.z, 0.0, t.w]]).into()
+}
+
+/// The integral of the cosine over the cap, ring by ring about its axis.
+fn sphere(mu: f64, sin2: f64) -> f64 {
+    let (mu, sine) = (mu.clamp(-1.0, 1.0), sin2.clamp(0.0, 1.0).sqrt());
+    let (theta, cap) = (mu.acos(), sine.asin());
+    // A ring at the angle t, all azimuths: the cosine is m + s*cos(azimuth), where it is positive.
+    let ring = |t: f64| {
+        let (m, s) = (mu * t.cos(), theta.sin() * t.sin());
+        let half = if m >= s { PI } else if m <= -s { 0.0 } else { (-m / s).acos() };
+        2.0 * (m * half + s * half.sin()) * t.sin()
+    };
+    // Rings begin to cross the horizon at one angle: smooth on either side of it.
+    let border = (theta - PI / 2.0).abs().min(cap);
+    smooth_integral(0.0, border, ring) + smooth_integral(border, cap, ring)
+}
+
+/// The midpoint rule after x = u - sin(2*pi*u)/(2*pi), which takes roots at the ends.
+fn smooth_integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: u32 = 128;
+    let step = |index: u32| {
+        let u = (f64::from(index) + 0.5) / f64::from(STEPS);
+        let turn = 2.0 * PI * u;
+        f(from + (to - from) * (u - turn.sin() / (2.0 * PI))) * (1.0 - turn.cos())
+    };
+    (to - from) * (0..STEPS).map(step).sum::<f64>() / f64::from(STEPS)
+}
+
+fn disk(a: &mut Arguments<'_>) -> Expected {
+    let (mu, facing, sin2) = (a.f64(), a.f64(), a.f64());
+    (sphere(mu, sin2) * facing.clamp(0.0, 1.0)).into()
+}
+
+/// The ray's point that is nearest to the centre, or the sphere's point towards it.
+fn nearest_sphere(l: DVec3, r: DVec3, radius: f64) -> DVec3 {
+    let to_ray = r * l.dot(r).max(0.0) - l;
+    l + to_ray.clamp_length_max(radius.max(0.0))
+}
+
+/// t = ((r.l0)*(r.d) - l0.d)/(|d|^2 - (r.d)^2).
+fn nearest_tube(a: &mut Arguments<'_>) -> Expected {
+    let (l0, l1, r, radius) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
+    let d = l1 - l0;
+    let below = d.length_squared() * r.length_squared() - r.dot(d).powi(2);
+    let along = (r.dot(l0) * r.dot(d) - l0.dot(d)) / below;
+    let t = if below > 1e-9 * d.length_squared() { along.clamp(0.0, 1.0) } else { 0.0 };
+    nearest_sphere(l0 + d * t, r, radius).into()
+}
+
+fn area_alpha(a: &mut Arguments<'_>) -> Expected {
+    let (alpha, radius, d) = (a.f64(), a.f64().max(0.0), a.f64());
+    let added = if radius == 0.0 { 0.0 } else { radius / (2.0 * d.max(0.0)) };
+    (alpha + added).clamp(0.0, 1.0).into()
+}
+
+/// The square of the quotient of both.
+fn area_energy(alpha: f64, wide: f64) -> f64 {
+    if wide <= alpha { 1.0 } else { (alpha.max(0.0) / wide.max(f64::from(f32::MIN_POSITIVE))).powi(2) }
+}

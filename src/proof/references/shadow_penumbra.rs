@@ -1,0 +1,22 @@
+//! Source: Fernando, 2005: similar triangles.
+
+use super::{Arguments, Entry, Expected};
+
+pub const REFERENCES: Entry = Entry {
+    module: "shadow::penumbra",
+    functions: &[("pcss_width", near), ("pcss_width_directional", distant)],
+};
+
+/// The light's size seen through the blocker's edge: size*(receiver/blocker - 1).
+fn near(a: &mut Arguments<'_>) -> Expected {
+    let (receiver, blocker, size) = (a.f64(), a.f64(), a.f64().max(0.0));
+    if blocker <= 0.0 || receiver <= blocker {
+        return 0.0.into();
+    }
+    (size * (receiver / blocker - 1.0).min(1e6)).into()
+}
+
+fn distant(a: &mut Arguments<'_>) -> Expected {
+    let (receiver, blocker, size) = (a.f64(), a.f64(), a.f64());
+    if receiver <= blocker || size <= 0.0 { 0.0.into() } else { ((receiver - blocker) * size).into() }
+}

@@ -1,0 +1,186 @@
+//! Costs on GPUs that are not there: what `lamplight cost` says of functions and permutations.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use libtest_mimic::{Failed, Trial};
+use serde_json::Value;
+
+type Outcome = Result<(), Failed>;
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("cost::more_work_costs_more", more_work),
+        Trial::test("cost::every_function_on_every_generation", every_function),
+        Trial::test("cost::parts_add_up", parts_add_up),
+        Trial::test("cost::permutations_have_their_stages", permutations),
+        Trial::test("cost::a_rise_fails", a_rise_fails),
+        Trial::test("cost::wrong_names", wrong_names),
+        Trial::test("cost::without_a_driver", without_a_driver),
+    ]
+}
+
+fn lamplight(arguments: &[&str]) -> Result<Output, Failed> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+    command.arg("cost").args(arguments).output().map_err(Failed::from)
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// The objects of `--json`.
+fn objects(arguments: &[&str]) -> Result<Vec<Value>, Failed> {
+    let output = lamplight(&[arguments, &["--json"]].concat())?;
+    if output.status.code() != Some(0) {
+        return Err(said(&output).into());
+    }
+    Ok(serde_json::from_slice(&output.stdout)?)
+}
+
+fn figure(object: &Value, form: &str, name: &str) -> Result<i64, Failed> {
+    object[form][name].as_i64().ok_or_else(|| format!("no {form}.{name} in {object}").into())
+}
+
+/// Filters with more taps have more instructions, on each generation of GPUs.
+fn more_work() -> Outcome {
+    let filters = ["hard", "pcf_3x3", "pcf_5x5"].map(|name| format!("shadow::compare::{name}"));
+    let names: Vec<&str> = filters.iter().map(String::as_str).collect();
+    let found = objects(&names)?;
+    let of = |name: &str, gpu: &str| {
+        let object = found.iter().find(|object| object["name"] == *name && object["gpu"] == *gpu);
+        figure(object.ok_or("a filter is missing")?, "net", "instructions")
+    };
+    for gpu in ["polaris10", "vega10", "navi10", "navi21", "gfx1100"] {
+        let counts = [of(names[0], gpu)?, of(names[1], gpu)?, of(names[2], gpu)?];
+        if counts[0] < 1 || !counts.is_sorted() || counts[1] == counts[2] {
+            return Err(format!("{gpu}: {counts:?} instructions for 1, 9 and 25 taps").into());
+        }
+    }
+    Ok(())
+}
+
+/// Every function of the library has figures, in both languages.
+fn every_function() -> Outcome {
+    let listed = Command::new(env!("CARGO_BIN_EXE_lamplight"))
+        .args(["list", "functions", "--json"])
+        .output()?;
+    let listed: Vec<Value> = serde_json::from_slice(&listed.stdout)?;
+    for language in ["wesl", "glsl"] {
+        let found = objects(&["--lang", language, "--gpu", "navi21,gfx1100"])?;
+        if found.len() != 2 * listed.len() {
+            let text = format!("{} figures of {} functions", found.len(), listed.len());
+            return Err(text.into());
+        }
+        for object in &found {
+            if figure(object, "figures", "instructions")? < 2
+                || figure(object, "figures", "vgprs")? < 1
+                || figure(object, "net", "instructions")? < 0
+            {
+                return Err(format!("{language}: {object}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What a function adds is the stage less the empty stage: the stage itself is no cheaper.
+fn parts_add_up() -> Outcome {
+    for object in objects(&["brdf::fresnel", "--gpu", "navi21"])? {
+        let [whole, net] =
+            [figure(&object, "figures", "code_size")?, figure(&object, "net", "code_size")?];
+        if net <= 0 || whole <= net {
+            return Err(format!("{net} of {whole} bytes: {object}").into());
+        }
+    }
+    Ok(())
+}
+
+fn permutations() -> Outcome {
+    let found = objects(&["lights=spot", "lights=spot,shadow=pcss", "--gpu", "navi21"])?;
+    let stages: Vec<&str> = found.iter().filter_map(|object| object["stage"].as_str()).collect();
+    if stages != ["fragment", "vertex", "fragment", "vertex"] {
+        return Err(format!("{stages:?}").into());
+    }
+    let [plain, pcss] = [0, 2].map(|index| figure(&found[index], "figures", "instructions"));
+    let (plain, pcss) = (plain?, pcss?);
+    if pcss < plain + 100 { Err(format!("{plain}, with PCSS {pcss}").into()) } else { Ok(()) }
+}
+
+fn a_rise_fails() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let file = folder.path().join("costs.json");
+    let path = file.to_string_lossy().into_owned();
+    let compare = |more: &[&str]| {
+        lamplight(&[&["lighting::spot", "--gpu", "navi21", "--baseline", &path], more].concat())
+    };
+    let codes = |wanted: i32, output: Output| match output.status.code() {
+        Some(code) if code == wanted => Ok(said(&output)),
+        code => Err(Failed::from(format!("exit code {code:?} for {wanted}: {}", said(&output)))),
+    };
+    codes(0, compare(&[])?)?;
+    codes(0, compare(&[])?)?;
+    let recorded = std::fs::read_to_string(&file)?;
+    let lower = edit(&recorded, |driver, instructions| (driver, instructions - 1))?;
+    std::fs::write(&file, &lower)?;
+    let told = codes(3, compare(&[])?)?;
+    if !told.contains("cone_smooth navi21 fragment: instructions") {
+        return Err(format!("which figure rose is not told: {told}").into());
+    }
+    codes(0, compare(&["--rise", "2"])?)?;
+    let other = edit(&recorded, |_, instructions| ("Mesa 1.2.3".to_owned(), instructions))?;
+    std::fs::write(&file, other)?;
+    codes(4, compare(&[])?)?;
+    codes(0, compare(&["--record"])?)?;
+    if std::fs::read_to_string(&file)? != recorded {
+        return Err("what was recorded again differs".into());
+    }
+    std::fs::write(&file, "{\"name\": \"somebody's\"}")?;
+    codes(1, compare(&[])?)?;
+    codes(1, compare(&["--record"])?)?;
+    match std::fs::read_to_string(&file)?.contains("somebody's") {
+        true => Ok(()),
+        false => Err("a file that is not ours was replaced".into()),
+    }
+}
+
+/// Recorded costs with another driver and other numbers of instructions.
+fn edit(text: &str, change: impl Fn(String, i64) -> (String, i64)) -> Result<String, Failed> {
+    let mut value: Value = serde_json::from_str(text)?;
+    let driver = value["driver"].as_str().unwrap_or_default().to_owned();
+    value["driver"] = change(driver, 0).0.into();
+    for (_, figures) in value["costs"].as_object_mut().ok_or("there are no costs")? {
+        let before = figures["instructions"].as_i64().ok_or("there are no instructions")?;
+        figures["instructions"] = change(String::new(), before).1.into();
+    }
+    Ok(value.to_string())
+}
+
+fn wrong_names() -> Outcome {
+    let cases: [(&[&str], i32, &str); 4] = [
+        (&["lighting::spot::cone_smoth"], 1, "did you mean `lighting::spot::cone_smooth`"),
+        (&["lights=spott"], 1, "spot"),
+        (&["brdf", "--gpu", "navi12"], 2, "did you mean `navi"),
+        (&["brdf", "--rise", "nan"], 2, "expected a number"),
+    ];
+    for (arguments, code, text) in cases {
+        let output = lamplight(arguments)?;
+        if output.status.code() != Some(code) || !said(&output).contains(text) {
+            return Err(format!("{arguments:?}: {:?} {}", output.status, said(&output)).into());
+        }
+    }
+    Ok(())
+}
+
+/// Where the loader finds no library, the command says what to install.
+fn without_a_driver() -> Outcome {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+    let output = command
+        .args(["cost", "lighting::spot"])
+        .env("LAMPLIGHT_RADV_MANIFEST", Path::new("/nowhere/radeon.json"))
+        .output()?;
+    match output.status.code() {
+        Some(4) if said(&output).contains("apt-get install mesa-vulkan-drivers") => Ok(()),
+        code => Err(format!("{code:?}: {}", said(&output)).into()),
+    }
+}

@@ -1,0 +1,20 @@
+//! What users of the command line meet: each trial is named after what a person expects.
+
+mod command_line;
+mod package;
+mod roots;
+mod same_bytes;
+mod told;
+
+use libtest_mimic::Trial;
+
+type Outcome = Result<(), libtest_mimic::Failed>;
+
+/// A kind of trials: names and what they do.
+type Case = (&'static str, fn() -> Outcome);
+
+pub fn trials() -> Vec<Trial> {
+    let cases = [command_line::CASES, roots::CASES, same_bytes::CASES, told::CASES];
+    let named = |(name, case): &Case| Trial::test(format!("doors::{name}"), *case);
+    cases.into_iter().flatten().map(named).collect()
+}

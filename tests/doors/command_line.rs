@@ -1,0 +1,170 @@
+//! What people expect of a command line.
+
+use std::fs;
+
+use super::package::{Package, equal};
+use super::{Case, Outcome};
+
+pub const CASES: &[Case] = &[
+    ("stages_have_files_of_their_own", stages),
+    ("several_inputs", several_inputs),
+    ("entry_points_by_name", entry_points),
+    ("reflection_of_a_shader", reflection),
+    ("depfile", depfile),
+    ("standard_input", standard_input),
+    ("pipes", pipes),
+    ("features_default", features_default),
+    ("features_default_of_the_manifest", manifest_features),
+];
+
+const FRAG: &str =
+    "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(1.0); }\n";
+const VERT: &str = "#version 450\nvoid main() { gl_Position = vec4(1.0); }\n";
+const BOTH: &str = "import package::half::half;
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(half(1.0)); }
+@fragment fn fs_main() -> @location(0) vec4f { return vec4f(half(2.0)); }\n";
+const HALF: &str = "fn half(x: f32) -> f32 { return 0.5 * x; }\n";
+
+/// One stage does not overwrite the other, in any target.
+fn stages() -> Outcome {
+    let package = Package::new(&[("lit.frag", FRAG), ("lit.vert", VERT)])?;
+    package.run("compile lit.frag --target all -o out")?.ends(0)?;
+    package.run("compile lit.vert --target all -o out")?.ends(0)?;
+    equal(fs::read_dir(package.path("out"))?.flatten().filter(is_output).count(), 14)?;
+    for name in ["lit.main.frag.spv", "lit.main.vert.spv", "lit.main.essl300.frag"] {
+        fs::metadata(package.path("out").join(name)).map_err(|_| format!("no {name}"))?;
+    }
+    Ok(())
+}
+
+fn is_output(entry: &fs::DirEntry) -> bool {
+    entry.file_name().to_string_lossy().starts_with("lit.")
+}
+
+/// Several files in one run; what is wrong with one does not hide what is wrong with the next.
+fn several_inputs() -> Outcome {
+    let package = Package::new(&[
+        ("lit.frag", FRAG),
+        ("lit.vert", VERT),
+        ("other/lit.frag", FRAG),
+        ("a.wesl", "fn f() { let x = ; }\n@fragment fn m() { f(); }\n"),
+        ("b.wesl", "@fragment fn m() -> @location(0) vec4f { return nothing; }\n"),
+    ])?;
+    let run = package.run("compile lit.frag lit.vert --target spirv -o out")?.ends(0)?;
+    equal(run.out, "out/lit.main.frag.spv\nout/lit.main.vert.spv\n".to_owned())?;
+    let run = package.run("compile lit.frag other/lit.frag --target spirv -o two")?.ends(2)?;
+    run.says(&["two shaders would both be `lit.main.frag.spv`"])?;
+    let run = package.run("compile a.wesl lit.frag b.wesl --target spirv -o wrong")?.ends(1)?;
+    run.says(&["a.wesl:1:", "b.wesl:1:"])?;
+    equal(package.path("wrong").exists(), false)
+}
+
+fn entry_points() -> Outcome {
+    let package = Package::new(&[("both.wesl", BOTH), ("half.wesl", HALF)])?;
+    let all = package.run("compile both.wesl --target wgsl -o out")?.ends(0)?;
+    equal(all.out, "out/both.vs_main.vert.wgsl\nout/both.fs_main.frag.wgsl\n".to_owned())?;
+    let one = package.run("compile both.wesl --target wgsl --entry fs_main")?.ends(0)?;
+    one.says(&["fs_main"])?.is_silent_of(&["vs_main"])?;
+    let none = package.run("compile both.wesl --target wgsl --entry fs_mian")?.ends(1)?;
+    none.says(&["error[unknown-entry-point]", "did you mean `fs_main`?", "vs_main, fs_main"])?;
+    Ok(())
+}
+
+/// What an engine needs comes as JSON, with or without a target.
+fn reflection() -> Outcome {
+    let package = Package::new(&[("both.wesl", BOTH), ("half.wesl", HALF)])?;
+    let run = package.run("compile both.wesl --reflection --entry vs_main")?.ends(0)?;
+    let json: serde_json::Value = serde_json::from_str(&run.out)?;
+    equal(json["reflection"]["stage"].as_str(), Some("vertex"))?;
+    package.run("compile both.wesl --reflection --target msl -o out")?.ends(0)?;
+    let text = fs::read_to_string(package.path("out/both.fs_main.frag.json"))?;
+    let json: serde_json::Value = serde_json::from_str(&text)?;
+    equal(json["targets"]["msl"]["entry_name"].is_string(), true)
+}
+
+/// The rule names every file that was read and every output, and make reads it.
+fn depfile() -> Outcome {
+    let package = Package::new(&[
+        ("my both.wesl", BOTH),
+        ("half.wesl", HALF),
+        ("wesl.toml", "root = \".\"\n"),
+    ])?;
+    let mut command = package.command("", "compile");
+    command.args(["my both.wesl", "--target", "wgsl", "-o", "out", "--depfile", "rule.d"]);
+    equal(command.status()?.code(), Some(0))?;
+    let rule = fs::read_to_string(package.path("rule.d"))?;
+    let expected = "out/my\\ both.vs_main.vert.wgsl out/my\\ both.fs_main.frag.wgsl: \\\n  half.wesl \\\n  my\\ both.wesl \\\n  wesl.toml\n";
+    equal(rule.as_str(), expected)?;
+    // A second run may replace its own rule, and nobody else's file.
+    equal(command.status()?.code(), Some(0))?;
+    package.write("rule.d", "all: clean\n")?;
+    equal(command.status()?.code(), Some(1))
+}
+
+fn standard_input() -> Outcome {
+    let package = Package::new(&[("half.wesl", HALF)])?;
+    let run = package.fed("compile - --lang wesl --target wgsl -o out", BOTH)?.ends(0)?;
+    equal(run.out, "out/stdin.vs_main.vert.wgsl\nout/stdin.fs_main.frag.wgsl\n".to_owned())?;
+    package.fed("compose - --lang wesl", BOTH)?.ends(0)?.says(&["fn half(x: f32)"])?;
+    package.fed("compile - --stage fragment --target wgsl", FRAG)?.ends(0)?.says(&["@fragment"])?;
+    let wrong = package
+        .fed("compose - --lang wesl", "import package::hafl::half;\nfn f() { half(1.0); }\n")?;
+    wrong.ends(1)?.says(&["<standard input>:1:8", "did you mean `package::half`"])?;
+    package.fed("compose -", BOTH)?.ends(2)?.says(&["add `--lang`"])?;
+    package.fed("compile - --lang glsl --target wgsl", FRAG)?.ends(1)?.says(&["--stage"])?;
+    Ok(())
+}
+
+/// A pipe is read like standard input: `<(...)` of a shell, `/dev/stdin`.
+fn pipes() -> Outcome {
+    let package = Package::new(&[("half.wesl", HALF)])?;
+    package.fed("compose /dev/stdin --lang wesl", BOTH)?.ends(0)?.says(&["fn half(x: f32)"])?;
+    Ok(())
+}
+
+const FLAG: &str = "@fragment fn m() -> @location(0) vec4f {
+    @if(fog) { return vec4f(0.5); }
+    return vec4f(1.0);
+}\n";
+const MACRO: &str = "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() {\n#if FOG\nc = vec4(0.5);\n#else\nc = vec4(1.0);\n#endif\n}\n";
+
+/// What an undeclared feature is, in both languages; an error where nobody says.
+fn features_default() -> Outcome {
+    let package = Package::new(&[("a.wesl", FLAG), ("b.frag", MACRO)])?;
+    for file in ["a.wesl", "b.frag"] {
+        for (choice, inside) in [("on", "0.5"), ("off", "1f")] {
+            let choice = format!("--features-default {choice}");
+            package.run(&format!("compose {file} {choice}"))?.ends(0)?;
+            let run = package.run(&format!("compile {file} --target wgsl {choice}"))?.ends(0)?;
+            run.says(&[inside])?;
+        }
+        let off = package.run(&format!("compile {file} --target wgsl --features-default off"))?;
+        off.is_silent_of(&["0.5"])?;
+        package.run(&format!("compose {file} --features-default error"))?.ends(1)?;
+        package.run(&format!("compose {file}"))?.ends(1)?;
+    }
+    // What is chosen is chosen.
+    let run =
+        package.run("compile a.wesl --target wgsl --features-default on --feature fog=false")?;
+    run.ends(0)?.is_silent_of(&["0.5"])?;
+    Ok(())
+}
+
+/// The manifest says the same with a key, which options go before.
+fn manifest_features() -> Outcome {
+    let manifest =
+        "[program.p]\nwesl = \"a.wesl\"\ntargets = [\"wgsl\"]\nfeatures_default = \"off\"\n";
+    let package = Package::new(&[("a.wesl", FLAG), ("lamplight.toml", manifest)])?;
+    package.run("gen --no-cache")?.ends(0)?;
+    let get = "bundle get bundle p m default --target wgsl";
+    package.run(get)?.ends(0)?.is_silent_of(&["0.5"])?;
+    package.run("compile a.wesl --target wgsl")?.ends(0)?.is_silent_of(&["0.5"])?;
+    package.run("compile a.wesl --target wgsl --features-default on")?.ends(0)?.says(&["0.5"])?;
+    package.run("compile a.wesl --target wgsl --features-default error")?.ends(1)?;
+    package.write("lamplight.toml", &manifest.replace("off", "of"))?;
+    package
+        .run("gen --no-cache")?
+        .ends(1)?
+        .says(&["did you mean `off`?", "lamplight.toml:4:20"])?;
+    Ok(())
+}

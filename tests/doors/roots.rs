@@ -1,0 +1,129 @@
+//! Which package a file belongs to, whatever command asks and from wherever.
+
+use super::package::{Package, equal};
+use super::{Case, Outcome};
+
+pub const CASES: &[Case] = &[
+    ("root_from_inside", from_inside),
+    ("root_beside_the_manifest", beside_the_manifest),
+    ("root_without_wesl_toml", without_wesl_toml),
+    ("root_outside_of_wesl_toml", outside),
+    ("nearest_manifest", nearest_manifest),
+    ("names_of_files", names_of_files),
+];
+
+const WESL_TOML: &str = "[package]\nname = \"p\"\nedition = \"2026_pre\"\nroot = \"shaders\"\n";
+const MANIFEST: &str = "[program.surface]\nwesl = \"shaders/surface.wesl\"\ntargets = [\"wgsl\"]\n\
+    [program.surface.axis]\nfalloff = { values = [\"none\", \"square\"] }\n";
+const SURFACE: &str = "import package::common::half;
+@fragment fn fs_main(@location(0) x: f32) -> @location(0) vec4f {
+    @if(falloff == square) { return vec4f(half(x) * x); }
+    @else { return vec4f(half(x)); }
+}\n";
+const COMMON: &str = "fn half(x: f32) -> f32 { return 0.5 * x; }\n";
+const CASE: &str = "[[case]]\nfunction = \"twice\"\nformula = \"0.5*x\"\ntolerance = { abs = 1e-6 }\n\
+    [case.inputs]\nx = [0, 1, 2]\n";
+
+fn package(more: &[(&str, &str)]) -> Result<Package, libtest_mimic::Failed> {
+    let files = [
+        ("wesl.toml", WESL_TOML),
+        ("lamplight.toml", MANIFEST),
+        ("shaders/surface.wesl", SURFACE),
+        ("shaders/common.wesl", COMMON),
+        (
+            "shaders/light/one.wesl",
+            "import package::common::half;\nfn twice(x: f32) -> f32 { return half(x); }\n",
+        ),
+        ("shaders/light/one.toml", CASE),
+    ];
+    Package::new(&[&files, more].concat())
+}
+
+/// The package is found from a folder below its root, and files keep short names.
+fn from_inside() -> Outcome {
+    let package = package(&[])?;
+    let composed = package.run_in("shaders/light", "compose one.wesl")?.ends(0)?;
+    equal(composed.out, package.run("compose shaders/light/one.wesl")?.ends(0)?.out)?;
+    package.run_in("shaders/light", "check one.toml")?.ends(0)?.says(&["1 of 1 pass"])?;
+    package.run_in("shaders/light", "check .")?.ends(0)?.says(&["1 of 1 pass"])?;
+    package.run_in("shaders", "compile ./surface.wesl --target wgsl")?.ends(0)?;
+    package
+        .write("shaders/light/one.wesl", "import package::comon::half;\nfn f() { half(1.0); }\n")?;
+    let wrong = package.run_in("shaders/light", "compose one.wesl --diagnostics short")?.ends(1)?;
+    wrong.says(&["one.wesl:1:8: error[missing-module]"])?.is_silent_of(&[".."])?;
+    Ok(())
+}
+
+/// The root that `wesl.toml` declares counts for a manifest beside it, and its axes for `compile`.
+fn beside_the_manifest() -> Outcome {
+    let package = package(&[])?;
+    package.run("gen --no-cache")?.ends(0)?.says(&["surface: 2 permutations"])?;
+    let shipped = package.run("bundle get bundle surface fs_main falloff=square --target wgsl")?;
+    let alone = package.run("compile shaders/surface.wesl --set falloff=square --target wgsl")?;
+    equal(shipped.ends(0)?.out, alone.ends(0)?.out)?;
+    package.run_in("shaders", "gen --no-cache -o ../other")?.ends(0)?;
+    Ok(())
+}
+
+/// Without `wesl.toml` the folder of the manifest is the root, for every command.
+fn without_wesl_toml() -> Outcome {
+    let package = Package::new(&[
+        ("lamplight.toml", MANIFEST),
+        ("shaders/surface.wesl", &SURFACE.replace("package::common", "package::shaders::common")),
+        ("shaders/common.wesl", COMMON),
+    ])?;
+    package.run("gen --no-cache")?.ends(0)?;
+    let shipped = package.run("bundle get bundle surface fs_main falloff=square --target wgsl")?;
+    let alone =
+        package.run_in("shaders", "compile surface.wesl --set falloff=square --target wgsl")?;
+    equal(shipped.ends(0)?.out, alone.ends(0)?.out)
+}
+
+/// A manifest cannot name what lies outside of the root.
+fn outside() -> Outcome {
+    let package = package(&[("lamplight.toml", &MANIFEST.replace("shaders/", ""))])?;
+    let run = package.run("gen --no-cache")?.ends(1)?;
+    run.says(&["error[outside-root]", "lamplight.toml:2:8", "`shaders/main.wesl`"])?;
+    Ok(())
+}
+
+/// Commands over a manifest take the nearest one, and not the library's where there is one.
+fn nearest_manifest() -> Outcome {
+    let package = package(&[])?;
+    for command in ["variants", "keys --lang rust", "gen --no-cache -o /dev/null/no"] {
+        for folder in ["", "shaders/light"] {
+            let run = package.run_in(folder, command)?;
+            run.is_silent_of(&["forward", "there is no manifest"])?;
+        }
+    }
+    package.run_in("shaders/light", "variants")?.ends(0)?.says(&["surface"])?;
+    let empty = Package::new(&[])?;
+    empty.run("gen")?.ends(1)?.says(&["there is no manifest `lamplight.toml`"])?;
+    Ok(())
+}
+
+/// Files have the names that an editor opens, those of dependencies too.
+fn names_of_files() -> Outcome {
+    let package = Package::new(&[
+        (
+            "app/wesl.toml",
+            "[package]\nname=\"app\"\nedition=\"2026_pre\"\nroot=\".\"\n[dependencies]\ndep = { path = \"../dep\" }\n",
+        ),
+        (
+            "app/main.wesl",
+            "import dep::light::f;\n@fragment fn m() -> @location(0) vec4f { return vec4f(f()); }\n",
+        ),
+        ("dep/wesl.toml", "[package]\nname=\"dep\"\nedition=\"2026_pre\"\nroot=\".\"\n"),
+        ("dep/light.wesl", "fn f() -> f32 { let a = ; return 1.0; }\n"),
+    ])?;
+    let words = ["dep/light.wesl:1:25"];
+    package
+        .run("compile app/main.wesl --target wgsl")?
+        .ends(1)?
+        .says(&words)?
+        .is_silent_of(&["/./"])?;
+    package.write("dep/wesl.toml", "[package]\nname=\"dep\"\nroot=1\n")?;
+    let run = package.run("compile app/main.wesl --target wgsl")?.ends(1)?;
+    run.says(&["dep/wesl.toml:3:1"])?;
+    Ok(())
+}

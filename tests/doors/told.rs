@@ -1,0 +1,68 @@
+//! Nothing that matters happens without a word.
+
+use super::package::Package;
+use super::{Case, Outcome};
+
+pub const CASES: &[Case] = &[
+    ("warnings_of_the_manifest", manifest_warnings),
+    ("empty_programs", empty_programs),
+    ("usage_of_unknown_programs", unknown_usage),
+];
+
+const MAIN: &str = "@fragment fn fs_main(@location(0) x: f32) -> @location(0) vec4f {
+    @if(wrap) { return vec4f(fract(x)); }
+    return vec4f(x);
+}\n";
+
+fn manifest(more: &str) -> String {
+    format!(
+        "[program.surface]\nwesl = \"main.wesl\"\ntargets = [\"wgsl\"]\n{more}\n\
+         [program.surface.axis]\nwrap = {{ values = [false, true] }}\n"
+    )
+}
+
+/// `gen` says what the manifest's own lints say, again when there is nothing to do.
+fn manifest_warnings() -> Outcome {
+    let always = manifest("") + "[[program.surface.constraint]]\nrequire = \"wrap || !wrap\"\n";
+    let package = Package::new(&[("lamplight.toml", &always), ("main.wesl", MAIN)])?;
+    for _ in 0..2 {
+        package.run("gen --cache c")?.ends(0)?.says(&["warning[constraint-always-true]"])?;
+    }
+    Ok(())
+}
+
+/// An empty program is told as such, and nothing is said that only follows from it.
+fn empty_programs() -> Outcome {
+    let never = manifest("") + "[[program.surface.constraint]]\nrequire = \"wrap && !wrap\"\n";
+    let package = Package::new(&[("lamplight.toml", &never), ("main.wesl", MAIN)])?;
+    let run = package.run("gen --no-cache")?.ends(0)?;
+    run.says(&["warning[constraint-always-false]", "so the program ships empty"])?
+        .is_silent_of(&["unread-axis", "constant-condition"])?;
+    package.write("lamplight.toml", &manifest("exclude = [{ wrap = \"*\" }]"))?;
+    let run = package.run("gen --no-cache --force")?.ends(0)?;
+    run.says(&["warning[no-permutation]", "ships empty", "surface: 0 permutations"])?
+        .is_silent_of(&["unread-axis", "constant-condition"])?;
+    package.write("asked.txt", "# none\n")?;
+    package.write("lamplight.toml", &manifest("usage = \"asked.txt\""))?;
+    package.run("gen --no-cache --force")?.ends(0)?.says(&["warning[no-permutation]"])?;
+    Ok(())
+}
+
+/// A usage list may name programs that the manifest has not: that is told once.
+fn unknown_usage() -> Outcome {
+    let list = "surface wrap\nsurfaces wrap\nsurfaces default\n";
+    let package = Package::new(&[
+        ("lamplight.toml", &manifest("usage = \"asked.txt\"")),
+        ("main.wesl", MAIN),
+        ("asked.txt", list),
+    ])?;
+    for command in ["gen --no-cache", "variants"] {
+        let run = package.run(command)?.ends(0)?;
+        let words = ["warning[unknown-program]", "asked.txt:2:1", "did you mean `surface`?"];
+        let run = run.says(&words)?;
+        if run.err.matches("unknown-program").count() != 1 {
+            return Err(run.err.into());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,250 @@
+//! `cargo xtask new`: what it writes is read by the crate's own parsers, and trials demand what it
+//! leaves empty.
+
+#[path = "../xtask/src/new/mod.rs"]
+mod made;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use lamplight::bundle::Language;
+use lamplight::catalogue::plot;
+use lamplight::compose::{self, Keep, Options};
+use lamplight::diagnostic::Diagnostics;
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::permute::{Settings, lock, manifest};
+use lamplight::picture::needs::Table;
+use lamplight::proof::cases;
+use lamplight::resolve::{self, Packages};
+use lamplight::source::{Embedded, Files, Memory, Package, ReadError, SourceId, SourceSet};
+use lamplight::validate::validate;
+use libtest_mimic::{Failed, Trial};
+
+use crate::snapshot::root;
+use crate::{house, scene, shaderlib};
+
+type Outcome = Result<(), Failed>;
+
+pub fn trials() -> Vec<Trial> {
+    let all: [(&str, fn() -> Outcome); 8] = [
+        ("function", function),
+        ("axis_value", axis_value),
+        ("diagnostic", diagnostic),
+        ("executor", || rust("executor", "src/execute/executors/fresh.rs")),
+        ("target", || rust("target", "src/emit/targets/fresh.rs")),
+        ("scene", || rust("scene", "src/scene/sets/fresh.rs")),
+        ("examples", examples),
+        ("mistakes", mistakes),
+    ];
+    all.into_iter().map(|(name, run)| Trial::test(format!("new::{name}"), run)).collect()
+}
+
+/// The texts that are made, by their path. Nothing is written.
+fn make(kind: &str, name: &str) -> Result<BTreeMap<String, String>, Failed> {
+    let made = made::make(&root(), kind, name)?;
+    match made.next.is_empty() {
+        true => Err("nothing is said of what to do next".into()),
+        false => Ok(made.files.into_iter().collect()),
+    }
+}
+
+fn text<'t>(files: &'t BTreeMap<String, String>, path: &str) -> Result<&'t str, Failed> {
+    let missing = || format!("`{path}` is not written, but {:?}", files.keys());
+    Ok(files.get(path).map(String::as_str).ok_or_else(missing)?)
+}
+
+/// Runs one of the crate's parsers on a text.
+fn parsed<T>(
+    text: &str,
+    parse: impl FnOnce(&SourceSet, SourceId) -> Result<T, Diagnostics>,
+) -> Result<T, Failed> {
+    let mut sources = SourceSet::default();
+    let id = sources.add("made.toml", text.to_owned());
+    parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human).into())
+}
+
+/// In a module that there is, and in a new one.
+fn function() -> Outcome {
+    for module in ["brdf::diffuse", "brdf::fresh", "optics::fresh"] {
+        let files = make("function", &format!("{module}::minnaert"))?;
+        let stem = format!("shaderlib/{}", module.replace("::", "/"));
+        let cases = parsed(text(&files, &format!("{stem}.toml"))?, cases::parse)?;
+        if !cases.cases.iter().any(|case| case.function == "minnaert") {
+            return Err(format!("{stem}.toml has no case").into());
+        }
+        let plots = parsed(text(&files, &format!("{stem}.plot.toml"))?, plot::parse)?;
+        if !plots.contains_key("minnaert") {
+            return Err(format!("{stem}.plot.toml has no plot").into());
+        }
+        compiles(&files, &stem)?;
+        for extension in ["wesl", "glsl"] {
+            let faults = shaderlib::undocumented(text(&files, &format!("{stem}.{extension}"))?);
+            let wanted = ["in a sentence", "lacks `Source: `", "lacks `Error model: `"];
+            if !wanted.iter().all(|part| faults.iter().any(|fault| fault.contains(part))) {
+                return Err(format!("{stem}.{extension}: only {faults:?} are demanded").into());
+            }
+        }
+        let reference = format!("src/proof/references/{}.rs", module.replace("::", "_"));
+        let text = text(&files, &reference)?;
+        balanced(text)?;
+        if !text.contains("(\"minnaert\", |a| minnaert(a.f64()).into())") {
+            return Err(format!("{reference} has no row:\n{text}").into());
+        }
+    }
+    Ok(())
+}
+
+/// The library with other texts in the place of its own.
+struct Overlay(Memory);
+
+impl Files for Overlay {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        Ok(self.0.read(path)?.or(Embedded.read(path)?))
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        let mut all = [self.0.list(extensions), Embedded.list(extensions)].concat();
+        all.sort();
+        all.dedup();
+        all
+    }
+}
+
+/// The module compiles in both languages.
+fn compiles(files: &BTreeMap<String, String>, stem: &str) -> Outcome {
+    let below = |(path, text): (&String, &String)| {
+        path.strip_prefix("shaderlib/").map(|path| (path.to_owned(), text.clone()))
+    };
+    let module = stem.trim_start_matches("shaderlib/");
+    let path = module.replace('/', "::");
+    let wesl = format!(
+        "import lamplight::{path}::minnaert;\n@fragment fn main() -> @location(0) vec4f {{\n    \
+         return vec4f(minnaert(0.5));\n}}\n"
+    );
+    let glsl = format!(
+        "#version 450\n#include <lamplight/{module}.glsl>\nlayout(location = 0) out vec4 colour;\n\
+         void main() {{\n    colour = vec4(minnaert(0.5));\n}}\n"
+    );
+    let roots = [("main.wesl", wesl, Language::Wesl), ("main.frag.glsl", glsl, Language::Glsl)];
+    for (root, text, language) in roots {
+        let own = Memory([(root.to_owned(), text)].into());
+        let library = Overlay(Memory(files.iter().filter_map(below).collect()));
+        let packages = Packages {
+            root: Package { name: "user".into(), files: Box::new(own) },
+            dependencies: vec![Package { name: "lamplight".into(), files: Box::new(library) }],
+        };
+        let mut sources = SourceSet::default();
+        let options = Options { keep: Keep::EntryPoints, ..Options::default() };
+        resolve::load(&mut sources, &packages, root, language)
+            .and_then(|graph| compose::compose(&graph, &Settings::default(), &options))
+            .and_then(|composed| validate(&composed))
+            .map_err(|problems| render(&sources, &problems, Form::Human))?;
+    }
+    Ok(())
+}
+
+/// The manifest, the lock file and the table of pictures agree on the new value.
+fn axis_value() -> Outcome {
+    let files = make("axis-value", "forward::fog=height")?;
+    let manifest = parsed(text(&files, "shaderlib/lamplight.toml")?, manifest::parse)?;
+    let program = manifest.program("forward").ok_or("no program `forward`")?;
+    let axis = program.space.axis("fog").ok_or("no axis `fog`")?;
+    if axis.value_names().last().map(String::as_str) != Some("height") {
+        return Err(format!("the axis has {:?}", axis.value_names()).into());
+    }
+    let known =
+        parsed(&std::fs::read_to_string(root().join("shaderlib/lamplight.lock"))?, lock::parse)?;
+    let extended = manifest
+        .programs
+        .iter()
+        .fold(known, |lock, program| lock.extended(&program.name, &program.space));
+    if extended.to_string() != text(&files, "shaderlib/lamplight.lock")? {
+        return Err("the lock file is not as `lamplight keys --lock` writes it".into());
+    }
+    let pictures = text(&files, "shaderlib/pictures.toml")?;
+    parsed(pictures, |sources, id| Table::parse(sources, id, &manifest))?;
+    let without = pictures.replace("height = {}\n", "");
+    match parsed(&without, |sources, id| Table::parse(sources, id, &manifest)) {
+        Err(problem) if problem.message().unwrap_or_default().contains("`fog=height`") => Ok(()),
+        _ => Err("the row of the value is not demanded".into()),
+    }
+}
+
+fn diagnostic() -> Outcome {
+    let files = make("diagnostic", "unknown-swizzle")?;
+    let text = text(&files, "src/diagnostic/codes/unknown-swizzle.md")?;
+    match text == "#\n\nPage: \n" {
+        true => Ok(()),
+        false => Err(format!("something is said already:\n{text}").into()),
+    }
+}
+
+/// A file of Rust whose name is its entry's, and whose description is demanded.
+fn rust(kind: &str, path: &str) -> Outcome {
+    let files = make(kind, "fresh")?;
+    let text = text(&files, path)?;
+    balanced(text)?;
+    if house::undescribed("fresh", "").is_none() || house::undescribed("fresh", "What.").is_some() {
+        return Err("an empty description is not noticed".into());
+    }
+    if kind == "scene" && scene::nothing_is_shown(&[]).is_none() {
+        return Err("an empty scene is not noticed".into());
+    }
+    let has_name = text.contains("name: \"fresh\"") || text.contains("Target::FRESH");
+    match has_name && text.contains("about: \"\"") {
+        true => Ok(()),
+        false => Err(format!("{path} is not as its siblings:\n{text}").into()),
+    }
+}
+
+/// Every bracket is closed by its own kind.
+fn balanced(text: &str) -> Outcome {
+    let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    let mut open = Vec::new();
+    for letter in code.chars() {
+        match letter {
+            '(' => open.push(')'),
+            '[' => open.push(']'),
+            '{' => open.push('}'),
+            ')' | ']' | '}' if open.pop() != Some(letter) => {
+                return Err(format!("`{letter}` closes nothing:\n{text}").into());
+            }
+            _ => {}
+        }
+    }
+    if open.is_empty() { Ok(()) } else { Err(format!("{open:?} is missing:\n{text}").into()) }
+}
+
+/// What the usage shows as an example of each kind can be made.
+fn examples() -> Outcome {
+    for kind in made::KINDS {
+        make(kind.name, kind.example).map_err(|problem| format!("{}: {problem:?}", kind.name))?;
+    }
+    Ok(())
+}
+
+/// Wrong names and what there is already are refused with a reason.
+fn mistakes() -> Outcome {
+    let wrong = [
+        ("functions", "brdf::diffuse::fresh", "there is no kind `functions`"),
+        ("function", "lambert", "is no path of a function"),
+        ("function", "brdf::diffuse::Lambert", "must be small letters"),
+        ("function", "brdf::diffuse::lambert", "already"),
+        ("axis-value", "forward.fog", "is no value of an axis"),
+        ("axis-value", "forward::fog=linear", "has the value `linear` already"),
+        ("axis-value", "forward::mist=linear", "has no `[program.forward.axis.mist]`"),
+        ("axis-value", "forward::max_lights=many", "has no list of names"),
+        ("target", "hlsl", "exists already"),
+        ("executor", "eval", "exists already"),
+        ("scene", "Room", "must be small letters"),
+        ("diagnostic", "unknown_axis", "must be small letters"),
+        ("diagnostic", "unknown-axis", "exists already"),
+    ];
+    for (kind, name, expected) in wrong {
+        match made::make(Path::new(&root()), kind, name) {
+            Err(said) if said.contains(expected) => {}
+            other => return Err(format!("{kind} {name}: {other:?}").into()),
+        }
+    }
+    Ok(())
+}

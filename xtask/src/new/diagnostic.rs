@@ -1,0 +1,23 @@
+//! A kind of diagnostic.
+
+use super::{Kind, Made, Repository, check_name};
+
+pub const KIND: Kind = Kind { name: "diagnostic", example: "unknown-swizzle", make };
+
+fn make(repository: &Repository<'_>, name: &str) -> Result<Made, String> {
+    check_name(name, '-')?;
+    let file = format!("src/diagnostic/codes/{name}.md");
+    repository.refuse_existing(&file)?;
+    let constant = name.replace('-', "_").to_uppercase();
+    let next = vec![
+        format!(
+            "{file}: a title, `Page: ` with a page of src/diagnostic/guide.rs, and when it happens and how to mend it (trials diagnostics, guide)"
+        ),
+        format!("`Diagnostic::error(codes::{constant}, message).at(span, words)` where it happens"),
+        format!(
+            "a case in tests/diagnostics/ that shows `[{name}]` (trial diagnostics every code has a case)"
+        ),
+        "INSTA_UPDATE=always cargo xtask test guide; read the difference".to_owned(),
+    ];
+    Ok(Made { files: vec![(file, "#\n\nPage: \n".to_owned())], next })
+}

@@ -1,0 +1,88 @@
+//! What `cargo xtask new` writes: one file of this folder for each kind of thing.
+//!
+//! The files are made to be completed. What they leave empty is demanded by a trial, which
+//! [`Made::next`] names.
+
+mod axis_value;
+mod diagnostic;
+mod executor;
+mod function;
+mod scene;
+mod target;
+
+use std::path::Path;
+
+/// A kind of thing that is added by adding or extending files.
+pub struct Kind {
+    /// As written on the command line.
+    pub name: &'static str,
+    /// What its names look like.
+    pub example: &'static str,
+    /// The files for a name, from the repository as it is.
+    pub make: fn(&Repository<'_>, &str) -> Result<Made, String>,
+}
+
+/// Every kind.
+pub const KINDS: &[Kind] = &[
+    function::KIND,
+    axis_value::KIND,
+    target::KIND,
+    executor::KIND,
+    scene::KIND,
+    diagnostic::KIND,
+];
+
+/// What to write, and what to do then.
+#[derive(Debug, Default)]
+pub struct Made {
+    /// Paths below the repository's root, with their whole new texts.
+    pub files: Vec<(String, String)>,
+    /// Steps that complete the work, each with what demands it.
+    pub next: Vec<String>,
+}
+
+/// The repository that is added to.
+pub struct Repository<'r> {
+    /// Its folder.
+    pub root: &'r Path,
+}
+
+impl Repository<'_> {
+    /// The text of a file; `None` if there is no such file.
+    fn find(&self, path: &str) -> Option<String> {
+        std::fs::read_to_string(self.root.join(path)).ok()
+    }
+
+    /// The text of a file that has to be there.
+    fn read(&self, path: &str) -> Result<String, String> {
+        self.find(path).ok_or_else(|| format!("cannot read `{path}`"))
+    }
+
+    /// Fails if the file is there.
+    fn refuse_existing(&self, path: &str) -> Result<(), String> {
+        match self.root.join(path).exists() {
+            true => Err(format!("`{path}` exists already")),
+            false => Ok(()),
+        }
+    }
+}
+
+/// The files for one thing of a kind.
+pub fn make(root: &Path, kind: &str, name: &str) -> Result<Made, String> {
+    let known: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+    let kind = KINDS
+        .iter()
+        .find(|known| known.name == kind)
+        .ok_or_else(|| format!("there is no kind `{kind}`; kinds: {}", known.join(", ")))?;
+    (kind.make)(&Repository { root }, name)
+}
+
+/// Fails unless the name is letters, digits and one more character, and begins with a letter.
+fn check_name(name: &str, joint: char) -> Result<(), String> {
+    let is_part = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit();
+    let begins = name.starts_with(|first: char| first.is_ascii_lowercase());
+    match begins && name.chars().all(|letter| is_part(letter) || letter == joint) {
+        true => Ok(()),
+        false => Err(format!("`{name}` must be small letters, digits and `{joint}`")),
+    }
+}
