@@ -101,7 +101,7 @@ limits! {
         "counting a space of permutations at once", "`axis-limit`";
     CONSTRAINT_NESTING: usize = 64, Count, "levels of a constraint", "the stack",
         "`nesting-too-deep`";
-    SPACE_STEPS: usize = 1 << 21, Count, "steps to count a program's permutations", "time",
+    SPACE_STEPS: usize = 1 << 22, Count, "steps to count a program's permutations", "time",
         "`space-too-complex`";
     PERMUTATIONS: usize = 1_000_000, Count, "permutations of a program", "time, and your disk",
         "`too-many-permutations`";
