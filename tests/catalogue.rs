@@ -66,6 +66,10 @@ fn on_disk(folder: &str) -> Vec<String> {
             .flatten()
         {
             let path = format!("{below}{}", entry.file_name().to_string_lossy());
+            // The list of what the command wrote there is its own, and not committed.
+            if path.ends_with(".lamplight-outputs") {
+                continue;
+            }
             if entry.path().is_dir() { folders.push(path + "/") } else { found.push(path) }
         }
     }

@@ -23,6 +23,7 @@ mod layout;
 mod lower;
 mod machine;
 mod number;
+mod operation;
 mod program;
 mod resources;
 

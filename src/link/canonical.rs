@@ -1,5 +1,5 @@
-//! The text in which a function is translated: the function, what it names, and nothing that
-//! another function of its program could change.
+//! The text in which a function is translated: the function and what it names. Nothing of the text
+//! depends on other functions of the program.
 //!
 //! A callee is a stub: its signature, and in place of its body only what its callers can notice
 //! ([`Summary`]). An entry point that does nothing is added, since writers write for one.

@@ -78,7 +78,8 @@ use translate::translate;
 /// same bytes.
 const SIZE: usize = 96 << 20;
 
-/// The same where a quarter of the units were new: to keep what is not shared saves nothing.
+/// The same bound where more than a quarter of the units were new: units that no other text uses
+/// are not worth keeping.
 const SIZE_UNSHARED: usize = 2 << 20;
 
 /// Functions in some targets, each translated once.
@@ -167,8 +168,8 @@ impl<'a> Linker<'a> {
         pool.keep(key, translated, function, &callees)
     }
 
-    /// Bounds what is kept. No output depends on it. To be called between batches: units that a
-    /// text is being put together from belong to the pool that they came from.
+    /// Bounds what is kept. No output depends on it. Call it between batches only: a text that is
+    /// being put together needs the pool that its units came from.
     pub fn forget(&self) {
         let (asked, new) =
             (self.asked.swap(0, Ordering::Relaxed), self.new.swap(0, Ordering::Relaxed));

@@ -3,8 +3,8 @@
 use super::Setting;
 use crate::source::Span;
 
-/// Axes of one program, and values of one axis, that a manifest may declare. Sets of either are
-/// single machine words, which is what makes counting a large space quick.
+/// The most axes of a program, and the most values of an axis. A set of either fits into one
+/// machine word, so that large spaces are counted quickly.
 pub const MAX: usize = crate::limits::AXES;
 
 /// What the values of an axis are.

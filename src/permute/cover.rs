@@ -1,6 +1,6 @@
-//! A small set of valid points that has every pair of values of two axes which any valid point
-//! has: most mistakes of permutations show in the meeting of two axes (Kuhn, Wallace and Gallo,
-//! "Software Fault Interactions and Implications for Software Testing", 2004).
+//! A small set of valid points that covers every pair of values of two axes that occurs in any
+//! valid point (pairwise testing). Most faults need no more than two axes to show: Kuhn, Wallace
+//! and Gallo, "Software Fault Interactions and Implications for Software Testing", 2004.
 
 use std::collections::BTreeSet;
 
@@ -26,9 +26,10 @@ pub struct Cover {
     pub infeasible: Vec<Pair>,
 }
 
-/// Covers every feasible pair of values over the constraints of the space, whatever its lists
-/// want. Greedy: the first pair that is left is pinned, and each other axis takes the value that
-/// covers most of what is left, of those that still lead to a valid point. Deterministic.
+/// Covers every pair of values that the constraints allow; the lists of the space do not count.
+///
+/// The search is greedy and deterministic. It pins the first uncovered pair. Then each other axis
+/// takes the value that covers the most uncovered pairs and still leads to a valid point.
 pub fn pairwise(space: &Space) -> Cover {
     let mut left = pairs(space);
     let mut cover = Cover { points: Vec::new(), infeasible: Vec::new() };
@@ -50,7 +51,7 @@ pub fn pairwise(space: &Space) -> Cover {
     cover
 }
 
-/// The cover where there are no pairs: each valid value of the only axis, or the only point.
+/// The cover of a space with fewer than two axes: each valid value of its axis, or its only point.
 fn pairless(space: &Space) -> Vec<Assignment> {
     match space.axes() {
         [axis] => axis

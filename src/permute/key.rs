@@ -10,7 +10,8 @@ use crate::bundle::key::{self, Part, Word};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::Span;
 
-/// A value for every axis of a space, as ordinals in the order of its axes. Ordered canonically.
+/// A value for every axis of a space, as ordinals in the order of its axes. Comparing two gives the
+/// canonical order of permutations.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Assignment(pub(super) Box<[u8]>);
 

@@ -1,5 +1,5 @@
-//! What is allowed but hardly meant: constraints that decide nothing or everything, values and
-//! slices that select nothing.
+//! Lints of a space: constraints that are always true or always false, and values and slices that
+//! no permutation has. All of these are allowed. Few authors mean them.
 
 use super::axis::{Axis, ValueSet};
 use super::space::{Constraint, Slice, Space};
@@ -34,7 +34,7 @@ pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
     warnings
 }
 
-/// A space whose lists leave nothing of it.
+/// A space in which the lists leave no permutation.
 pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnostic> {
     (space.count() == 0).then(|| {
         let message = format!("the lists of {what} leave no permutation");
@@ -42,8 +42,8 @@ pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnost
     })
 }
 
-/// A space that cannot be counted has been refused by now, so a single condition of it can; all of
-/// them share one bound, and what is beyond it is not looked at.
+/// Conditions that always have one value. They share a bound on steps; conditions beyond it are not
+/// looked at.
 fn trivial_constraints(space: &Space) -> Vec<Diagnostic> {
     let mut steps = SPACE_STEPS;
     let constraints = space.constraints().iter();

@@ -1,5 +1,5 @@
-//! A decision tree over what compositions asked: finds out, without composing, that another
-//! permutation would compose to the same text.
+//! A decision tree over the settings that compositions asked for. It tells, without composing,
+//! whether another permutation gives a text that is known already.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,8 @@ enum Node<T> {
     Question { name: String, answers: BTreeMap<Setting, usize> },
 }
 
-/// Two traces asked different questions after the same answers: a bug of what recorded them.
+/// Two compositions asked different questions after the same answers. That is a bug in what
+/// recorded them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Contradiction;
 

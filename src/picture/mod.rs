@@ -15,13 +15,15 @@ pub mod needs;
 mod passes;
 mod pixels;
 mod plan;
+mod prepared;
 mod textures;
 mod values;
 
 pub use needs::Needs;
-pub use passes::{Prepared, prepare};
+pub use passes::prepare;
 pub use pixels::{Linear, Picture, is_own_png};
 pub use plan::{Pass, Plan};
+pub use prepared::Prepared;
 
 use std::sync::Arc;
 

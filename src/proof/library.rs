@@ -274,7 +274,7 @@ fn composed(
     }
 }
 
-/// Files with a few more on top.
+/// The package's files, with a few texts of our own beside them.
 struct Overlay {
     base: Arc<dyn Files>,
     extra: BTreeMap<String, String>,

@@ -31,9 +31,9 @@ use toml::{Table, Value};
 
 /// File name below a package's root.
 pub const FILE: &str = "tolerances.toml";
-/// How much more than recorded a run may need: other processors fuse and round otherwise.
+/// How much more than recorded a run may need. Processors differ in fused operations and rounding.
 pub const SLACK: f64 = 2.0;
-/// Least share that is recorded: rounding alone must not make an exact result a measurement.
+/// The least share that is recorded, so that an exact result does not become a bound of 0.
 const LEAST: f64 = 0.001;
 
 const HEADER: &str = "# The driver tier: error over stated tolerance, worst of all inputs, as measured on the adapters

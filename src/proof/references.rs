@@ -30,7 +30,7 @@ impl<'a> Arguments<'a> {
         Self { words, fixtures }
     }
 
-    /// A number; missing words are 0, which no reference passes with.
+    /// A number. A missing word is 0; the comparison with the shader then fails.
     pub fn f64(&mut self) -> f64 {
         let (first, rest) = self.words.split_first().unwrap_or((&0.0, &[]));
         self.words = rest;
@@ -92,7 +92,8 @@ impl<'a> Arguments<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
     pub value: Vec<f64>,
-    /// Other values that are as right: the other side of a comparison too close to call.
+    /// Other values that are accepted: those of the other branch, where rounding may decide a
+    /// comparison.
     pub alternatives: Vec<Vec<f64>>,
 }
 
@@ -102,7 +103,7 @@ impl Expected {
         Self { value: value.into_iter().collect(), alternatives: Vec::new() }
     }
 
-    /// With one more value that is as right.
+    /// With one more value that is accepted.
     pub fn or(mut self, other: impl Into<Self>) -> Self {
         let other = other.into();
         self.alternatives.push(other.value);

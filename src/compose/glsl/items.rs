@@ -83,13 +83,17 @@ fn end_of(tokens: &[Tok], start: usize) -> Result<usize, &Tok> {
 /// Gives the names an item declares; whether it is a function.
 fn names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     match item {
-        [first, ..] if first.symbol == known::PRECISION => return false,
+        [first, ..] if first.symbol == known::PRECISION => false,
         [first, name, _] if first.symbol == known::INVARIANT || first.symbol == known::PRECISE => {
             give(name.symbol);
-            return false;
+            false
         }
-        _ => {}
+        _ => declared_names(item, give),
     }
+}
+
+/// The same for what is no statement about names that there are already.
+fn declared_names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     let mut at = 0;
     let mut is_struct = false;
     let mut block_members = None;

@@ -1,5 +1,6 @@
 //! From naga's module to a register program, once per module.
 
+mod body;
 mod expression;
 mod image;
 mod math;
@@ -267,14 +268,9 @@ impl<'m> Build<'m> {
         }
         let mut parameters = Vec::new();
         for argument in &function.arguments {
-            let pointee = pointee(&self.module.types[argument.ty].inner);
-            let mut kinds = Vec::new();
-            self.layout.kinds(pointee.unwrap_or(argument.ty), &mut kinds)?;
-            let (slots, n) = (self.layout.size(argument.ty)?, kinds.len() as u32);
-            let behind = pointee.map(|_| result.len() as u32);
-            self.layout.bindings(pointee.unwrap_or(argument.ty), &argument.binding, &mut inputs)?;
-            parameters.push(Parameter { slot: self.alloc(slots)?, n, pointee: behind });
-            result.extend(kinds.iter().filter(|_| pointee.is_some()));
+            let (parameter, kinds) = self.parameter(argument, result.len(), &mut inputs)?;
+            result.extend(kinds.iter().filter(|_| parameter.pointee.is_some()));
+            parameters.push(parameter);
             arguments.extend(kinds);
         }
         let result_slot = self.alloc(result.len() as u32)?;
@@ -304,6 +300,23 @@ impl<'m> Build<'m> {
         let mut body = Body::new(self, &function.expressions, types);
         (body.function, body.arguments) = (index as u32, slots);
         body.whole(function)
+    }
+
+    /// A parameter with the kinds of its scalars. What a pointer leaves behind comes after the
+    /// first `results` scalars of the result.
+    fn parameter(
+        &mut self,
+        argument: &naga::FunctionArgument,
+        results: usize,
+        inputs: &mut Vec<Option<naga::Binding>>,
+    ) -> Result<(Parameter, Vec<Kind>), Error> {
+        let pointee = pointee(&self.module.types[argument.ty].inner);
+        let mut kinds = Vec::new();
+        self.layout.kinds(pointee.unwrap_or(argument.ty), &mut kinds)?;
+        let (slots, n) = (self.layout.size(argument.ty)?, kinds.len() as u32);
+        self.layout.bindings(pointee.unwrap_or(argument.ty), &argument.binding, inputs)?;
+        let pointee = pointee.map(|_| results as u32);
+        Ok((Parameter { slot: self.alloc(slots)?, n, pointee }, kinds))
     }
 
     /// The buffers a function and its callees use, by index.
@@ -346,97 +359,5 @@ fn pointee(inner: &TypeInner) -> Option<Handle<Type>> {
 impl Loc {
     fn dense(slot: Slot, constant: bool) -> Self {
         Self::Value { operand: Operand { slot, stride: 1 }, constant }
-    }
-}
-
-impl<'b, 'm> Body<'b, 'm> {
-    fn new(
-        build: &'b mut Build<'m>,
-        expressions: &'m Arena<Expression>,
-        types: Vec<&'m TypeInner>,
-    ) -> Self {
-        let locs = vec![None; expressions.len()];
-        Self {
-            build,
-            expressions,
-            types,
-            locs,
-            locals: Vec::new(),
-            arguments: Vec::new(),
-            function: 0,
-            span: Span::UNDEFINED,
-            constant: false,
-            breaks: Vec::new(),
-            continues: Vec::new(),
-            depth: 0,
-            point: None,
-        }
-    }
-
-    fn emit(&mut self, instruction: Instruction) {
-        if self.constant {
-            self.build.start.push(instruction);
-        } else {
-            self.build.program.code.push(instruction);
-            self.build.program.spans.push(self.span);
-        }
-    }
-
-    /// The type of an expression.
-    fn inner(&self, handle: Handle<Expression>) -> &'m TypeInner {
-        self.types[handle.index()]
-    }
-
-    fn slots(&self, handle: Handle<Expression>) -> Result<u32, Error> {
-        self.build.layout.slots(self.inner(handle))
-    }
-
-    /// Kind of the scalars of an expression.
-    fn kind(&self, handle: Handle<Expression>) -> Result<Kind, Error> {
-        let scalar = self.inner(handle).scalar();
-        scalar
-            .and_then(super::layout::kind)
-            .ok_or_else(|| Error::unsupported("an operation on this type"))
-    }
-
-    /// Slots of one value: components are spread over them, or share one.
-    fn operand(&mut self, handle: Handle<Expression>) -> Result<Operand, Error> {
-        match self.loc(handle)? {
-            Loc::Value { operand, .. } => Ok(operand),
-            pointer => Ok(Operand { slot: self.address(pointer)?, stride: 1 }),
-        }
-    }
-
-    /// As [`Self::operand`], for an operation on `n` components: a scalar is shared by all.
-    fn spread(&mut self, handle: Handle<Expression>, n: u32) -> Result<Operand, Error> {
-        let operand = self.operand(handle)?;
-        let single = n > 1 && matches!(self.inner(handle), TypeInner::Scalar(_));
-        Ok(if single { Operand { stride: 0, ..operand } } else { operand })
-    }
-
-    /// The first of the slots of a value, each component in its own.
-    fn dense(&mut self, handle: Handle<Expression>) -> Result<Slot, Error> {
-        let (operand, n) = (self.operand(handle)?, self.slots(handle)?);
-        if operand.stride == 1 || n == 1 {
-            return Ok(operand.slot);
-        }
-        let to = self.build.alloc(n)?;
-        self.emit(Instruction::Fill { to, from: operand.slot, n });
-        Ok(to)
-    }
-
-    /// A slot that holds the address.
-    fn address(&mut self, pointer: Loc) -> Result<Slot, Error> {
-        match pointer {
-            Loc::Value { operand, .. } => Ok(operand.slot),
-            Loc::Place(place) => self.build.word(place),
-            Loc::Through { slot, offset: 0 } => Ok(slot),
-            Loc::Through { slot, offset } => {
-                let (to, offset) = (self.build.alloc(1)?, self.build.word(offset)?);
-                let [a, b] = [slot, offset].map(|slot| Operand { slot, stride: 1 });
-                self.emit(Instruction::Word2 { op: super::code::Word2::Add, n: 1, to, a, b });
-                Ok(to)
-            }
-        }
     }
 }

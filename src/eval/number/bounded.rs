@@ -78,6 +78,29 @@ impl Bounded {
         let v = x.value;
         let log_own =
             |value: f64| if (0.5..=2.0).contains(&v) { (-21f64).exp2() } else { 3.0 * ulp(value) };
+        match op {
+            Unary::Exp => times(value, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
+            Unary::Exp2 => {
+                times(value * std::f64::consts::LN_2, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value)
+            }
+            Unary::Log => times(1.0 / v, x.error) + log_own(value),
+            Unary::Log2 => times(std::f64::consts::LOG2_E / v, x.error) + log_own(value),
+            // As 1 / inverseSqrt(x); at 0 the slope is infinite and the root of the error bounds it.
+            Unary::Sqrt => {
+                times(0.5 / value, x.error).min(x.error.sqrt())
+                    + if v == 0.0 { 0.0 } else { 4.5 * ulp(value) }
+            }
+            Unary::InverseSqrt => times(0.5 * value / v, x.error) + 2.0 * ulp(value),
+            Unary::Quantize => x.error + value.abs().max(6.2e-5) * (-11f64).exp2(),
+            Unary::Radians => times(std::f64::consts::PI / 180.0, x.error) + 2.0 * ulp(value),
+            Unary::Degrees => times(180.0 / std::f64::consts::PI, x.error) + 2.0 * ulp(value),
+            _ => Self::trigonometric(op, x, value),
+        }
+    }
+
+    /// The same for functions of angles, hyperbolic ones, and their inverses.
+    fn trigonometric(op: Unary, x: Self, value: f64) -> f64 {
+        let v = x.value;
         // No bound is given outside of [-pi, pi].
         let turn = if v.abs() <= std::f64::consts::PI * (1.0 + 1e-6) {
             (-11f64).exp2()
@@ -113,21 +136,6 @@ impl Bounded {
             Unary::Atanh => {
                 times(1.0 / (1.0 - v * v).max(0.0), x.error) + (-20f64).exp2() + 4.0 * ulp(value)
             }
-            Unary::Exp => times(value, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value),
-            Unary::Exp2 => {
-                times(value * std::f64::consts::LN_2, x.error) + (3.0 + 2.0 * v.abs()) * ulp(value)
-            }
-            Unary::Log => times(1.0 / v, x.error) + log_own(value),
-            Unary::Log2 => times(std::f64::consts::LOG2_E / v, x.error) + log_own(value),
-            // As 1 / inverseSqrt(x); at 0 the slope is infinite and the root of the error bounds it.
-            Unary::Sqrt => {
-                times(0.5 / value, x.error).min(x.error.sqrt())
-                    + if v == 0.0 { 0.0 } else { 4.5 * ulp(value) }
-            }
-            Unary::InverseSqrt => times(0.5 * value / v, x.error) + 2.0 * ulp(value),
-            Unary::Quantize => x.error + value.abs().max(6.2e-5) * (-11f64).exp2(),
-            Unary::Radians => times(std::f64::consts::PI / 180.0, x.error) + 2.0 * ulp(value),
-            Unary::Degrees => times(180.0 / std::f64::consts::PI, x.error) + 2.0 * ulp(value),
             _ => x.error,
         }
     }

@@ -141,6 +141,22 @@ fn depth(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu:
     created
 }
 
+/// The bits of a layer's depths, as a texture of words.
+fn staged(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &Texture,
+    layer: u32,
+) -> wgpu::Texture {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let staged = create(device, texture, 1, 1, wgpu::TextureFormat::R32Uint, usage);
+    let size = (texture.width * texture.height) as usize;
+    let texels = texture.texels.iter().skip(layer as usize * size).take(size);
+    let bytes: Vec<u8> = texels.flat_map(|value| value.to_le_bytes()).collect();
+    write(queue, &staged, texture, 0, 1, &bytes);
+    staged
+}
+
 fn draw_layer(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -150,19 +166,7 @@ fn draw_layer(
     layout: &wgpu::BindGroupLayout,
     drawing: &wgpu::RenderPipeline,
 ) {
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    let staged = create(device, texture, 1, 1, wgpu::TextureFormat::R32Uint, usage);
-    let size = (texture.width * texture.height) as usize;
-    let texels = texture.texels.iter().skip(layer as usize * size).take(size);
-    write(
-        queue,
-        &staged,
-        texture,
-        0,
-        1,
-        &texels.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>(),
-    );
-    let stored = staged.create_view(&Default::default());
+    let stored = staged(device, queue, texture, layer).create_view(&Default::default());
     let entry =
         wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&stored) };
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {

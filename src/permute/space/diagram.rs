@@ -1,5 +1,6 @@
-//! The valid points of a space as a decision diagram: one level for each axis, one node for each
-//! question that is still open there. Counting and listing never visit a dead branch.
+//! The valid points of a space as a decision diagram. It has one level for each axis, and on each
+//! level one node for each condition that is still to be satisfied. Branches without a valid point
+//! are left out, so that counting and listing cost no more than what they find.
 
 use std::collections::HashMap;
 
@@ -57,7 +58,7 @@ impl Diagram {
         self.counts(|_, children, counts| Ok(sum(children, counts))).unwrap_or(0)
     }
 
-    /// How many points are left when those that differ only in one axis are one.
+    /// How many points are left when points that differ in one axis alone are counted as one.
     pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
         let mut known = HashMap::new();
         self.counts(|asked, children, counts| match asked == axis {
@@ -66,7 +67,7 @@ impl Diagram {
         })
     }
 
-    /// Every point, in no order worth relying on.
+    /// Every point, in an order that may change.
     pub fn points(&self) -> Vec<Assignment> {
         let mut found = Vec::new();
         let mut point = vec![0; self.order.len()];

@@ -1,8 +1,8 @@
 //! Conditions over axes in a normal form: shared, simplified, and cheap to restrict.
 //!
-//! Every atom says that the value of one axis is in a set, so negation disappears into the
-//! atoms and equality, order and membership are all alike. Nodes are interned: two conditions
-//! that leave the same question open are the same number, which the diagram's sharing rests on.
+//! Every atom says that the value of one axis is in a set. So equality, order and membership have
+//! one form, and the negation of an atom is an atom with the other values. Nodes are interned: two
+//! conditions with the same normal form have the same number. The diagram shares nodes by it.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -243,8 +243,8 @@ impl Store {
         Ok(Some(simpler))
     }
 
-    /// Adds an atom to those of its axis: whether that changed them, `None` if it decides the
-    /// whole.
+    /// Adds an atom to those of its axis. Returns whether they changed, or `None` if the atom decides
+    /// the whole condition.
     fn merge(
         &self,
         join: Join,

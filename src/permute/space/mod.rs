@@ -64,7 +64,7 @@ impl Lists {
     }
 }
 
-/// The conditions of a space are too entangled to count its points within bounds.
+/// The constraints depend on each other in so many ways that counting exceeds its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TooComplex;
 

@@ -46,7 +46,8 @@ pub struct BoundLaw<'a> {
     pub partners: Vec<Partner>,
 }
 
-/// Gives the expected value of any row: shrinking asks for rows that no case lists.
+/// Gives the expected value of a row. It must answer for rows that no case lists, since shrinking
+/// a failure tries those.
 pub enum Judge {
     Reference(Reference),
     Formula(Formula),
@@ -60,9 +61,9 @@ pub enum Judge {
 #[derive(Clone)]
 pub struct Target {
     pub expected: Expected,
-    /// What each word may be off beside the terms of the case; none where it is empty.
+    /// An error that is allowed for each word in addition to the terms of the case; empty for none.
     pub errors: Vec<f64>,
-    /// Whether a comparison on the way was too close to call.
+    /// Whether rounding may have decided a comparison in the computation.
     pub doubtful: bool,
 }
 
@@ -73,7 +74,7 @@ impl From<Expected> for Target {
 }
 
 impl Job<'_> {
-    /// What rows should give; `None` if the oracle cannot tell of any row but the case's own.
+    /// The expected values of rows; `None` if the oracle knows the rows of the case alone.
     pub fn targets(&self, rows: &Rows) -> Result<Option<Vec<Target>>, Diagnostic> {
         let each = |expect: &(dyn Fn(&[f64]) -> Expected + Sync)| -> Vec<Target> {
             (0..rows.len()).into_par_iter().map(|index| expect(rows.row(index)).into()).collect()
@@ -142,6 +143,22 @@ fn placed_at(error: Diagnostic, case: &Case) -> Diagnostic {
     if error.labels.is_empty() { error.at(case.span, "in this case") } else { error }
 }
 
+/// The function in each language, with the same interface in all; there is at least one.
+fn kernels(
+    case: &Case,
+    modules: &[(Language, Arc<naga::Module>)],
+) -> Result<Vec<(Language, Kernel)>, Diagnostic> {
+    let build = |(language, naga): &(Language, Arc<naga::Module>)| {
+        Ok((*language, kernel::build(naga, &case.function, &case.fixtures)?))
+    };
+    let kernels: Vec<_> = modules.iter().map(build).collect::<Result<_, Diagnostic>>()?;
+    if kernels.is_empty() {
+        return Err(Diagnostic::error(codes::CASE_INVALID, "no language was chosen"));
+    }
+    agree(&kernels)?;
+    Ok(kernels)
+}
+
 fn job<'a>(
     module: &str,
     file: &'a File,
@@ -151,17 +168,8 @@ fn job<'a>(
 ) -> Result<Job<'a>, Diagnostic> {
     let case = &file.cases[index];
     let placed = |error: Diagnostic| placed_at(error, case);
-    let kernels: Vec<(Language, Kernel)> = modules
-        .iter()
-        .map(|(language, naga)| {
-            Ok((*language, kernel::build(naga, &case.function, &case.fixtures)?))
-        })
-        .collect::<Result<_, Diagnostic>>()
-        .map_err(placed)?;
-    let Some((_, first)) = kernels.first() else {
-        return Err(placed(Diagnostic::error(codes::CASE_INVALID, "no language was chosen")));
-    };
-    agree(&kernels).map_err(placed)?;
+    let kernels = kernels(case, modules).map_err(placed)?;
+    let first = &kernels[0].1;
     let scope = Scope(first.words().collect());
     let rows = cases::rows(case, &scope)?;
     if rows.is_empty() {

@@ -13,15 +13,16 @@ use naga::ScalarKind;
 pub struct Verdict {
     /// Rows tried.
     pub inputs: usize,
-    /// Rows whose expected value no f32 holds, or of which nothing is promised: anything is right.
+    /// Rows for which every result is accepted: f32 cannot represent the expected value, or the
+    /// function promises nothing there.
     pub indeterminate: usize,
-    /// Rows that are off, but where a comparison is too close to call.
+    /// Rows that are wrong, but within the margin of a comparison that rounding may decide.
     pub ambiguous: usize,
     /// Whether there are more ambiguous rows than the case allows.
     pub too_ambiguous: bool,
-    /// The component that used most of what it is allowed.
+    /// The component whose error is the largest share of its tolerance.
     pub worst: Option<Worst>,
-    /// Rows that are off.
+    /// Rows that are wrong.
     pub failing: Vec<usize>,
     pub laws: Vec<LawVerdict>,
     /// Largest distance from the first language's results, in units in the last place.
@@ -49,12 +50,12 @@ impl Verdict {
         self.failing.is_empty() && self.passed_but_for_values()
     }
 
-    /// Whether all but the values themselves holds.
+    /// Whether everything holds besides the tolerances of the values.
     pub fn passed_but_for_values(&self) -> bool {
         !self.too_ambiguous && !self.proves_nothing() && self.laws.iter().all(|law| law.broken == 0)
     }
 
-    /// Whether every value would have been right.
+    /// Whether every possible value would have been accepted, so that nothing was tested.
     pub fn proves_nothing(&self) -> bool {
         self.inputs > 0 && self.indeterminate == self.inputs
     }
@@ -154,7 +155,7 @@ fn compare_one(
     (0..kinds.len()).map(component).max_by(|a, b| a.share().total_cmp(&b.share()))
 }
 
-/// How far off a component is. Subnormals may be flushed; no number is infinitely far off.
+/// The error of a component. Subnormal results may be flushed to zero; NaN has an infinite error.
 pub fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
     let error = if found == expected { 0.0 } else { (found - expected).abs() };
     if error.is_nan() {
@@ -172,12 +173,12 @@ pub fn is_indeterminate(target: &Target) -> bool {
     !target.expected.value.iter().all(held) || !target.errors.iter().all(|error| error.is_finite())
 }
 
-/// Whether a comparison that the case names is too close to call.
+/// Whether rounding may decide a comparison that the case names in `near`.
 pub fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
     job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
 }
 
-/// How far two languages are apart on one executor; infinite where kinds other than f32 differ.
+/// The distance of two languages on one executor. It is infinite if values differ that are not f32.
 pub fn parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
     let kinds = job.kernel().result_kinds();
     let apart = |((a, b), kind): ((&u32, &u32), &ScalarKind)| {

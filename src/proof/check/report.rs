@@ -1,6 +1,6 @@
 //! A report as text.
 
-use super::{Outcome, Proof, Report};
+use super::{Outcome, Proof, Report, Verdict};
 use crate::bundle::Language;
 
 const HEADINGS: [&str; COLUMNS] = [
@@ -153,48 +153,45 @@ pub fn failures_of(outcomes: &[Outcome], proofs: &[Proof]) -> String {
         );
         match &outcome.verdict {
             Err(error) => text += &format!("{place} did not run: {}\n", error.message),
-            Ok(verdict) => {
-                text += &format!(
-                    "{place}: {} of {} inputs are off\n",
-                    verdict.failing.len(),
-                    verdict.inputs
-                );
-                if let (true, Some(worst), Some(recorded)) =
-                    (outcome.exceeds_driver(), verdict.worst, outcome.recorded)
-                {
-                    let (found, limit) = (
-                        worst.ulps(),
-                        worst.allowed_ulps() * recorded * crate::proof::ratchet::SLACK,
-                    );
-                    text += &format!(
-                        "  {} ULP, but this driver was recorded to need at most {}\n",
-                        short(found),
-                        short(limit)
-                    );
-                }
-                if verdict.proves_nothing() {
-                    text += "  no input has a value that f32 could hold and the code determines: nothing was tested\n";
-                }
-                if verdict.too_ambiguous {
-                    text += &format!(
-                        "  {} inputs are ambiguous, more than the case allows\n",
-                        verdict.ambiguous
-                    );
-                }
-                for law in verdict.laws.iter().filter(|law| law.broken > 0) {
-                    text += &format!(
-                        "  the law `{}` is broken {} times: {}\n",
-                        law.name,
-                        law.broken,
-                        law.example.as_deref().unwrap_or("")
-                    );
-                    text += law.smallest.as_deref().unwrap_or("");
-                }
-                text += verdict.smallest.as_deref().unwrap_or("");
-                text += "\n";
-            }
+            Ok(verdict) => text += &failure(&place, outcome, verdict),
         }
     }
+    text
+}
+
+/// What failed of one outcome.
+fn failure(place: &str, outcome: &Outcome, verdict: &Verdict) -> String {
+    let mut text = String::new();
+    text += &format!("{place}: {} of {} inputs are off\n", verdict.failing.len(), verdict.inputs);
+    if let (true, Some(worst), Some(recorded)) =
+        (outcome.exceeds_driver(), verdict.worst, outcome.recorded)
+    {
+        let (found, limit) =
+            (worst.ulps(), worst.allowed_ulps() * recorded * crate::proof::ratchet::SLACK);
+        text += &format!(
+            "  {} ULP, but this driver was recorded to need at most {}\n",
+            short(found),
+            short(limit)
+        );
+    }
+    if verdict.proves_nothing() {
+        text += "  no input has a value that f32 could hold and the code determines: nothing was tested\n";
+    }
+    if verdict.too_ambiguous {
+        text +=
+            &format!("  {} inputs are ambiguous, more than the case allows\n", verdict.ambiguous);
+    }
+    for law in verdict.laws.iter().filter(|law| law.broken > 0) {
+        text += &format!(
+            "  the law `{}` is broken {} times: {}\n",
+            law.name,
+            law.broken,
+            law.example.as_deref().unwrap_or("")
+        );
+        text += law.smallest.as_deref().unwrap_or("");
+    }
+    text += verdict.smallest.as_deref().unwrap_or("");
+    text += "\n";
     text
 }
 

@@ -22,9 +22,9 @@ pub struct Integral {
     pub cosine: bool,
     /// Steps in the cosine; there are twice as many azimuths.
     pub steps: usize,
-    /// How far off the sum may be: what the rule itself leaves.
+    /// The largest allowed error of the sum, which covers the error of the quadrature rule.
     pub within: f64,
-    /// Whether less than the law's numbers is right too.
+    /// Whether the law's number is an upper bound: less is right too.
     pub at_most: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Laws: what holds between a function's values, whatever the oracle says.
+//! Laws: properties of a function's values that hold for all rows, without an oracle.
 //!
 //! | law | holds |
 //! |---|---|
@@ -124,7 +124,8 @@ impl std::fmt::Debug for Kind {
     }
 }
 
-/// The law as a case file has it. An integral is of many rows: none of them alone breaks it.
+/// The law as a case file writes it. An integral is a property of many rows together: no single
+/// row breaks it.
 pub fn toml(law: &Law) -> String {
     let names = law.names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
     let point = || {
@@ -234,7 +235,7 @@ fn words_of<'a>(places: &'a [(usize, &Shape)]) -> impl Iterator<Item = usize> + 
     places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize)
 }
 
-/// A value a little larger: enough to cross an edge that a case goes close to.
+/// A slightly larger value, far enough away to lie beyond an edge that the case approaches.
 fn nudge(word: &mut u32, kind: ScalarKind) {
     if kind == ScalarKind::Float {
         let value = f32::from_bits(*word);
@@ -273,8 +274,8 @@ fn set(law: &Law, row: &mut [u32], scope: &Scope<'_>) -> Result<(), Diagnostic> 
     Ok(())
 }
 
-/// How far a value breaks a law, beyond nothing: `value` of the row itself, `other` of the
-/// transformed row, which is `moved` away, `word` the component.
+/// By how much a value breaks a law; 0 if it does not. `value` is that of the row, `other` that of
+/// the transformed row at the distance `moved`, and `word` is the component.
 pub fn broken_by(law: &Law, value: f64, other: Option<f64>, moved: f64, word: usize) -> f64 {
     let number = |index: usize| law.number(index);
     match (law.kind.name, other) {

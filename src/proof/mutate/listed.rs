@@ -1,5 +1,6 @@
-//! `survivors.toml`: mutants that no input can tell from the original, and mutants that no case
-//! kills all the same, each with a reason. The first do not count, the second do.
+//! `survivors.toml`: mutants that survive, each with a reason. An *equivalent* mutant gives the
+//! same values as the original for every input, and does not count. A *survivor* differs, but no
+//! case notices it, and counts.
 //!
 //! ```toml
 //! [[equivalent]]
@@ -27,7 +28,7 @@ pub struct Listed {
     line: String,
     mutation: String,
     pub reason: String,
-    /// Whether no input can tell it, so that it does not count.
+    /// Whether the mutant is equivalent, so that it does not count.
     pub equivalent: bool,
 }
 

@@ -14,6 +14,7 @@ mod apply;
 mod coverage;
 mod listed;
 mod report;
+mod runner;
 mod site;
 mod suite;
 mod words;

@@ -1,4 +1,4 @@
-//! Everything that could be wrong in a function, one mistake each.
+//! The mistakes that can be put into a function, one at a time.
 
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
@@ -43,7 +43,7 @@ pub enum How {
     Function(&'static str),
 }
 
-/// Operators that are mistaken for one another; a mistake that swaps operands is found apart.
+/// Operators that authors confuse. Swapped operands are a mistake of their own.
 const OPERATORS: &[(Op, &[(Op, &str)])] = &[
     (Op::Add, &[(Op::Subtract, "-")]),
     (Op::Subtract, &[(Op::Add, "+")]),
@@ -219,7 +219,8 @@ impl Finder<'_> {
         }
     }
 
-    /// A variable that naga made for `&&` and `||`: its branches are mistaken already.
+    /// A variable that naga made for `&&` and `||`. Mistakes in its branches are covered by mistakes
+    /// in the operator.
     fn is_unnamed(&self, pointer: Handle<Expression>) -> bool {
         match self.function.expressions[pointer] {
             Expression::LocalVariable(variable) => {
@@ -273,7 +274,8 @@ fn inner(statement: &Statement) -> Vec<&Block> {
     }
 }
 
-/// A number one part in a hundred off, a whole one by one, the other truth value.
+/// A literal with a mistake: a float changed by one part in a hundred, an integer by one, a boolean
+/// negated.
 fn number(literal: Literal) -> Option<(Expression, How)> {
     let (literal, how) = match literal {
         Literal::F32(value) => {

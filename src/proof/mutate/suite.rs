@@ -8,14 +8,14 @@ use rayon::prelude::*;
 
 use super::apply::apply;
 use super::report::Fate;
+use super::runner::Runner;
 use super::site::Site;
 use super::words::author;
 use crate::bundle::Language;
 use crate::compose::SourceMap;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::Machine;
-use crate::execute::interpreter::{Calls, Interpreter, value, word_of};
-use crate::execute::kernel::Kernel;
+use crate::execute::interpreter::{Calls, Interpreter, value};
 use crate::proof::cases::{File, Rows};
 use crate::proof::check::Options;
 use crate::proof::check::job::{self, Job, Judge, Target};
@@ -26,13 +26,13 @@ use crate::proof::tolerance;
 use crate::source::SourceSet;
 
 /// Loop trips of one call: many times what any case needs, few enough for a mutant without end.
-const TRIPS: u64 = 20_000;
+pub const TRIPS: u64 = 20_000;
 
 /// Rows run before the first look at them; each later batch is four times as large.
 const FIRST_BATCH: usize = 48;
 
-/// What a value in f64 may be off beside [`Expected`]'s own digits: a share of the value, and a
-/// share of what the case allows f32, since f64 rounds by 2^-29 of it.
+/// The error that is allowed in f64: a share of the value, and a share of what the case allows in
+/// f32. The rounding of f64 is 2^-29 of that of f32.
 const RELATIVE: f64 = 1e-9;
 const OF_STATED: f64 = 1.0 / (1u64 << 26) as f64;
 
@@ -54,7 +54,7 @@ pub struct Subject {
     pub name: String,
 }
 
-/// A case with its rows in batches, telling ones first.
+/// A case with its rows in batches. Rows that are likely to notice a mistake come first.
 pub struct Ready<'f> {
     pub job: Job<'f>,
     order: Vec<usize>,
@@ -65,8 +65,9 @@ pub struct Ready<'f> {
 struct Batch {
     rows: Rows,
     expected: Vec<Target>,
-    /// How far each word may be from it in f64: twice as far as the code as written is, which is
-    /// what its constants lose as f32; infinite where the oracle is the code, or has no opinion.
+    /// The allowed error of each word in f64: twice the error of the code without a mistake, which
+    /// comes from its constants in f32. It is infinite where the oracle is the code itself, or
+    /// accepts every value.
     slack: Vec<f64>,
 }
 
@@ -311,12 +312,12 @@ fn find(module: &Module, name: &str) -> Option<Handle<Function>> {
 }
 
 impl Ready<'_> {
-    /// Whether a value is off, a law broken, or too much left open.
+    /// Whether a value is wrong, a law is broken, or too many rows are ambiguous.
     fn notices(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
         Ok(self.is_off(interpreter)? || self.fails(interpreter)?)
     }
 
-    /// Whether a value in f64 is off: the code as written, compared to nearly all its digits.
+    /// Whether a value in f64 differs from the oracle in nearly any of its digits.
     fn is_off(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
         let kinds = self.job.kernel().result_kinds();
         let mut calls = interpreter.calls::<f64>()?;
@@ -325,7 +326,7 @@ impl Ready<'_> {
             for (index, target) in batch.expected.iter().enumerate() {
                 let found = exact(&mut calls, batch.rows.row_words(index), &kinds)?;
                 let slack = &batch.slack[index * kinds.len()..];
-                // What is no number is infinitely far, but from an oracle without an opinion.
+                // NaN is infinitely far from every value, unless the oracle accepts all.
                 if (0..kinds.len()).any(|word| nearest(target, &found, word) > slack[word]) {
                     return Ok(true);
                 }
@@ -381,31 +382,5 @@ impl Ready<'_> {
         runner.run(&self.job.rows.words)?;
         seen(&runner.calls.machine);
         Ok(())
-    }
-}
-
-/// Runs rows of a kernel in f32.
-struct Runner<'p> {
-    calls: Calls<'p, f32>,
-    kinds: Vec<ScalarKind>,
-    stride: usize,
-}
-
-impl<'p> Runner<'p> {
-    fn new(kernel: &Kernel, interpreter: &'p Interpreter) -> Result<Self, Diagnostic> {
-        let mut calls = interpreter.calls::<f32>()?;
-        calls.machine.loop_limit = TRIPS;
-        Ok(Self { calls, kinds: kernel.result_kinds(), stride: kernel.input_words() as usize })
-    }
-
-    /// A function without parameters has one row.
-    fn run(&mut self, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        let mut results = Vec::new();
-        let count = inputs.len().checked_div(self.stride).unwrap_or(1);
-        for row in 0..count {
-            let found = self.calls.call(&inputs[row * self.stride..(row + 1) * self.stride])?;
-            results.extend(found.iter().zip(&self.kinds).map(|(slot, kind)| word_of(*slot, *kind)));
-        }
-        Ok(results)
     }
 }

@@ -153,14 +153,8 @@ fn copied(
     buffer
 }
 
-/// The bits of a depth texture, drawn into a target of words.
-fn as_words(
-    gpu: &Gpu,
-    encoder: &mut wgpu::CommandEncoder,
-    depth: &wgpu::Texture,
-    size: [u32; 2],
-) -> wgpu::Texture {
-    let device = &gpu.device;
+/// A pipeline that reads the bits of a depth texture, with the layout of what it binds.
+fn reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
     let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let ty = wgpu::BindingType::Texture {
@@ -186,6 +180,18 @@ fn as_words(
         Some(TARGET_FORMAT),
         None,
     );
+    (layout, pipeline)
+}
+
+/// The bits of a depth texture, drawn into a target of words.
+fn as_words(
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
+    depth: &wgpu::Texture,
+    size: [u32; 2],
+) -> wgpu::Texture {
+    let device = &gpu.device;
+    let (layout, pipeline) = reader(device);
     let view = depth.create_view(&Default::default());
     let entry =
         wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) };

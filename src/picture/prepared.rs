@@ -1,0 +1,184 @@
+//! A pass that is ready to be drawn, and the picture that it gives.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+
+use super::Shot;
+use super::pixels::{Background, Linear};
+use super::values::Camera;
+use crate::bundle::Binding;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::execute::Session;
+use crate::execute::fixture::{Fixture, Texture};
+use crate::execute::frame::{Buffers, Drawing, EntryPoint, Frame, Item, Mesh, State};
+use crate::execute::kernel::SENTINEL;
+use crate::picture::frame::{Stages, pack, probe};
+
+/// A pass with everything it is drawn with.
+pub struct Prepared {
+    pub stages: Stages,
+    pub items: Vec<(Mesh, Buffers)>,
+    pub buffers: Buffers,
+    pub fixtures: BTreeMap<(u32, u32), Arc<Fixture>>,
+    pub levels: BTreeMap<(u32, u32), Vec<Texture>>,
+    pub state: State,
+    pub(super) plain: Vec<(u32, u32)>,
+    /// The binding of the camera, which each view fills; screens have none.
+    pub(super) camera: Option<Binding>,
+    pub(super) eye: Camera,
+    pub(super) background: Background,
+    /// The same for the farther parts of the viewer's depth, nearest first: seen where nothing
+    /// nearer was drawn.
+    pub farther: Vec<Self>,
+}
+
+impl Prepared {
+    /// The buffers of a view.
+    pub(super) fn view(&self, camera: &Camera) -> Result<Buffers, Diagnostic> {
+        let buffer = |binding: &Binding| {
+            let bytes = pack(binding, &|path| camera.number(path))?;
+            Ok(((binding.group, binding.binding), bytes))
+        };
+        self.camera.iter().map(buffer).collect()
+    }
+
+    /// The buffers of the viewer, moved by parts of a pixel.
+    ///
+    /// # Errors
+    /// A field of the camera that has no number.
+    pub fn eye_view(&self, shift: [f64; 2], size: [u32; 2]) -> Result<Buffers, Diagnostic> {
+        let [x, y] = [0, 1].map(|axis| 2.0 * shift[axis] / f64::from(size[axis].max(1)));
+        let moved = DMat4::from_translation(DVec3::new(x, y, 0.0)) * self.eye.clip_from_world;
+        self.view(&Camera { clip_from_world: moved, ..self.eye })
+    }
+
+    fn eye_views(&self, shifts: &[[f64; 2]], size: [u32; 2]) -> Result<Vec<Buffers>, Diagnostics> {
+        let views = shifts.iter().map(|shift| self.eye_view(*shift, size));
+        views.collect::<Result<_, _>>().map_err(|problem| vec![problem])
+    }
+
+    /// Draws a frame for each view with the stages as they are, or with another fragment stage of
+    /// so many targets.
+    ///
+    /// # Errors
+    /// The painter's.
+    pub fn draw(
+        &self,
+        painter: &dyn Session,
+        views: &[Buffers],
+        size: [u32; 2],
+        fragment: Option<(EntryPoint<'_>, u32)>,
+    ) -> Result<Vec<Frame>, Diagnostics> {
+        let items: Vec<Item<'_>> =
+            self.items.iter().map(|(mesh, buffers)| Item { mesh, buffers }).collect();
+        let vertex = EntryPoint {
+            module: &self.stages.vertex.validated.module,
+            entry: self.stages.vertex.entry,
+        };
+        let drawing = Drawing {
+            vertex,
+            fragment: fragment.map(|(stage, _)| stage),
+            targets: fragment.map_or(0, |(_, targets)| targets),
+            items: &items,
+            views,
+            buffers: &self.buffers,
+            plain: &self.plain,
+            fixtures: &self.fixtures,
+            levels: &self.levels,
+            size,
+            state: self.state,
+        };
+        painter.draw_frames(&drawing).map_err(|problem| vec![problem])
+    }
+
+    /// Draws the bits of the colours.
+    pub(super) fn draw_colors(
+        &self,
+        painter: &dyn Session,
+        views: &[Buffers],
+        size: [u32; 2],
+    ) -> Result<Vec<Frame>, Diagnostics> {
+        let stage = self.stages.fragment.as_ref().ok_or_else(|| vec![no_frame()])?;
+        let module =
+            probe::bits(&stage.validated.module, stage.entry).ok_or_else(|| vec![no_frame()])?;
+        self.draw(
+            painter,
+            views,
+            size,
+            Some((EntryPoint { module: &module, entry: stage.entry }, 1)),
+        )
+    }
+
+    /// The picture's linear colours, averaged over the samples of each pixel.
+    ///
+    /// # Errors
+    /// The painter's.
+    pub fn photograph(&self, painter: &dyn Session, shot: &Shot) -> Result<Linear, Diagnostics> {
+        let shifts: Vec<[f64; 2]> =
+            (0..shot.samples.max(1)).map(|index| shift(index, shot.samples)).collect();
+        let views = self.eye_views(&shifts, shot.size)?;
+        let mut picture = Linear::new(shot.size);
+        let views = if self.camera.is_some() { &views[..] } else { &views[..1] };
+        let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize;
+        let at_once = (AT_ONCE / bytes.max(1)).max(1);
+        for (views, shifts) in views.chunks(at_once).zip(shifts.chunks(at_once)) {
+            let nearest = self.colours(painter, views, shot.size)?;
+            let mut farther = Vec::new();
+            for slice in &self.farther {
+                let views = slice.eye_views(shifts, shot.size)?;
+                farther.push(slice.colours(painter, &views, shot.size)?);
+            }
+            for (index, (colours, shift)) in nearest.iter().zip(shifts).enumerate() {
+                let behind = |pixel: usize| farther.iter().find_map(|slice| slice[index][pixel]);
+                let seen = colours
+                    .iter()
+                    .enumerate()
+                    .map(|(pixel, colour)| colour.or_else(|| behind(pixel)));
+                picture.add(seen, *shift, &self.background, shot.exposure);
+            }
+        }
+        Ok(picture)
+    }
+
+    /// The colours of each view; `None` where nothing was drawn.
+    fn colours(
+        &self,
+        painter: &dyn Session,
+        views: &[Buffers],
+        size: [u32; 2],
+    ) -> Result<Vec<Vec<Option<[f32; 4]>>>, Diagnostics> {
+        let colours = |frame: Frame| {
+            frame.targets.first().map_or(&[][..], Vec::as_slice).chunks(4).map(colour).collect()
+        };
+        Ok(self.draw_colors(painter, views, size)?.into_iter().map(colours).collect())
+    }
+}
+
+/// Bytes of the frames that are drawn at once.
+const AT_ONCE: usize = 64 << 20;
+
+/// Where in the pixel a sample is taken, from its middle: Halton's points, the middle alone for one.
+fn shift(index: u32, samples: u32) -> [f64; 2] {
+    let radical = |base: u32| {
+        let (mut rest, mut place, mut value) = (index + 1, 1.0, 0.0);
+        while rest > 0 {
+            place /= f64::from(base);
+            value += place * f64::from(rest % base);
+            rest /= base;
+        }
+        value - 0.5
+    };
+    if samples <= 1 { [0.0; 2] } else { [radical(2), radical(3)] }
+}
+
+/// The colour of a pixel; `None` where nothing was drawn.
+pub(super) fn colour(pixel: &[u32]) -> Option<[f32; 4]> {
+    let words: [u32; 4] = pixel.try_into().ok()?;
+    (words != [SENTINEL; 4]).then(|| words.map(f32::from_bits))
+}
+
+pub(super) fn no_frame() -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, "the pass gives no colour")
+}

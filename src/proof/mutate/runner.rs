@@ -1,0 +1,33 @@
+//! Rows of a kernel on the evaluator, in f32.
+
+use naga::ScalarKind;
+
+use crate::diagnostic::Diagnostic;
+use crate::execute::interpreter::{Calls, Interpreter, word_of};
+use crate::execute::kernel::Kernel;
+
+/// Runs rows of a kernel in f32.
+pub struct Runner<'p> {
+    pub calls: Calls<'p, f32>,
+    kinds: Vec<ScalarKind>,
+    stride: usize,
+}
+
+impl<'p> Runner<'p> {
+    pub fn new(kernel: &Kernel, interpreter: &'p Interpreter) -> Result<Self, Diagnostic> {
+        let mut calls = interpreter.calls::<f32>()?;
+        calls.machine.loop_limit = super::suite::TRIPS;
+        Ok(Self { calls, kinds: kernel.result_kinds(), stride: kernel.input_words() as usize })
+    }
+
+    /// A function without parameters has one row.
+    pub fn run(&mut self, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        let mut results = Vec::new();
+        let count = inputs.len().checked_div(self.stride).unwrap_or(1);
+        for row in 0..count {
+            let found = self.calls.call(&inputs[row * self.stride..(row + 1) * self.stride])?;
+            results.extend(found.iter().zip(&self.kinds).map(|(slot, kind)| word_of(*slot, *kind)));
+        }
+        Ok(results)
+    }
+}
