@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 
 use super::guide;
-use super::terminal::stderr;
+use crate::cli::terminal::{coloured, escaped, is_person, stderr};
 use crate::diagnostic::render::{Form, render};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;
@@ -54,7 +54,9 @@ impl Failure {
             Self::Input(sources, diagnostics) => {
                 warn(&sources, &diagnostics, form);
                 let reading = guide::after_errors(&diagnostics);
-                if let (Some(reading), DiagnosticForm::Human) = (reading, form) {
+                if let (Some(reading), DiagnosticForm::Human | DiagnosticForm::Coloured) =
+                    (reading, form)
+                {
                     let _ = stderr().write_all(reading.as_bytes());
                 }
                 ExitCode::from(1)
@@ -64,6 +66,10 @@ impl Failure {
                     DiagnosticForm::Json => writeln!(stderr(), "{}", message_as_json(&message)),
                     DiagnosticForm::Human | DiagnosticForm::Short => {
                         writeln!(stderr(), "error: {message}")
+                    }
+                    DiagnosticForm::Coloured => {
+                        let message = escaped(&message);
+                        writeln!(coloured(), "\x1b[1;31merror\x1b[0m: {message}")
                     }
                 };
                 ExitCode::from(code)
@@ -89,7 +95,12 @@ impl From<io::Error> for Failure {
 
 /// Prints diagnostics that do not stop the command, or those that did.
 pub fn warn(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
-    let _ = stderr().write_all(render(sources, diagnostics, form.into()).as_bytes());
+    let text = render(sources, diagnostics, form.into());
+    let _ = match form {
+        // What is quoted in it has lost its control characters by now.
+        DiagnosticForm::Coloured => coloured().write_all(text.as_bytes()),
+        _ => stderr().write_all(text.as_bytes()),
+    };
 }
 
 /// [`Form`] as an option's value.
@@ -98,6 +109,9 @@ pub enum DiagnosticForm {
     /// With excerpts of the text.
     #[default]
     Human,
+    /// The same in colours: what [`Colour`] makes of it.
+    #[value(skip)]
+    Coloured,
     /// One line each.
     Short,
     /// One JSON object a line.
@@ -108,8 +122,39 @@ impl From<DiagnosticForm> for Form {
     fn from(form: DiagnosticForm) -> Self {
         match form {
             DiagnosticForm::Human => Self::Human,
+            DiagnosticForm::Coloured => Self::Coloured,
             DiagnosticForm::Short => Self::Short,
             DiagnosticForm::Json => Self::Json,
+        }
+    }
+}
+
+/// When to write colours.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// On a terminal, unless `NO_COLOR` is set.
+    #[default]
+    Auto,
+    Always,
+    Never,
+}
+
+impl Colour {
+    /// The form in colours, where they are wanted.
+    pub fn of(self, form: DiagnosticForm) -> DiagnosticForm {
+        match (form, self.is_wanted()) {
+            (DiagnosticForm::Human, true) => DiagnosticForm::Coloured,
+            (form, _) => form,
+        }
+    }
+
+    fn is_wanted(self) -> bool {
+        let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+        let is_dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
+        match self {
+            Self::Always => true,
+            Self::Never => false,
+            Self::Auto => is_person() && !is_set("NO_COLOR") && !is_dumb,
         }
     }
 }

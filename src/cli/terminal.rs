@@ -21,6 +21,19 @@ pub fn stderr() -> Escaping<io::Stderr> {
     Escaping::new(io::stderr())
 }
 
+/// Text with colours of ours, on standard error.
+pub fn coloured() -> Escaping<io::Stderr> {
+    Escaping { out: io::stderr(), has_colours: true, cut: Vec::new() }
+}
+
+/// Text of somebody else's within text of ours.
+pub fn escaped(text: &str) -> String {
+    let mut bytes = Vec::new();
+    // Writing to memory does not fail.
+    let _ = Escaping::new(&mut bytes).write_all(text.as_bytes());
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
 /// Whether a person reads standard output.
 pub fn is_terminal() -> bool {
     io::stdout().is_terminal()
@@ -43,13 +56,15 @@ pub fn data(bytes: &[u8]) -> io::Result<()> {
 #[derive(Debug)]
 pub struct Escaping<W: Write> {
     out: W,
+    /// Whether sequences that choose a colour pass.
+    has_colours: bool,
     /// The beginning of a character whose other bytes are not written yet.
     cut: Vec<u8>,
 }
 
 impl<W: Write> Escaping<W> {
     pub fn new(out: W) -> Self {
-        Self { out, cut: Vec::new() }
+        Self { out, has_colours: false, cut: Vec::new() }
     }
 
     fn text(&mut self, text: &str) -> io::Result<()> {
@@ -57,6 +72,12 @@ impl<W: Write> Escaping<W> {
         while let Some(at) = rest.find(is_obeyed) {
             let (before, after) = rest.split_at(at);
             self.out.write_all(before.as_bytes())?;
+            let colour = if self.has_colours { colour(after) } else { 0 };
+            if colour > 0 {
+                self.out.write_all(&after.as_bytes()[..colour])?;
+                rest = &after[colour..];
+                continue;
+            }
             let mut characters = after.chars();
             if let Some(found) = characters.next() {
                 write!(self.out, "\\u{:04x}", u32::from(found))?;
@@ -67,6 +88,13 @@ impl<W: Write> Escaping<W> {
     }
 }
 
+/// Bytes of the sequence that chooses a colour, if the text begins with one.
+fn colour(text: &str) -> usize {
+    let Some(rest) = text.strip_prefix("\u{1b}[") else { return 0 };
+    let end = rest.find(|letter: char| !(letter.is_ascii_digit() || letter == ';'));
+    end.filter(|end| rest[*end..].starts_with('m')).map_or(0, |end| end + 3)
+}
+
 impl<W: Write> Write for Escaping<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let joined = match self.cut.is_empty() {
@@ -74,7 +102,8 @@ impl<W: Write> Write for Escaping<W> {
             false => [std::mem::take(&mut self.cut).as_slice(), bytes].concat(),
         };
         let whole = whole(&joined);
-        self.text(&String::from_utf8_lossy(&joined[..whole]))?;
+        let text = String::from_utf8_lossy(&joined[..whole]).into_owned();
+        self.text(&text)?;
         self.cut = joined[whole..].to_vec();
         Ok(bytes.len())
     }

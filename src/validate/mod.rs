@@ -4,12 +4,14 @@
 //! bounded first ([`limits`]), runs on a large stack and has its panics caught ([`guard`]).
 
 mod constants;
+mod every;
 mod guard;
 mod limits;
 mod report;
 mod sizes;
 mod uniformity;
 
+pub use every::every;
 pub use guard::{guard, on_large_stack};
 pub use limits::{LIMITS, Limits};
 pub use uniformity::{has_lints, lint};
