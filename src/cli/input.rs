@@ -102,7 +102,8 @@ fn named(name: &str) -> Result<String, String> {
     }
 }
 
-fn feature(text: &str) -> Result<(String, Setting), String> {
+/// A feature, on unless it says otherwise, as an option has it.
+pub fn feature(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').unwrap_or((text, "true"));
     match Setting::parse(value) {
         value @ Setting::Bool(_) => Ok((named(name)?, value)),
