@@ -12,6 +12,7 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod conventions;
 mod cost;
 mod determinism;
 mod diagnostics;
@@ -20,8 +21,6 @@ mod doors;
 mod emit;
 mod eval;
 mod examples;
-#[path = "../xtask/src/external.rs"]
-mod external;
 mod fragments;
 mod frames;
 mod generate;
@@ -29,6 +28,7 @@ mod guide;
 mod harness;
 mod hostile;
 mod house;
+mod judges;
 mod keys;
 mod library;
 mod link;
@@ -62,6 +62,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    conventions::trials,
     cost::trials,
     determinism::trials,
     diagnostics::trials,
@@ -76,6 +77,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     harness::trials,
     hostile::trials,
     house::trials,
+    judges::trials,
     keys::trials,
     library::trials,
     link::trials,

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use lamplight::bundle::{Bundle, Language, Target, merge, pack};
+use lamplight::bundle::{Bundle, Clip, Language, Target, merge, pack};
 use lamplight::cache::{Cache, Job, Storage};
 use lamplight::compose::{Composed, Options};
 use lamplight::diagnostic::render::{Form, render};
@@ -64,6 +64,7 @@ pub fn record(bytes: &[u8]) -> String {
         entry: "f",
         options: &Options::default(),
         targets: &[Target::WGSL],
+        clip: Clip::default(),
     });
     let told = match &found {
         Some(Ok(made)) => format!("{} {:?}", made.unit.targets.len(), made.warnings),

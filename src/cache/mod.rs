@@ -13,7 +13,7 @@ pub use folder::Folder;
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::bundle::{Hash, Target, Unit};
+use crate::bundle::{Clip, Hash, Target, Unit};
 use crate::compose::{Composed, Options};
 use crate::diagnostic::Diagnostics;
 use crate::source::SourceId;
@@ -43,7 +43,7 @@ struct Counted {
 }
 
 /// What names of records begin with.
-const KINDS: [&str; 4] = ["errors", "runs", "units", "warnings"];
+const KINDS: [&str; 5] = ["errors", "judged", "runs", "units", "warnings"];
 
 const MOST_FAILURES: usize = 8;
 
@@ -60,6 +60,8 @@ pub struct Job<'a> {
     pub options: &'a Options,
     /// Targets that are asked for, in order.
     pub targets: &'a [Target],
+    /// The clip space of its outputs.
+    pub clip: Clip,
 }
 
 /// What comes of a text: a unit, and what its author can mend.
@@ -179,10 +181,12 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 }
 
 fn unit_key(job: Job<'_>) -> Hash {
-    let Job { text, composed, entry, options, targets } = job;
+    let Job { text, composed, entry, options, targets, clip } = job;
     let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
-    let rest =
-        format!("{:?} {:?} {options:?} {entry:?} {names:?}", composed.language, composed.stage);
+    let rest = format!(
+        "{:?} {:?} {options:?} {entry:?} {names:?} {clip:?}",
+        composed.language, composed.stage
+    );
     hash(&["unit", BUILD, &rest, text])
 }
 
