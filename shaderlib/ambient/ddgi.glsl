@@ -51,7 +51,7 @@ float ddgi_weight(vec3 n, vec3 dir, float tri, float mean, float mean2, float di
 
 /// `ddgi_weight` with a twentieth of the light left where the probe sees nothing of the point.
 ///
-/// Parameters: as for `ddgi_weight`: `n`, `dir` unit; `tri` trilinear share, [0, 1]; `mean`, `mean2` mean of the distance and of its square, scene units; `dist` distance of the point, scene units.
+/// Parameters: `n` unit normal of the surface; `dir` unit, from the point to the probe; `tri` trilinear share, [0, 1]; `mean`, `mean2` mean of the distance and of its square, scene units; `dist` distance of the point, scene units.
 /// Returns: the weight, above 0.
 /// Source: NVIDIA, RTXGI SDK 1.3, 2022, `DDGIGetVolumeIrradiance`: a floor of 0.05 for the cubed bound.
 /// Edges: as for `ddgi_weight`.

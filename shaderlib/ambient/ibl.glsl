@@ -45,7 +45,7 @@ vec3 split_sum(vec3 f0, vec2 dfg, vec3 prefiltered) {
 
 /// The direction in which a local environment map shows what a mirror in a box shows.
 ///
-/// Parameters: `r` mirrored direction, world space, any length; `p` the mirroring point; `lo`, `hi` corners of the box, `c` where the map was taken, all world space, scene units.
+/// Parameters: `r` mirrored direction, world space, any length; `p` the mirroring point; `lo`, `hi` corners of the box; `c` where the map was taken; all world space, scene units.
 /// Returns: from `c` to where the ray from `p` leaves the box, world space, scene units.
 /// Source: Lagarde, Zanuttini, "Local Image-Based Lighting with Parallax-Corrected Cubemaps", 2012.
 /// Edges: for a point beyond the box in the ray's direction the ray ends at the point; `p - c` for a zero direction.
