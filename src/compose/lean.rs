@@ -11,6 +11,7 @@ use std::ops::Range;
 
 use super::{Composed, Part, PartKind, SourceMap};
 use crate::bundle::Language;
+use crate::parse::wesl::blank::{block_comment, is_blank, line_comment};
 
 /// Aliases within each other after which they stay as they are, for naga to report.
 const ALIAS_DEPTH: usize = 64;
@@ -114,15 +115,6 @@ fn declares(declaration: &str, name: &str) -> Option<usize> {
     fitting.next().filter(|_| is_plain)
 }
 
-/// What WGSL calls blank: line breaks and the marks of direction among it.
-const BLANKS: [char; 11] = [
-    ' ', '\t', '\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{200e}', '\u{200f}', '\u{2028}',
-    '\u{2029}',
-];
-
-/// Each of WGSL's line breaks ends a line comment.
-const BREAKS: [char; 7] = ['\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{2028}', '\u{2029}'];
-
 /// WGSL without comments and layout. It has no strings: `//` and `/*` always begin a comment, and
 /// block comments nest.
 pub fn wgsl(text: &str) -> String {
@@ -158,7 +150,7 @@ fn token(text: &str) -> usize {
             b'/' if comment(&text[at..]).is_some() => return at,
             b'!'..=b'~' => 1,
             _ => match text[at..].chars().next() {
-                Some(found) if !BLANKS.contains(&found) => found.len_utf8(),
+                Some(found) if !is_blank(found) => found.len_utf8(),
                 _ => return at,
             },
         };
@@ -177,7 +169,7 @@ fn gap(text: &str) -> usize {
             b'!'..=b'.' | b'0'..=b'~' => return at,
             _ => match (comment(&text[at..]), text[at..].chars().next()) {
                 (Some(length), _) => length,
-                (None, Some(found)) if BLANKS.contains(&found) => found.len_utf8(),
+                (None, Some(found)) if is_blank(found) => found.len_utf8(),
                 _ => return at,
             },
         };
@@ -193,39 +185,10 @@ fn stands_alone(found: u8) -> bool {
 /// Bytes of the comment that the text begins with.
 fn comment(text: &str) -> Option<usize> {
     match text.as_bytes() {
-        [b'/', b'/', ..] => Some(line(text)),
-        [b'/', b'*', ..] => Some(block(text)),
+        [b'/', b'/', ..] => Some(line_comment(text)),
+        [b'/', b'*', ..] => Some(block_comment(text).0),
         _ => None,
     }
-}
-
-fn line(text: &str) -> usize {
-    // Looked for byte by byte as long as these are characters.
-    let first = text
-        .bytes()
-        .position(|byte| matches!(byte, b'\n'..=b'\r') || !byte.is_ascii())
-        .unwrap_or(text.len());
-    text[first..].find(BREAKS).map_or(text.len(), |more| first + more)
-}
-
-fn block(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let (mut depth, mut at) = (0, 0);
-    while at < bytes.len() {
-        match (bytes[at], bytes.get(at + 1)) {
-            (b'/', Some(b'*')) => depth += 1,
-            (b'*', Some(b'/')) => depth -= 1,
-            _ => {
-                at += 1;
-                continue;
-            }
-        }
-        at += 2;
-        if depth == 0 {
-            break;
-        }
-    }
-    at
 }
 
 /// GLSL without comments and layout. Directives end with their line, so lines stay; block comments

@@ -3,6 +3,7 @@
 //! There is no syntax tree: composing needs items, scopes and conditions, and naga parses the
 //! composed text anyway.
 
+pub(crate) mod blank;
 mod body;
 mod condition;
 mod cursor;
