@@ -139,6 +139,8 @@ pub mod keys;
 #[cfg(feature = "compile")]
 #[doc(hidden)]
 pub mod link;
+#[cfg(feature = "compile")]
+pub mod lint;
 #[cfg(feature = "eval")]
 #[doc(hidden)]
 pub mod metal;

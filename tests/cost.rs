@@ -14,6 +14,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("cost::every_function_on_every_generation", every_function),
         Trial::test("cost::parts_add_up", parts_add_up),
         Trial::test("cost::permutations_have_their_stages", permutations),
+        Trial::test("cost::shaders_of_files", files),
         Trial::test("cost::a_rise_fails", a_rise_fails),
         Trial::test("cost::wrong_names", wrong_names),
         Trial::test("cost::without_a_driver", without_a_driver),
@@ -105,6 +106,58 @@ fn permutations() -> Outcome {
     let [plain, pcss] = [0, 2].map(|index| figure(&found[index], "figures", "instructions"));
     let (plain, pcss) = (plain?, pcss?);
     if pcss < plain + 100 { Err(format!("{plain}, with PCSS {pcss}").into()) } else { Ok(()) }
+}
+
+/// A vertex stage alone, both stages of one file, a compute shader, a feature that adds work.
+fn files() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let vertex = "@vertex fn vs(@location(0) p: vec3f, @location(1) n: vec3f) -> Out {
+    return Out(vec4f(p, 1.0), normalize(n), 3u);
+}
+struct Out { @builtin(position) p: vec4f, @location(0) n: vec3f, @location(1) @interpolate(flat) i: u32 }
+";
+    let fragment = "@fragment fn fs(in: Out) -> @location(0) vec4f {
+    var sum = in.n * f32(in.i);
+    @if(more) { for (var i = 0u; i < in.i; i++) { sum += sin(sum * f32(i)); } }
+    return vec4f(sum, 1.0);
+}
+";
+    let compute = "@group(0) @binding(0) var<storage, read_write> data: array<f32>;
+@compute @workgroup_size(64) fn cs(@builtin(global_invocation_id) at: vec3u) {
+    data[at.x] = sqrt(data[at.x]);
+}
+";
+    let write = |name: &str, text: String| -> Result<String, Failed> {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text)?;
+        Ok(path.to_string_lossy().into_owned())
+    };
+    let alone = write("alone.wesl", vertex.to_owned())?;
+    let both = write("both.wesl", format!("{vertex}{fragment}"))?;
+    let counting = write("counting.wesl", compute.to_owned())?;
+    let instructions = |file: &str, feature: &str| -> Result<Vec<(String, i64)>, Failed> {
+        let options = ["--gpu", "navi21", "--feature", feature];
+        let found =
+            objects(&[&[file], &options[..if feature.is_empty() { 2 } else { 4 }]].concat())?;
+        let one = |object: &Value| {
+            let stage = object["stage"].as_str().unwrap_or_default().to_owned();
+            Ok((stage, figure(object, "figures", "instructions")?))
+        };
+        found.iter().map(one).collect()
+    };
+    let stages = |found: &[(String, i64)]| {
+        found.iter().map(|(stage, _)| stage.clone()).collect::<Vec<_>>().join(" ")
+    };
+    let (alone, counting) = (instructions(&alone, "")?, instructions(&counting, "")?);
+    let (without, with) = (instructions(&both, "more=false")?, instructions(&both, "more")?);
+    let told = [stages(&alone), stages(&counting), stages(&without)];
+    if told != ["vertex", "compute", "vertex fragment"] {
+        return Err(format!("{told:?}").into());
+    }
+    if alone[0].1 < 5 || counting[0].1 < 3 || with[1].1 < without[1].1 + 5 {
+        return Err(format!("{alone:?} {counting:?} {without:?} {with:?}").into());
+    }
+    Ok(())
 }
 
 fn a_rise_fails() -> Outcome {

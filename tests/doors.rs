@@ -5,6 +5,7 @@ mod package;
 mod roots;
 mod same_bytes;
 mod told;
+mod tools;
 
 use libtest_mimic::Trial;
 
@@ -14,7 +15,7 @@ type Outcome = Result<(), libtest_mimic::Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases = [command_line::CASES, roots::CASES, same_bytes::CASES, told::CASES];
+    let cases = [command_line::CASES, roots::CASES, same_bytes::CASES, told::CASES, tools::CASES];
     let named = |(name, case): &Case| Trial::test(format!("doors::{name}"), *case);
     cases.into_iter().flatten().map(named).collect()
 }

@@ -20,7 +20,7 @@ use super::{
 ///
 /// let bundle = Bundle::open("shaders.lamplight")?;
 /// let shader = bundle.program("forward")?.shader("fs_main")?;
-/// let found = shader.get("shadow=hard,two_sided", Target::SPIRV)?;
+/// let found = shader.get("shadow=hard", Target::SPIRV)?;
 /// println!("{} bytes, entry point {}", found.bytes.len(), found.native.entry_name);
 /// # Ok(())
 /// # }

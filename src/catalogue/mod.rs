@@ -15,6 +15,7 @@ pub(crate) mod reader;
 
 use crate::diagnostic::Diagnostics;
 use crate::permute::Manifest;
+use crate::project::LIBRARY;
 use crate::source::{Embedded, Files, SourceSet};
 
 /// Folders of the library that hold programs, not modules.
@@ -53,6 +54,8 @@ pub struct Member {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Item {
     pub kind: Kind,
+    /// The package by the name that imports it.
+    pub package: String,
     /// Module path below the package, `::` between its parts.
     pub module: String,
     pub name: String,
@@ -69,9 +72,14 @@ pub struct Item {
 }
 
 impl Item {
-    /// Path below the package: `lighting::spot::cone_hard`.
+    /// Path below the library: `lighting::spot::cone_hard`; with its package for any other.
     pub fn path(&self) -> String {
-        format!("{}::{}", self.module, self.name)
+        in_package(&self.package, &format!("{}::{}", self.module, self.name))
+    }
+
+    /// Path with the package.
+    pub fn full_path(&self) -> String {
+        format!("{}::{}::{}", self.package, self.module, self.name)
     }
 
     /// The first line of the documentation.
@@ -107,12 +115,17 @@ impl Item {
 
     /// What to write in WESL to use it.
     pub fn import(&self) -> String {
-        format!("import lamplight::{};", self.path())
+        format!("import {};", self.full_path())
     }
 
     /// What to write in GLSL to use it.
     pub fn include(&self) -> String {
-        format!("#include <lamplight/{}.glsl>", self.module.replace("::", "/"))
+        let file = format!("{}.glsl", self.module.replace("::", "/"));
+        if self.package == LIBRARY {
+            format!("#include <{LIBRARY}/{file}>")
+        } else {
+            format!("#include \"{file}\"")
+        }
     }
 }
 
@@ -131,11 +144,18 @@ fn paragraphs(lines: &[String]) -> Vec<String> {
     blocks.map(|block| block.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")).collect()
 }
 
-/// A module of the library.
+/// A path as the library's need no package.
+fn in_package(package: &str, path: &str) -> String {
+    if package == LIBRARY { path.to_owned() } else { format!("{package}::{path}") }
+}
+
+/// A module of the library or of the user's own package.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Module {
-    /// Path below the package, `::` between its parts.
+    /// Path below the library, `::` between its parts; with its package for any other.
     pub path: String,
+    /// The package by the name that imports it.
+    pub package: String,
     /// Paragraphs of the module's own comment.
     pub doc: Vec<String>,
     pub items: Vec<Item>,
@@ -171,22 +191,45 @@ pub fn examples(
 /// Every module of a package that has the library's layout.
 pub fn modules(files: &dyn Files) -> Vec<Module> {
     let paths = files.list(&["wesl"]).into_iter().filter(|path| !path.starts_with(PROGRAMS));
-    paths.filter_map(|path| module(files, path.strip_suffix(".wesl")?)).collect()
+    paths.filter_map(|path| module(files, LIBRARY, path.strip_suffix(".wesl")?, ".wesl")).collect()
 }
 
-fn module(files: &dyn Files, stem: &str) -> Option<Module> {
-    let text = files.read(&format!("{stem}.wesl")).ok()??;
+/// Every module of the user's own package, documented or not.
+pub fn own_modules(files: &dyn Files) -> Vec<Module> {
+    let paths = files.list(&["wesl", "wgsl"]).into_iter();
+    let of = |path: String| {
+        let ending = if path.ends_with(".wesl") { ".wesl" } else { ".wgsl" };
+        module(files, OWN, path.strip_suffix(ending)?, ending)
+    };
+    paths.filter_map(of).collect()
+}
+
+/// What imports call the user's own package.
+const OWN: &str = "package";
+
+fn module(files: &dyn Files, package: &str, stem: &str, ending: &str) -> Option<Module> {
+    let text = files.read(&format!("{stem}{ending}")).ok()??;
     let twin = files.read(&format!("{stem}.glsl")).ok().flatten().unwrap_or_default();
     let path = stem.replace('/', "::");
     let glsl = outline::glsl(&twin);
-    let items = outline::wesl(&text).into_iter().map(|found| item(&path, found, &glsl));
-    Some(Module { doc: paragraphs(&outline::module_doc(&text)), items: items.collect(), path })
+    let declared = outline::wesl(&text).into_iter();
+    // What the library does not document is none of its users' business.
+    let declared = declared.filter(|found| package != LIBRARY || !found.doc.is_empty());
+    let items = declared.map(|found| item(package, &path, found, &glsl)).collect();
+    let doc = paragraphs(&outline::module_doc(&text));
+    Some(Module { doc, items, path: in_package(package, &path), package: package.to_owned() })
 }
 
-fn item(module: &str, found: outline::Declaration, glsl: &[outline::Declaration]) -> Item {
+fn item(
+    package: &str,
+    module: &str,
+    found: outline::Declaration,
+    glsl: &[outline::Declaration],
+) -> Item {
     let twin = glsl.iter().find(|twin| twin.name == found.name && twin.kind == found.kind);
     let mut item = Item {
         kind: found.kind,
+        package: package.to_owned(),
         module: module.to_owned(),
         glsl: twin.map(|twin| twin.declaration.clone()),
         name: found.name,

@@ -12,9 +12,9 @@ pub struct Declaration {
     pub result: Option<String>,
 }
 
-/// Functions, structs and constants of a WESL module that have a doc comment.
+/// Functions, structs and constants of a WESL module.
 pub fn wesl(text: &str) -> Vec<Declaration> {
-    declarations(text, wesl_name).into_iter().filter(|found| !found.doc.is_empty()).collect()
+    declarations(text, wesl_name)
 }
 
 /// Functions, structs and constants of a GLSL module.

@@ -54,7 +54,7 @@ struct Get {
     program: String,
     /// The entry point: `fs_main`.
     entry: String,
-    /// `shadow=hard,two_sided`; `default` for the permutation of all defaults.
+    /// `shadow=hard`; `default` for the permutation of all defaults.
     key: String,
     #[arg(long, value_name = "T", value_parser = target)]
     target: Target,

@@ -14,7 +14,13 @@ use crate::{input, output};
 #[derive(Args)]
 pub struct Arguments {
     /// The folder to write to.
-    #[arg(short, long, value_name = "DIR", default_value = "docs/catalogue")]
+    #[arg(
+        short,
+        long = "out",
+        alias = "output",
+        value_name = "DIR",
+        default_value = "docs/catalogue"
+    )]
     output: PathBuf,
     /// Write the modules that are made from data into the library's sources instead.
     #[arg(long, value_name = "DIR", conflicts_with = "output")]

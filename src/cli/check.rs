@@ -8,11 +8,13 @@ use clap::Args;
 
 use super::executor;
 use super::failure::Failure;
-use super::input::LanguageName;
+use super::features;
+use super::input::{self, LanguageName};
 use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
 use crate::execute::on_thread;
 use crate::output::{self, Replace};
+use crate::permute::{Setting, Settings};
 use crate::project::{self, LIBRARY};
 use crate::proof::check::{Open, Options, Report, failures, lacking, stricter, table};
 use crate::proof::library::Library;
@@ -41,6 +43,14 @@ pub struct Arguments {
     /// With `--bless`, also raise it. With `--report`, replace files that Lamplight did not write.
     #[arg(long)]
     force: bool,
+    /// Choose the value of a setting that your modules ask for.
+    #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = input::axis_value)]
+    set: Vec<(String, Setting)>,
+    /// Turn a feature on, or off with `=false`.
+    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = input::feature)]
+    feature: Vec<(String, Setting)>,
+    #[command(flatten)]
+    features: features::Arguments,
     /// List the cases that state less than WGSL allows.
     #[arg(long)]
     spec: bool,
@@ -62,6 +72,24 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
+    /// What is chosen. Enum axes that the package's manifest declares can be compared.
+    fn settings(&self, root: &Path) -> Result<Settings, Failure> {
+        let mut sources = SourceSet::default();
+        let manifest = project::manifest(root, &mut sources)
+            .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+        let mut settings = Settings::default();
+        for program in manifest.iter().flat_map(|manifest| &manifest.programs) {
+            let of_program = program.space.settings(&program.space.default_assignment());
+            settings.values.extend(of_program.values);
+            settings.enums.extend(of_program.enums);
+            settings.integers.extend(of_program.integers);
+            settings.undeclared = settings.undeclared.or(of_program.undeclared);
+        }
+        settings.values.extend(self.set.iter().chain(&self.feature).cloned());
+        settings.undeclared = self.features.undeclared(settings.undeclared);
+        Ok(settings)
+    }
+
     fn replace(&self) -> Replace {
         if self.force { Replace::Any } else { Replace::Ours }
     }
@@ -240,7 +268,7 @@ fn add_own(
     match selections.iter_mut().find(same) {
         Some(selection) => selection.files.push(path),
         None => selections.push(Selection {
-            library: package(&root)?,
+            library: package(&root)?.with_settings(arguments.settings(&root)?),
             root: Some(root),
             files: vec![path],
             languages,

@@ -8,12 +8,13 @@ use clap::Args;
 use super::executor;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::input::LanguageName;
+use super::own::Own;
 use crate::execute::{Session, on_thread};
 use crate::proof::expression::evaluate;
 use crate::proof::library::Library;
 use crate::source::SourceSet;
 
-/// Evaluate WGSL expressions, such as `lighting::spot::cone_exponent(0.9, 0.8, 4.0)`.
+/// Evaluate WGSL expressions over the functions of the library and of your own package.
 #[derive(Args)]
 pub struct Arguments {
     /// The language whose modules are called.
@@ -22,6 +23,8 @@ pub struct Arguments {
     /// What runs it: `lamplight list executors`.
     #[arg(long, value_name = "E", default_value = "eval")]
     pub executor: String,
+    #[command(flatten)]
+    own: Own,
     /// Expressions [default: one a line from standard input].
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     expressions: Vec<String>,
@@ -35,7 +38,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
 
 fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let mut session = executor::open(executor::find(&arguments.executor)?)?;
-    let library = Library::embedded();
+    let library = arguments.own.library()?;
     let mut failed = false;
     let mut one = |text: &str, session: &mut dyn Session| -> Result<(), Failure> {
         failed |= !print(&library, text, arguments.lang, session, form)?;

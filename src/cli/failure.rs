@@ -1,6 +1,6 @@
 //! How a command fails, and how that is told.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::ValueEnum;
@@ -53,7 +53,9 @@ impl Failure {
             Self::Input(sources, diagnostics) => {
                 warn(&sources, &diagnostics, form);
                 let reading = guide::after_errors(&diagnostics);
-                if let (Some(reading), DiagnosticForm::Human) = (reading, form) {
+                if let (Some(reading), DiagnosticForm::Human | DiagnosticForm::Coloured) =
+                    (reading, form)
+                {
                     let _ = io::stderr().write_all(reading.as_bytes());
                 }
                 ExitCode::from(1)
@@ -63,6 +65,9 @@ impl Failure {
                     DiagnosticForm::Json => writeln!(io::stderr(), "{}", message_as_json(&message)),
                     DiagnosticForm::Human | DiagnosticForm::Short => {
                         writeln!(io::stderr(), "error: {message}")
+                    }
+                    DiagnosticForm::Coloured => {
+                        writeln!(io::stderr(), "\x1b[1;31merror\x1b[0m: {message}")
                     }
                 };
                 ExitCode::from(code)
@@ -97,6 +102,9 @@ pub enum DiagnosticForm {
     /// With excerpts of the text.
     #[default]
     Human,
+    /// The same in colours: what [`Colour`] makes of it.
+    #[value(skip)]
+    Coloured,
     /// One line each.
     Short,
     /// One JSON object a line.
@@ -107,8 +115,39 @@ impl From<DiagnosticForm> for Form {
     fn from(form: DiagnosticForm) -> Self {
         match form {
             DiagnosticForm::Human => Self::Human,
+            DiagnosticForm::Coloured => Self::Coloured,
             DiagnosticForm::Short => Self::Short,
             DiagnosticForm::Json => Self::Json,
+        }
+    }
+}
+
+/// When to write colours.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// On a terminal, unless `NO_COLOR` is set.
+    #[default]
+    Auto,
+    Always,
+    Never,
+}
+
+impl Colour {
+    /// The form in colours, where they are wanted.
+    pub fn of(self, form: DiagnosticForm) -> DiagnosticForm {
+        match (form, self.is_wanted()) {
+            (DiagnosticForm::Human, true) => DiagnosticForm::Coloured,
+            (form, _) => form,
+        }
+    }
+
+    fn is_wanted(self) -> bool {
+        let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+        let is_dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
+        match self {
+            Self::Always => true,
+            Self::Never => false,
+            Self::Auto => io::stderr().is_terminal() && !is_set("NO_COLOR") && !is_dumb,
         }
     }
 }

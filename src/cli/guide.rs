@@ -7,46 +7,122 @@ use clap::Command;
 
 use crate::diagnostic::{Diagnostic, Severity, guide};
 
-/// The page of each command, by its title.
-const PAGES: &[(&str, &str)] = &[
-    ("list", "First shader in five minutes"),
-    ("show", "First shader in five minutes"),
-    ("compose", "Conditions and constants"),
-    ("compile", "A package of your own"),
-    ("gen", "Axes, constraints and the manifest"),
-    ("merge", "Many machines"),
-    ("variants", "Axes, constraints and the manifest"),
-    ("watch", "Hot reload"),
-    ("bundle", "Bundles"),
-    ("keys", "In an engine"),
-    ("eval", "First shader in five minutes"),
-    ("check", "Numeric cases"),
-    ("catalogue", "First shader in five minutes"),
-    ("render", "First shader in five minutes"),
-    ("mutate", "Numeric cases"),
-    ("export", "WESL without this tool"),
-    ("cost", "Cost on GPUs"),
-    ("explain", "Troubleshooting by diagnostic"),
+/// What help adds to a command: the title of its page, and examples that work in a package that
+/// `lamplight init` has written, once `lamplight gen` has run there.
+struct Entry {
+    command: &'static str,
+    page: &'static str,
+    examples: &'static [&'static str],
+}
+
+const fn entry(
+    command: &'static str,
+    page: &'static str,
+    examples: &'static [&'static str],
+) -> Entry {
+    Entry { command, page, examples }
+}
+
+const FIRST: &str = "First shader in five minutes";
+const PACKAGE: &str = "A package of your own";
+const MANIFEST: &str = "Axes, constraints and the manifest";
+const CASES: &str = "Numeric cases";
+
+const ENTRIES: &[Entry] = &[
+    entry("init", PACKAGE, &["lamplight init lamps"]),
+    entry("list", FIRST, &["lamplight list", "lamplight list axes --json"]),
+    entry("show", FIRST, &["lamplight show brdf::specular::blinn_phong", "lamplight show fresnel"]),
+    entry(
+        "compose",
+        "Conditions and constants",
+        &["lamplight compose shaders/lamp.wesl --set fog=true"],
+    ),
+    entry(
+        "compile",
+        PACKAGE,
+        &[
+            "lamplight compile shaders/lamp.wesl --target spirv,hlsl -o out",
+            "lamplight compile shaders/lamp.wesl --target all --reflection -o out --depfile lamp.d",
+            "lamplight compile - --lang wesl --target wgsl --feature fog < shaders/lamp.wesl",
+        ],
+    ),
+    entry("lint", PACKAGE, &["lamplight lint", "lamplight lint shaders/lamp.wesl"]),
+    entry(
+        "gen",
+        MANIFEST,
+        &["lamplight gen", "lamplight gen --check", "lamplight gen -o lamp.lamplight"],
+    ),
+    entry(
+        "merge",
+        "Many machines",
+        &["lamplight gen --shard 1/1 -o part && lamplight merge whole part"],
+    ),
+    entry("variants", MANIFEST, &["lamplight variants", "lamplight variants --keys lamp"]),
+    entry("watch", "Hot reload", &["lamplight watch", "lamplight watch --program lamp --key fog"]),
+    entry(
+        "bundle",
+        "Bundles",
+        &[
+            "lamplight bundle list bundle",
+            "lamplight bundle get bundle lamp fs_main fog --target msl",
+        ],
+    ),
+    entry("keys", "In an engine", &["lamplight keys --lang rust"]),
+    entry(
+        "eval",
+        FIRST,
+        &[
+            "lamplight eval 'lighting::spot::cone_exponent(0.9, 0.8, 4.0)'",
+            "lamplight eval 'package::falloff::falloff(1.0, 2.0)'",
+        ],
+    ),
+    entry(
+        "check",
+        CASES,
+        &["lamplight check", "lamplight check shaders/falloff.toml --report report"],
+    ),
+    entry("catalogue", FIRST, &["lamplight catalogue -o catalogue"]),
+    entry(
+        "render",
+        FIRST,
+        &["lamplight render hpg_4_spot --executor eval --size 32x32 -o spot.png"],
+    ),
+    entry("mutate", CASES, &[]),
+    entry("export", "WESL without this tool", &["lamplight export shaders/lamplight"]),
+    entry(
+        "explain",
+        "Troubleshooting by diagnostic",
+        &["lamplight explain missing-module", "lamplight explain"],
+    ),
+    entry("completions", FIRST, &["lamplight completions bash > lamplight.bash"]),
+    entry("man", FIRST, &["lamplight man -o man", "lamplight man gen"]),
+    entry("cost", "Cost on GPUs", &["lamplight cost lighting::spot --gpu navi21"]),
 ];
 
 /// Codes that one line names.
 const CODES: usize = 3;
 
-/// Adds the page of each command to its help.
+/// Adds examples and the page of each command to its help.
 pub fn in_help(command: Command) -> Command {
     command.mut_subcommands(|command| {
-        let page = PAGES.iter().find(|(name, _)| *name == command.get_name());
-        page.map_or(command.clone(), |(_, page)| with_page(command, page))
+        let found = ENTRIES.iter().find(|entry| entry.command == command.get_name());
+        found.map_or(command.clone(), |entry| with(command, entry))
     })
 }
 
-fn with_page(command: Command, page: &str) -> Command {
-    let line = |before: Option<&clap::builder::StyledStr>| match before {
-        Some(text) => format!("{text}\n\nGuide: {page}"),
-        None => format!("Guide: {page}"),
+fn with(command: Command, entry: &Entry) -> Command {
+    let examples: String = entry.examples.iter().map(|example| format!("  {example}\n")).collect();
+    let page = format!("Guide: {}", entry.page);
+    let after = |before: Option<&clap::builder::StyledStr>, examples: &str| {
+        let before = before.map_or(String::new(), |text| format!("{text}\n\n"));
+        match examples {
+            "" => format!("{before}{page}"),
+            examples => format!("{before}Examples:\n{examples}\n{page}"),
+        }
     };
-    let short = line(command.get_after_help());
-    let long = line(command.get_after_long_help().or(command.get_after_help()));
+    let short = after(command.get_after_help(), "");
+    let long = command.get_after_long_help().or(command.get_after_help());
+    let long = after(long, &examples);
     command.after_help(short).after_long_help(long)
 }
 

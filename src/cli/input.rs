@@ -102,7 +102,8 @@ fn named(name: &str) -> Result<String, String> {
     }
 }
 
-fn feature(text: &str) -> Result<(String, Setting), String> {
+/// A feature, on unless it says otherwise, as an option has it.
+pub fn feature(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').unwrap_or((text, "true"));
     match Setting::parse(value) {
         value @ Setting::Bool(_) => Ok((named(name)?, value)),
@@ -240,6 +241,11 @@ impl Input {
         composed.warnings = chosen.warnings;
         let Chosen { settings, permutation, .. } = chosen;
         Ok((composed, Context { graph, settings, options, permutation }))
+    }
+
+    /// The language asked for.
+    pub fn chosen_language(&self) -> Option<Language> {
+        self.lang.map(Language::from)
     }
 
     /// The language asked for, or else what the extension says.

@@ -6,15 +6,16 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::failure::Failure;
+use super::own::Own;
 use super::text;
 use crate::catalogue::{self, Kind, probe};
 use crate::emit::targets;
 use crate::execute::executors;
-use crate::permute::{Manifest, Setting};
+use crate::permute::{Manifest, Program, Setting};
 use crate::project;
 use crate::source::SourceSet;
 
-/// List what the library and the tools offer.
+/// List what the library, your own package and the tools offer.
 #[derive(Args)]
 pub struct Arguments {
     /// What to list.
@@ -23,6 +24,8 @@ pub struct Arguments {
     /// As a JSON array of objects, which have more than the table.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    own: Own,
 }
 
 #[derive(Clone, Copy, Default, ValueEnum)]
@@ -48,12 +51,14 @@ struct Table {
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let table = match arguments.what {
-        What::Modules => modules(),
-        What::Functions => items(Kind::Function, &["function", "summary"]),
-        What::Structs => items(Kind::Struct, &["struct", "summary"]),
-        What::Constants => items(Kind::Constant, &["constant", "wesl", "summary"]),
-        What::Programs => programs()?,
-        What::Axes => axes()?,
+        What::Modules => modules(known(&arguments.own)?),
+        What::Functions => items(known(&arguments.own)?, Kind::Function, &["function", "summary"]),
+        What::Structs => items(known(&arguments.own)?, Kind::Struct, &["struct", "summary"]),
+        What::Constants => {
+            items(known(&arguments.own)?, Kind::Constant, &["constant", "wesl", "summary"])
+        }
+        What::Programs => programs(all_programs(&arguments.own)?),
+        What::Axes => axes(&all_programs(&arguments.own)?),
         What::Presets => presets()?,
         What::Probes => probes()?,
         What::Targets => targets(),
@@ -67,7 +72,19 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     Ok(stdout().write_all(text.as_bytes())?)
 }
 
-fn modules() -> Table {
+/// The modules of the user's own package, then those of the library.
+pub fn known(own: &Own) -> Result<Vec<catalogue::Module>, Failure> {
+    let own = own.packages()?.map(|packages| catalogue::own_modules(&*packages.root.files));
+    Ok(own.into_iter().flatten().chain(catalogue::library()).collect())
+}
+
+/// The programs of the user's own manifest, then those of the library.
+fn all_programs(own: &Own) -> Result<Vec<Program>, Failure> {
+    let own = own.manifest()?.map_or(Vec::new(), |manifest| manifest.programs);
+    Ok(own.into_iter().chain(manifest()?.1.programs).collect())
+}
+
+fn modules(known: Vec<catalogue::Module>) -> Table {
     let thing = |module: catalogue::Module| {
         json!({
             "module": module.path,
@@ -79,15 +96,12 @@ fn modules() -> Table {
     };
     Table {
         shown: &["module", "functions", "structs", "summary"],
-        things: catalogue::library().into_iter().map(thing).collect(),
+        things: known.into_iter().map(thing).collect(),
     }
 }
 
-fn items(kind: Kind, shown: &'static [&'static str]) -> Table {
-    let items = catalogue::library()
-        .into_iter()
-        .flat_map(|module| module.items)
-        .filter(|item| item.kind == kind);
+fn items(known: Vec<catalogue::Module>, kind: Kind, shown: &'static [&'static str]) -> Table {
+    let items = known.into_iter().flat_map(|module| module.items).filter(|item| item.kind == kind);
     let thing = |item: catalogue::Item| {
         json!({
             kind.name(): item.path(),
@@ -101,8 +115,8 @@ fn items(kind: Kind, shown: &'static [&'static str]) -> Table {
     Table { shown, things: items.map(thing).collect() }
 }
 
-fn programs() -> Result<Table, Failure> {
-    let things = manifest()?.1.programs.into_iter().map(|program| {
+fn programs(programs: Vec<Program>) -> Table {
+    let things = programs.into_iter().map(|program| {
         json!({
             "program": program.name,
             "axes": program.space.axes().len(),
@@ -112,15 +126,14 @@ fn programs() -> Result<Table, Failure> {
             "summary": program.doc,
         })
     });
-    Ok(Table { shown: &["program", "axes", "permutations", "targets"], things: things.collect() })
+    Table { shown: &["program", "axes", "permutations", "targets"], things: things.collect() }
 }
 
-fn axes() -> Result<Table, Failure> {
-    let programs = manifest()?.1.programs;
+fn axes(programs: &[Program]) -> Table {
     let things = programs.iter().flat_map(|program| {
         program.space.axes().iter().map(|axis| super::show::axis_json(&program.name, axis))
     });
-    Ok(Table { shown: &["program", "axis", "mode", "default", "values"], things: things.collect() })
+    Table { shown: &["program", "axis", "mode", "default", "values"], things: things.collect() }
 }
 
 fn presets() -> Result<Table, Failure> {

@@ -7,6 +7,7 @@ mod bundle;
 mod catalogue;
 mod check;
 mod compile;
+mod completions;
 mod compose;
 mod cost;
 mod eval;
@@ -17,12 +18,15 @@ mod failure;
 mod features;
 mod generate;
 mod guide;
+mod init;
 mod input;
 mod keys;
+mod lint;
 mod list;
 mod merge;
 mod mutate;
 mod overwrite;
+mod own;
 mod partial;
 mod progress;
 mod render;
@@ -49,14 +53,19 @@ struct Cli {
     /// How diagnostics are printed on standard error.
     #[arg(long, global = true, value_enum, default_value_t)]
     diagnostics: failure::DiagnosticForm,
+    /// When to write colours; `auto` heeds `NO_COLOR`.
+    #[arg(long, global = true, value_enum, default_value_t)]
+    color: failure::Colour,
 }
 
 #[derive(Subcommand)]
 enum Command {
+    Init(init::Arguments),
     List(list::Arguments),
     Show(show::Arguments),
     Compose(compose::Arguments),
     Compile(compile::Arguments),
+    Lint(lint::Arguments),
     Gen(generate::Arguments),
     Merge(merge::Arguments),
     Variants(variants::Arguments),
@@ -72,6 +81,8 @@ enum Command {
     Mutate(mutate::Arguments),
     Export(export::Arguments),
     Explain(explain::Arguments),
+    Completions(completions::Completions),
+    Man(completions::Manual),
 }
 
 impl Command {
@@ -96,16 +107,37 @@ impl Command {
     }
 }
 
+/// The command line with examples and pages in its help.
+fn described() -> clap::Command {
+    guide::in_help(Cli::command()).color(asked_for_colour())
+}
+
+/// What `--color` says, for help and wrong usage, which are told before options are read.
+fn asked_for_colour() -> clap::ColorChoice {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let value = |index: usize| match arguments[index].strip_prefix("--color") {
+        Some("") => arguments.get(index + 1).map(String::as_str),
+        Some(rest) => rest.strip_prefix('='),
+        None => None,
+    };
+    match (0..arguments.len()).find_map(value) {
+        Some("always") => clap::ColorChoice::Always,
+        Some("never") => clap::ColorChoice::Never,
+        _ => clap::ColorChoice::Auto,
+    }
+}
+
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let matches = guide::in_help(Cli::command()).get_matches();
+    let matches = described().get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     // While there is one thread.
     executors::prepare(&cli.command.executors());
     let gpus = cli.command.gpus();
-    match dispatch(cli.command, gpus, cli.diagnostics) {
+    let form = cli.color.of(cli.diagnostics);
+    match dispatch(cli.command, gpus, form) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(cli.diagnostics),
+        Err(failure) => failure.report(form),
     }
 }
 
@@ -115,10 +147,12 @@ fn dispatch(
     form: failure::DiagnosticForm,
 ) -> Result<(), Failure> {
     match command {
+        Command::Init(arguments) => init::run(arguments),
         Command::List(arguments) => list::run(arguments),
         Command::Show(arguments) => show::run(arguments),
         Command::Compose(arguments) => compose::run(arguments, form),
         Command::Compile(arguments) => compile::run(arguments, form),
+        Command::Lint(arguments) => lint::run(arguments, form),
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Merge(arguments) => merge::run(arguments),
         Command::Variants(arguments) => variants::run(arguments, gpus, form),
@@ -129,9 +163,11 @@ fn dispatch(
         Command::Check(arguments) => check::run(arguments),
         Command::Catalogue(arguments) => catalogue::run(arguments),
         Command::Render(arguments) => render::run(arguments, form),
-        Command::Cost(arguments) => cost::run(arguments, gpus),
+        Command::Cost(arguments) => cost::run(arguments, gpus, form),
         Command::Mutate(arguments) => mutate::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Completions(arguments) => completions::completions(&arguments, described()),
+        Command::Man(arguments) => completions::manual(&arguments, described()),
     }
 }

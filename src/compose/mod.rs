@@ -34,6 +34,8 @@ pub enum Keep {
     EntryPoints,
     /// The items of these names (entry points or functions).
     Items(Vec<String>),
+    /// All that the root module declares, entry points or not.
+    Root,
     /// Everything of every module reached: no dead-code removal.
     All,
 }

@@ -13,6 +13,8 @@ pub enum Form {
     /// Excerpts with labels.
     #[default]
     Human,
+    /// The same in colours, for a terminal.
+    Coloured,
     /// `path:line:column: error[code]: message`.
     Short,
     /// One JSON object a line.
@@ -22,12 +24,13 @@ pub enum Form {
 /// Diagnostics printed in one go: what comes after says no more.
 const SHOWN: usize = 100;
 
-/// The diagnostics in one of the forms, without colour, ending in a newline.
+/// The diagnostics in one of the forms, ending in a newline.
 ///
 /// After a hundred of them only their number is told.
 pub fn render(sources: &SourceSet, diagnostics: &[Diagnostic], form: Form) -> String {
     let one = |diagnostic: &Diagnostic| match form {
         Form::Human => human(sources, diagnostic),
+        Form::Coloured => coloured(sources, diagnostic),
         Form::Short => short(sources, diagnostic) + "\n",
         Form::Json => json(sources, diagnostic).to_string() + "\n",
     };
@@ -56,6 +59,20 @@ fn human(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
         &to_codespan(diagnostic, &excerpts),
     ) {
         Ok(()) => text,
+        Err(_) => short(sources, diagnostic) + "\n",
+    }
+}
+
+fn coloured(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
+    let spans: Vec<Span> = diagnostic.labels.iter().map(|label| label.span).collect();
+    let excerpts = Excerpts::new(sources, &spans);
+    let styles = term::Styles::default();
+    let mut ansi = term::termcolor::Ansi::new(Vec::new());
+    let mut writer = term::StylesWriter::new(&mut ansi, &styles);
+    let found = to_codespan(diagnostic, &excerpts);
+    let config = term::Config::default();
+    match term::emit_to_write_style(&mut writer, &config, &excerpts, &found) {
+        Ok(()) => String::from_utf8_lossy(ansi.get_ref()).into_owned(),
         Err(_) => short(sources, diagnostic) + "\n",
     }
 }

@@ -10,7 +10,7 @@ use crate::permute::manifest::File;
 use crate::permute::{Assignment, Program};
 use crate::resolve::{self, Graph, Packages};
 use crate::source::SourceSet;
-use crate::validate::validate;
+use crate::validate::{every, validate};
 
 /// One entry point of one language.
 pub struct Entry {
@@ -37,42 +37,54 @@ pub fn entries(
     point: Option<&Assignment>,
 ) -> Result<Vec<Entry>, Diagnostics> {
     let Some(point) = point else { return Ok(Vec::new()) };
-    let mut entries = Vec::new();
+    let (mut entries, mut errors) = (Vec::new(), Diagnostics::new());
     for (file, language) in roots(program) {
-        let graph = resolve::load(sources, packages, &file.path, language)
-            .map_err(|errors| named_by(errors, file))?;
-        let graph = Arc::new(graph);
-        let here = |errors| of_permutation(graph.traced(errors), program, point);
-        // Errors of the composer bring their chain of imports along.
-        let composed =
-            compose::compose(&graph, &program.space.settings(point), &Options::default())
-                .map_err(|errors| of_permutation(errors, program, point))?;
-        // As it is compiled; the text as its author wrote it tells what is wrong.
-        let validated = validate(&compose::lean(&composed)).or_else(|_| validate(&composed));
-        let points = validated.map_err(here)?.module.entry_points;
-        if points.is_empty() {
-            let message = format!("`{}` has no entry point", file.path);
-            let error =
-                Diagnostic::error(codes::NO_ENTRY_POINT, message).at(file.span, "named here");
-            return Err(of_permutation(vec![error], program, point));
-        }
-        for found in points {
-            let keep = shader::kept(&graph, &Options::default(), &found.name);
-            let options = Options { keep, ..Options::default() };
-            let label = label(&entries, language, &found);
-            let (program, graph) = (program.name.clone(), graph.clone());
-            entries.push(Entry {
-                program,
-                language,
-                name: found.name,
-                label,
-                stage: found.stage,
-                graph,
-                options,
-            });
-        }
+        let found = of_file(sources, packages, program, point, (file, language), &mut entries);
+        errors.extend(found.err().into_iter().flatten());
     }
-    Ok(entries)
+    if errors.is_empty() { Ok(entries) } else { Err(errors) }
+}
+
+/// Adds the entry points of one root file.
+fn of_file(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    program: &Program,
+    point: &Assignment,
+    (file, language): (&File, Language),
+    entries: &mut Vec<Entry>,
+) -> Result<(), Diagnostics> {
+    let graph = resolve::load(sources, packages, &file.path, language)
+        .map_err(|errors| named_by(errors, file))?;
+    let graph = Arc::new(graph);
+    let here = |errors| of_permutation(graph.traced(errors), program, point);
+    // Errors of the composer bring their chain of imports along.
+    let composed = compose::compose(&graph, &program.space.settings(point), &Options::default())
+        .map_err(|errors| of_permutation(errors, program, point))?;
+    // As it is compiled; the text as its author wrote it tells what is wrong.
+    let validated = validate(&compose::lean(&composed)).or_else(|_| every(&composed));
+    let points = validated.map_err(here)?.module.entry_points;
+    if points.is_empty() {
+        let message = format!("`{}` has no entry point", file.path);
+        let error = Diagnostic::error(codes::NO_ENTRY_POINT, message).at(file.span, "named here");
+        return Err(of_permutation(vec![error], program, point));
+    }
+    for found in points {
+        let keep = shader::kept(&graph, &Options::default(), &found.name);
+        let options = Options { keep, ..Options::default() };
+        let label = label(entries, language, &found);
+        let (program, graph) = (program.name.clone(), graph.clone());
+        entries.push(Entry {
+            program,
+            language,
+            name: found.name,
+            label,
+            stage: found.stage,
+            graph,
+            options,
+        });
+    }
+    Ok(())
 }
 
 impl Entry {

@@ -108,9 +108,7 @@ pub fn generate(
     };
     let mut outputs = Outputs::default();
     let mut lints = Lints::default();
-    for program in chosen(manifest, request)? {
-        let points = points(program, request)?;
-        let entries = entry::entries(sources, packages, program, points.first())?;
+    for (program, points, entries) in prepared(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
         let mut targets = if request.targets.is_empty() {
             program.targets.clone()
@@ -147,6 +145,27 @@ pub fn generate(
     generated.summary.cached = tools.cache.map_or(0, Cache::hits);
     generated.summary.seconds = start.elapsed().as_secs_f64();
     Ok(generated)
+}
+
+/// A program with its permutations and its entry points.
+type Prepared<'a> = (&'a Program, Vec<Assignment>, Vec<Entry>);
+
+/// Every program that is asked for: what is wrong with one does not hide what is wrong with another.
+fn prepared<'a>(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &'a Manifest,
+    request: &Request,
+) -> Result<Vec<Prepared<'a>>, Diagnostics> {
+    let (mut programs, mut errors) = (Vec::new(), Diagnostics::new());
+    for program in chosen(manifest, request)? {
+        let points = points(program, request)?;
+        match entry::entries(sources, packages, program, points.first()) {
+            Ok(entries) => programs.push((program, points, entries)),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if errors.is_empty() { Ok(programs) } else { Err(lint::distinct(sources, errors)) }
 }
 
 /// [`generate`] with every unit in the contents, for callers that want the bundle in memory.

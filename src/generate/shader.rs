@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostics;
 use crate::link::{self, Linker, Made};
 use crate::permute::Settings;
 use crate::resolve::Graph;
-use crate::validate::{on_large_stack, validate};
+use crate::validate::{every, on_large_stack, validate};
 
 /// An entry point in every target asked for.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ impl Root<'_> {
         composed: &Composed,
     ) -> Result<Vec<(String, naga::ShaderStage)>, Diagnostics> {
         // As it is compiled; the text as its author wrote it tells what is wrong.
-        let validated = validate(&lean(composed)).or_else(|_| validate(composed))?;
+        let validated = validate(&lean(composed)).or_else(|_| every(composed))?;
         let points = validated.module.entry_points.into_iter();
         Ok(points.map(|point| (point.name, point.stage)).collect())
     }

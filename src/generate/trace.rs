@@ -77,7 +77,7 @@ pub struct Told {
     texts: Vec<String>,
 }
 
-const FORMS: [Form; 3] = [Form::Human, Form::Short, Form::Json];
+const FORMS: [Form; 4] = [Form::Human, Form::Coloured, Form::Short, Form::Json];
 
 impl Told {
     /// The warnings of a run, as each form writes them.

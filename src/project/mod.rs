@@ -5,7 +5,7 @@
 mod place;
 mod wesl_toml;
 
-pub use place::{manifest_above, package_above, root_of};
+pub use place::{manifest_above, package_above, package_at, relative_folder, root_of};
 pub use wesl_toml::declared_name;
 
 use std::path::{Component, Path, PathBuf};

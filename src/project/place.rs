@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use super::{MANIFEST, relative, wesl_toml};
+use super::{MANIFEST, relative, slashed, unreadable, wesl_toml};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::manifest::{File, Program};
 
@@ -22,6 +22,31 @@ pub fn root_of(file: &Path) -> PathBuf {
 pub fn package_above(folder: &Path) -> Option<PathBuf> {
     let root = above(folder).iter().find_map(|ancestor| declared_root(ancestor))?;
     Some(if root.as_os_str().is_empty() { PathBuf::from(".") } else { root })
+}
+
+/// The root of the package that a folder belongs to: one that starts there, or that it is in.
+pub fn package_at(folder: &Path) -> Option<PathBuf> {
+    declared_root(folder).or_else(|| {
+        let below = |root: &PathBuf| relative_folder(folder, root).is_ok();
+        above(folder).iter().find_map(|ancestor| declared_root(ancestor).filter(below))
+    })
+}
+
+/// The path of a folder below a root, empty or with a `/` at its end.
+pub fn relative_folder(folder: &Path, root: &Path) -> Result<String, Diagnostic> {
+    let real = |path: &Path| {
+        let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+        path.canonicalize().map_err(|error| unreadable(path, &error))
+    };
+    let (folder_real, root_real) = (real(folder)?, real(root)?);
+    let outside = || {
+        let message =
+            format!("`{}` is not below the package root `{}`", folder.display(), root.display());
+        Diagnostic::error(codes::OUTSIDE_ROOT, message)
+    };
+    let below = folder_real.strip_prefix(&root_real).map_err(|_| outside())?;
+    let below = slashed(below);
+    Ok(if below.is_empty() { below } else { below + "/" })
 }
 
 /// The nearest manifest in a folder or above it.
@@ -55,7 +80,7 @@ pub fn manifest_of(root: &Path) -> Option<PathBuf> {
 /// A manifest names files from its own folder: their paths from the package's root.
 pub fn below_root(programs: &mut [Program], folder: &Path) -> Result<(), Diagnostics> {
     let root = root_beside(folder);
-    let prefix = tidy(root.strip_prefix(folder).unwrap_or(&root));
+    let prefix = tidy(tidy(&root).strip_prefix(tidy(folder)).unwrap_or(&root));
     let mut errors = Vec::new();
     for file in programs.iter_mut().flat_map(Program::files_mut) {
         match tidy(Path::new(&file.path)).strip_prefix(&prefix) {

@@ -21,6 +21,8 @@ pub struct Library {
     name: String,
     files: Arc<dyn Files>,
     dependencies: Vec<(String, Arc<dyn Files>)>,
+    /// Under which its modules are composed.
+    settings: Settings,
 }
 
 impl Library {
@@ -35,7 +37,12 @@ impl Library {
         files: Arc<dyn Files>,
         dependencies: Vec<(String, Arc<dyn Files>)>,
     ) -> Self {
-        Self { name: name.to_owned(), files, dependencies }
+        Self { name: name.to_owned(), files, dependencies, settings: Settings::default() }
+    }
+
+    /// The same, composed under settings.
+    pub fn with_settings(self, settings: Settings) -> Self {
+        Self { settings, ..self }
     }
 
     /// Name in import paths.
@@ -71,7 +78,7 @@ impl Library {
     pub fn folders(&self) -> Vec<String> {
         let mut folders: Vec<_> = self
             .files
-            .list(&["wesl"])
+            .list(&["wesl", "wgsl"])
             .iter()
             .filter_map(|path| Some(path.split_once(['/', '.'])?.0.to_owned()))
             .collect();
@@ -163,7 +170,7 @@ impl Library {
         let packages = Packages { root: self.package(), dependencies: self.dependencies() };
         let root = format!("{}.wesl", module.replace("::", "/"));
         let graph = resolve::wesl::load(&mut lock(sources), &packages, &root)?;
-        let composed = compose::wesl::compose(&graph, &Settings::default(), &Options::default())?;
+        let composed = compose::wesl::compose(&graph, &self.settings, &Options::default())?;
         let validated = validate::validate(&composed)?;
         Ok((composed, validated))
     }
@@ -196,7 +203,7 @@ impl Library {
             root: Package { name: self.name.clone(), files: Box::new(files) },
             dependencies: self.dependencies(),
         };
-        compose_module(sources, &packages, &root, language, functions)
+        self.compose_module(sources, &packages, &root, language, functions)
             .map(|validated| Arc::new(validated.module))
     }
 
@@ -215,7 +222,19 @@ impl Library {
             root: Package { name: "expression".to_owned(), files: Box::new(files) },
             dependencies,
         };
-        compose_module(sources, &packages, root.0, language, &[function.to_owned()])
+        self.compose_module(sources, &packages, root.0, language, &[function.to_owned()])
+    }
+
+    fn compose_module(
+        &self,
+        sources: &Mutex<SourceSet>,
+        packages: &Packages,
+        root: &str,
+        language: Language,
+        functions: &[String],
+    ) -> Result<Validated, Diagnostics> {
+        let composed = composed(sources, packages, root, language, functions, &self.settings)?;
+        validate::validate(&composed)
     }
 
     fn package(&self) -> Package {
@@ -234,31 +253,21 @@ fn shared(name: &str, files: &Arc<dyn Files>) -> Package {
     }
 }
 
-fn compose_module(
-    sources: &Mutex<SourceSet>,
-    packages: &Packages,
-    root: &str,
-    language: Language,
-    functions: &[String],
-) -> Result<Validated, Diagnostics> {
-    validate::validate(&composed(sources, packages, root, language, functions)?)
-}
-
 fn composed(
     sources: &Mutex<SourceSet>,
     packages: &Packages,
     root: &str,
     language: Language,
     functions: &[String],
+    settings: &Settings,
 ) -> Result<Composed, Diagnostics> {
-    let settings = Settings::default();
     let mut keep = functions.to_vec();
     match language {
         Language::Wesl => {
             let graph = resolve::wesl::load(&mut lock(sources), packages, root)?;
             compose::wesl::compose(
                 &graph,
-                &settings,
+                settings,
                 &Options { keep: Keep::Items(keep), ..Options::default() },
             )
         }
@@ -267,7 +276,7 @@ fn composed(
             keep.push("main".to_owned());
             compose::glsl::compose(
                 &graph,
-                &settings,
+                settings,
                 &Options { keep: Keep::Items(keep), ..Options::default() },
             )
         }

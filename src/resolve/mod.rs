@@ -3,6 +3,8 @@
 pub mod glsl;
 pub mod wesl;
 
+use std::collections::BTreeSet;
+
 use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
 use crate::permute::Settings;
@@ -59,6 +61,15 @@ impl Graph {
             Self::Wesl(graph) => wesl::undeclared(graph, settings),
             Self::Glsl(_) => Vec::new(),
         }
+    }
+
+    /// Names of what the root module declares, each once; none for GLSL, which has them only
+    /// under some settings.
+    pub fn root_items(&self) -> BTreeSet<String> {
+        let Self::Wesl(graph) = self else { return BTreeSet::new() };
+        let items = graph.nodes.first().into_iter().flat_map(|node| &node.module.items);
+        let named = items.filter(|item| item.name != crate::parse::wesl::Name::UNDERSCORE);
+        named.map(|item| graph.names.text(item.name).to_owned()).collect()
     }
 
     /// Whether any condition, macro or constant of the graph may ask for the axis or feature.

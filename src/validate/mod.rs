@@ -3,11 +3,13 @@
 //! naga recurses over what it reads and panics on some inputs, so that every call into it is
 //! bounded first ([`limits`]), runs on a large stack and has its panics caught ([`guard`]).
 
+mod every;
 mod guard;
 mod limits;
 mod report;
 mod uniformity;
 
+pub use every::every;
 pub use guard::{guard, on_large_stack};
 pub use limits::{LIMITS, Limits};
 pub use uniformity::{has_lints, lint};

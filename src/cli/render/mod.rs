@@ -48,7 +48,7 @@ pub struct Arguments {
     all: bool,
     /// Where the picture goes [default: the name of the preset, or `render.png`]; with `--all`, a
     /// folder [default: `gallery`].
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Pixels across and down.
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]

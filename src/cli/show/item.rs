@@ -20,7 +20,7 @@ pub fn module(module: &Module) -> Shown {
 }
 
 fn item_text(item: &Item) -> String {
-    let mut text = format!("{LIBRARY}::{}\n", item.path());
+    let mut text = format!("{}\n", item.full_path());
     for paragraph in item.paragraphs() {
         text += &format!("\n{}", wrapped(&paragraph, 2));
     }
@@ -70,7 +70,11 @@ fn item_json(item: &Item) -> Value {
 }
 
 fn module_text(module: &Module) -> String {
-    let mut text = format!("{LIBRARY}::{}\n", module.path);
+    let path = match module.package.as_str() {
+        LIBRARY => format!("{LIBRARY}::{}", module.path),
+        _ => module.path.clone(),
+    };
+    let mut text = format!("{path}\n");
     for paragraph in &module.doc {
         text += &format!("\n{}", wrapped(paragraph, 2));
     }
@@ -79,11 +83,7 @@ fn module_text(module: &Module) -> String {
         text += &format!("\n{}{}", wrapped_code(signature), wrapped(item.summary(), 6));
     }
     if let Some(item) = module.items.first() {
-        text += &format!(
-            "\nWESL\n  import {LIBRARY}::{}::{{..}};\n\nGLSL\n  {}\n",
-            module.path,
-            item.include()
-        );
+        text += &format!("\nWESL\n  import {path}::{{..}};\n\nGLSL\n  {}\n", item.include());
     }
     text
 }

@@ -3,6 +3,7 @@
 mod item;
 mod preset;
 mod program;
+mod search;
 
 pub use preset::{preset_json, probe_json};
 pub use program::axis_json;
@@ -13,6 +14,8 @@ use clap::Args;
 use serde_json::Value;
 
 use super::failure::Failure;
+use super::list::known;
+use super::own::Own;
 use crate::catalogue::preset::Preset;
 use crate::catalogue::probe::Probe;
 use crate::catalogue::{self, Item, Module};
@@ -20,15 +23,18 @@ use crate::diagnostic::nearest;
 use crate::permute::Manifest;
 use crate::project::{self, LIBRARY};
 
-/// Show a function's documentation, signatures, source and error model.
+/// Show a function's documentation, signatures, source and error model, or search for a word.
 #[derive(Args)]
 pub struct Arguments {
     /// An item (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a program
-    /// (`forward`), an axis (`forward.shadow`), a preset (`hpg_5_shadow`) or a light probe.
+    /// (`forward`), an axis (`forward.shadow`), a preset (`hpg_5_shadow`) or a light probe; your own
+    /// items are below `package`. Any other word is searched for.
     path: String,
     /// As a JSON object.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    own: Own,
 }
 
 /// One thing, in both forms.
@@ -40,7 +46,8 @@ struct Shown {
 /// What there is to show.
 struct Library {
     modules: Vec<Module>,
-    manifest: Manifest,
+    /// The user's own, if there is one, then the library's.
+    manifests: Vec<Manifest>,
     presets: Vec<Preset>,
     probes: Vec<Probe>,
 }
@@ -51,18 +58,21 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         .strip_prefix(LIBRARY)
         .and_then(|rest| rest.strip_prefix("::"))
         .unwrap_or(&arguments.path);
-    let library = library()?;
-    let shown = find(&library, path).ok_or_else(|| missing(path, &library))?;
+    let library = library(&arguments.own)?;
+    let shown = find(&library, path)
+        .or_else(|| search::search(&library, path))
+        .ok_or_else(|| missing(path, &library))?;
     let text = if arguments.json { format!("{:#}\n", shown.json) } else { shown.text };
     Ok(stdout().write_all(text.as_bytes())?)
 }
 
-fn library() -> Result<Library, Failure> {
+fn library(own: &Own) -> Result<Library, Failure> {
     let (mut sources, manifest) = project::library_manifest()
         .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     match catalogue::examples(&mut sources, &manifest) {
         Ok((presets, probes)) => {
-            Ok(Library { modules: catalogue::library(), manifest, presets, probes })
+            let manifests = own.manifest()?.into_iter().chain([manifest]).collect();
+            Ok(Library { modules: known(own)?, manifests, presets, probes })
         }
         Err(problems) => Err(Failure::Input(sources, problems)),
     }
@@ -78,7 +88,9 @@ fn find(library: &Library, path: &str) -> Option<Shown> {
             .map(item::item)
     };
     let module = || library.modules.iter().find(|module| module.path == path).map(item::module);
-    let program = || library.manifest.program(path).map(program::program);
+    let program = || {
+        library.manifests.iter().find_map(|manifest| manifest.program(path)).map(program::program)
+    };
     let preset = || library.presets.iter().find(|preset| preset.name == path).map(preset::preset);
     let probe = || library.probes.iter().find(|probe| probe.name == path).map(preset::probe);
     item()
@@ -94,9 +106,9 @@ fn axis(library: &Library, path: &str) -> Option<Shown> {
     let (wanted, name) =
         path.split_once('.').map_or((None, path), |(program, name)| (Some(program), name));
     let programs = library
-        .manifest
-        .programs
+        .manifests
         .iter()
+        .flat_map(|manifest| &manifest.programs)
         .filter(|program| wanted.is_none_or(|wanted| wanted == program.name));
     let mut found = programs.filter_map(|program| Some((program, program.space.axis(name)?)));
     let (program, axis) = found.next()?;
@@ -107,18 +119,19 @@ fn missing(path: &str, library: &Library) -> Failure {
     let items: Vec<String> =
         library.modules.iter().flat_map(|module| module.items.iter().map(Item::path)).collect();
     let axes: Vec<String> = library
-        .manifest
-        .programs
+        .manifests
         .iter()
+        .flat_map(|manifest| &manifest.programs)
         .flat_map(|program| {
             program.space.axes().iter().map(|axis| format!("{}.{}", program.name, axis.name))
         })
         .collect();
+    let programs = library.manifests.iter().flat_map(|manifest| &manifest.programs);
     let others = library
         .modules
         .iter()
         .map(|module| module.path.as_str())
-        .chain(library.manifest.programs.iter().map(|program| program.name.as_str()));
+        .chain(programs.map(|program| program.name.as_str()));
     let others = others
         .chain(library.presets.iter().map(|preset| preset.name.as_str()))
         .chain(library.probes.iter().map(|probe| probe.name.as_str()));

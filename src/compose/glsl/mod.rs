@@ -64,7 +64,7 @@ fn stage(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
     let ending = name.rsplit('.').next().unwrap_or_default();
     match STAGES.iter().find(|(known, _)| *known == ending) {
         Some((_, stage)) => Ok(*stage),
-        None if matches!(keep, Keep::Items(_)) => Ok(Stage::Fragment),
+        None if matches!(keep, Keep::Items(_) | Keep::Root) => Ok(Stage::Fragment),
         None => Err(vec![
             Diagnostic::error(
                 codes::UNKNOWN_STAGE,
@@ -100,7 +100,7 @@ fn write<'a>(
         written.items.push(start..writer.text.len());
     }
     let main = crate::parse::glsl::known::MAIN;
-    if matches!(keep, Keep::Items(_))
+    if matches!(keep, Keep::Items(_) | Keep::Root)
         && !items.names.iter().any(|(name, item)| *name == main && kept[*item as usize])
     {
         let start = writer.text.len();

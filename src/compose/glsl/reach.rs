@@ -23,7 +23,7 @@ pub fn reach(
     always.for_each(|(index, _)| search.keep(index as u32));
     match keep {
         Keep::Items(names) => start_at(&mut search, items, spellings, names)?,
-        _ if search.declares(known::MAIN) => search.name(known::MAIN),
+        Keep::EntryPoints if search.declares(known::MAIN) => search.name(known::MAIN),
         // A module without an entry point is wanted for all that it declares itself.
         _ => (0..items.list.len())
             .filter(|index| tokens[items.list[*index].tokens.start].module == 0)

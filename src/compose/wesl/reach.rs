@@ -109,6 +109,7 @@ pub fn reach(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Options) ->
     match &options.keep {
         Keep::EntryPoints => walk.entry_points(),
         Keep::Items(names) => names.iter().for_each(|name| walk.named(name)),
+        Keep::Root => walk.everything(),
         Keep::All => {}
     }
     while let Some((node, item)) = walk.queue.pop() {
@@ -133,9 +134,13 @@ impl Walk<'_, '_, '_> {
             any |= self.item_if(0, index as u32);
         }
         if !any {
-            for index in 0..items.len() as u32 {
-                self.item_if(0, index);
-            }
+            self.everything();
+        }
+    }
+
+    fn everything(&mut self) {
+        for index in 0..self.graph.nodes[0].module.items.len() as u32 {
+            self.item_if(0, index);
         }
     }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 use naga::{ArraySize, Handle, Module, ScalarKind, Type, TypeInner};
 
 use super::FUNCTION;
+use crate::project::LIBRARY;
 use crate::proof::library::Library;
 
 /// A text made from an expression.
@@ -48,7 +49,7 @@ impl Rewritten {
 
 /// `fn lamplight_eval() { let value = (...); }`, paths into the library made absolute.
 pub fn wesl(expression: &str, library: &Library) -> Rewritten {
-    let folders = library.folders();
+    let homes = Homes::new(library);
     let mut made = Rewritten {
         text: format!("fn {FUNCTION}() {{ let value = ("),
         pieces: Vec::new(),
@@ -61,13 +62,43 @@ pub fn wesl(expression: &str, library: &Library) -> Rewritten {
             tokens.get(index + by).is_some_and(|range| &expression[range.clone()] == wanted)
         };
         let after_path = index > 0 && &expression[tokens[index - 1].clone()] == "::";
-        if !after_path && follows(1, "::") && folders.iter().any(|folder| folder == text) {
-            made.text += &format!("{}::", library.name());
+        match homes.of(text).filter(|_| !after_path && follows(1, "::")) {
+            Some((package, true)) => made.push(package, range.clone()),
+            Some((package, false)) => {
+                made.text += &format!("{package}::");
+                made.push(text, range.clone());
+            }
+            None => made.push(text, range.clone()),
         }
-        made.push(text, range.clone());
     }
     made.text += "\n); }\n";
     made
+}
+
+/// Which package the first name of a path means.
+struct Homes<'a> {
+    library: &'a Library,
+    own: Vec<String>,
+    shipped: Vec<String>,
+}
+
+impl<'a> Homes<'a> {
+    fn new(library: &'a Library) -> Self {
+        let shipped =
+            if library.has_references() { Vec::new() } else { Library::embedded().folders() };
+        Self { library, own: library.folders(), shipped }
+    }
+
+    /// The package, and whether the name is the package's own.
+    fn of(&self, first: &str) -> Option<(&str, bool)> {
+        let is = |folders: &[String]| folders.iter().any(|folder| folder == first);
+        match first {
+            "package" => Some((self.library.name(), true)),
+            _ if is(&self.own) => Some((self.library.name(), false)),
+            _ if is(&self.shipped) => Some((LIBRARY, false)),
+            _ => None,
+        }
+    }
 }
 
 /// The same in GLSL: `T lamplight_eval() { return (...); }` after the includes it needs.
@@ -75,9 +106,10 @@ pub fn glsl(expression: &str, library: &Library, module: &Module, ty: Handle<Typ
     let tokens = tokens(expression);
     let mut pieces = Vec::new();
     let mut includes = std::collections::BTreeSet::new();
+    let homes = Homes::new(library);
     let mut at = 0;
     while at < tokens.len() {
-        let (text, used) = translate(expression, &tokens[at..], library, &mut includes);
+        let (text, used) = translate(expression, &tokens[at..], &homes, &mut includes);
         pieces.push((text, tokens[at].start..tokens[at + used - 1].end));
         at += used;
     }
@@ -87,7 +119,7 @@ pub fn glsl(expression: &str, library: &Library, module: &Module, ty: Handle<Typ
         length: expression.len(),
     };
     for module in includes {
-        made.text += &format!("#include <{}/{module}.glsl>\n", library.name());
+        made.text += &format!("#include <{module}.glsl>\n");
     }
     made.text += &format!("{} {FUNCTION}() {{ return (", type_name(module, ty));
     for (text, source) in pieces {
@@ -101,7 +133,7 @@ pub fn glsl(expression: &str, library: &Library, module: &Module, ty: Handle<Typ
 fn translate(
     expression: &str,
     tokens: &[Range<usize>],
-    library: &Library,
+    homes: &Homes<'_>,
     includes: &mut std::collections::BTreeSet<String>,
 ) -> (String, usize) {
     let text = |index: usize| tokens.get(index).map_or("", |range| &expression[range.clone()]);
@@ -110,8 +142,12 @@ fn translate(
         while text(used) == "::" && tokens.len() > used + 1 {
             used += 2;
         }
-        let path: Vec<&str> =
-            (0..used).step_by(2).map(text).filter(|part| *part != library.name()).collect();
+        let mut path: Vec<&str> = (0..used).step_by(2).map(text).collect();
+        match homes.of(path[0]) {
+            Some((package, true)) => path[0] = package,
+            Some((package, false)) => path.insert(0, package),
+            None => {}
+        }
         if let Some((name, module)) = path.split_last() {
             includes.insert(module.join("/"));
             return ((*name).to_owned(), used);

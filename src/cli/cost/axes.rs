@@ -1,0 +1,54 @@
+//! What values of axes cost: `lamplight variants --cost`.
+
+use super::super::failure::Failure;
+use super::super::text;
+use super::measured;
+use super::subjects::permutations_of;
+use crate::bundle::{Language, Target};
+use crate::cost::device::Device;
+use crate::cost::permutations::{self, Change, Spread};
+use crate::generate::Request;
+use crate::permute::Manifest;
+use crate::resolve::Packages;
+use crate::source::SourceSet;
+
+/// What each value of each axis of a program changes, over all its permutations.
+pub fn changes(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &Manifest,
+    program: &str,
+    devices: &[Device],
+) -> Result<Vec<Change>, Failure> {
+    let request = Request {
+        program: Some(program.to_owned()),
+        targets: vec![Target::SPIRV],
+        ..Request::default()
+    };
+    let (axes, subjects) = permutations_of(sources, packages, manifest, &request, Language::Wesl)?;
+    Ok(permutations::changes(&axes, &measured(devices, &subjects)?))
+}
+
+/// The table of changes: medians, and the range of the instructions.
+pub fn changes_table(changes: &[Change]) -> String {
+    let columns =
+        ["gpu", "stage", "pairs", "instr", "range", "VGPRs", "waves", "inv.thr.", "axis and value"];
+    let row = |change: &Change| {
+        let of = |key: &str| change.figures.get(key).copied().unwrap_or_default();
+        let signed = |key: &str| format!("{:+}", of(key).median);
+        let Spread { least, most, .. } = of("instructions");
+        let waves = of("subgroups_per_simd");
+        vec![
+            change.gpu.to_owned(),
+            format!("{:?}", change.stage).to_lowercase(),
+            change.pairs.to_string(),
+            signed("instructions"),
+            format!("{least:+} to {most:+}"),
+            signed("vgprs"),
+            format!("{} to {}", waves.before, waves.after),
+            signed("inverse_throughput"),
+            format!("{}={}", change.axis, change.value),
+        ]
+    };
+    text::table(&columns, &changes.iter().map(row).collect::<Vec<_>>())
+}

@@ -1,0 +1,212 @@
+//! `lamplight cost`: what functions and permutations cost on GPUs that are not there.
+
+mod axes;
+mod subjects;
+
+pub use axes::{changes, changes_table};
+
+use std::io::{Write, stdout};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::json;
+
+use super::failure::{DiagnosticForm, Failure};
+use super::input::Input;
+use super::overwrite::Overwrite;
+use super::progress::Bar;
+use super::text;
+use crate::bundle::Stage;
+use crate::cost::baseline::{Baseline, Rise};
+use crate::cost::device::Device;
+use crate::cost::gpu::{self, GPUS, Gpu};
+use crate::cost::statistics::FIGURES;
+use crate::cost::{self, Cost, Subject};
+use crate::diagnostic::nearest;
+use crate::generate::Progress;
+use crate::input::read;
+use crate::output;
+
+/// Bytes of a file of recorded costs.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// Tell what functions, permutations and shaders cost on GPUs that are not there.
+///
+/// Mesa compiles for AMD GPUs that need not be there. A function is put into a fragment stage whose
+/// inputs vary and whose result is used; the figures of the same stage without the function are
+/// subtracted.
+#[derive(Args)]
+pub struct Arguments {
+    /// A function (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a folder (`brdf`),
+    /// a permutation's key (`lights=spot,shadow=vsm`), or the file of a shader of your own
+    /// [default: every function].
+    #[arg(value_name = "PATH|KEY|FILE")]
+    subjects: Vec<String>,
+    #[command(flatten)]
+    pub gpus: Gpus,
+    #[command(flatten)]
+    input: Input,
+    /// The manifest of a key's program [default: that of the library].
+    #[arg(long, value_name = "FILE")]
+    manifest: Option<PathBuf>,
+    /// The program of a key [default: the manifest's only one, or `forward`].
+    #[arg(long, value_name = "P")]
+    program: Option<String>,
+    /// Compare with recorded figures: what rose by more than `--rise` fails (exit code 3). Where
+    /// there is no such file, the figures are recorded.
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// Record the figures in the file of `--baseline`.
+    #[arg(long, requires = "baseline")]
+    record: bool,
+    /// The share by which a figure may rise, such as 0.02.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.02, value_parser = share)]
+    rise: f64,
+    /// Figures of whole stages, instead of what the functions add to them.
+    #[arg(long)]
+    whole: bool,
+    /// As a JSON array of objects with both.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    overwrite: Overwrite,
+}
+
+fn gpu_name(name: &str) -> Result<&'static Gpu, String> {
+    gpu::find(name).ok_or_else(|| {
+        let names: Vec<&str> = GPUS.iter().map(|gpu| gpu.name).collect();
+        let hint = nearest(name, names.iter().copied())
+            .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        format!("no such GPU{hint} (GPUs: {})", names.join(", "))
+    })
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse::<f64>().ok().filter(|share| share.is_finite() && *share >= 0.0);
+    share.ok_or_else(|| "expected a number from 0, such as 0.02".to_owned())
+}
+
+/// GPUs as an option names them.
+#[derive(Args)]
+pub struct Gpus {
+    /// GPUs: tahiti, fiji, polaris10, vega10, raven, navi10, navi21, navi24, vangogh, gfx1100
+    /// [default: one of each generation].
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = gpu_name)]
+    gpu: Vec<&'static Gpu>,
+}
+
+/// GPUs to compile for, or why there are none.
+pub type Opened = Result<Vec<Device>, String>;
+
+impl Gpus {
+    /// The GPUs, opened. To be called while the process has one thread.
+    pub fn open(&self) -> Opened {
+        let named = self.gpu.iter().copied();
+        let mut wanted: Vec<&Gpu> =
+            if self.gpu.is_empty() { gpu::defaults().collect() } else { named.collect() };
+        wanted.dedup();
+        wanted.into_iter().map(Device::open).collect()
+    }
+}
+
+pub fn run(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> Result<(), Failure> {
+    let recorded = arguments.baseline.as_deref().filter(|_| !arguments.record);
+    let recorded = recorded.map(recorded_in).transpose()?.flatten();
+    let subjects = subjects::subjects(&arguments, form)?;
+    let devices = opened.map_err(Failure::environment)?;
+    let costs = measured(&devices, &subjects)?;
+    let driver = devices.first().map_or("", |device| &device.driver);
+    print(&arguments, driver, &costs)?;
+    let Some(path) = &arguments.baseline else { return Ok(()) };
+    match recorded {
+        Some(recorded) => compare(&recorded, driver, &costs, arguments.rise),
+        None => {
+            let text = Baseline::of(driver, &costs).text();
+            let replace = arguments.overwrite.replace();
+            output::write_file(path, text.as_bytes(), Baseline::is_at, replace)?;
+            Ok(())
+        }
+    }
+}
+
+fn measured(devices: &[Device], subjects: &[Subject]) -> Result<Vec<Cost>, Failure> {
+    let bar = Bar::new();
+    let progress = |done, total| bar.show(Progress { stage: "compiling".to_owned(), done, total });
+    let costs = cost::measure(devices, subjects, &progress);
+    bar.clear();
+    costs.map_err(Failure::input)
+}
+
+/// The figures of a file; `None` where there is none.
+fn recorded_in(path: &Path) -> Result<Option<Baseline>, Failure> {
+    if !path.exists() {
+        return Ok(None);
+    }
+    let told = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+    let bytes = read(path, MOST_BYTES).map_err(|error| told(error.to_string()))?;
+    Baseline::parse(&bytes)
+        .map(Some)
+        .map_err(|reason| told(format!("these are no recorded costs: {reason}")))
+}
+
+fn compare(recorded: &Baseline, driver: &str, costs: &[Cost], share: f64) -> Result<(), Failure> {
+    if recorded.driver != driver {
+        return Err(Failure::environment(format!(
+            "the costs were recorded with `{}`, and this is `{driver}`: figures of two versions of \
+             the driver are not comparable; record them again with `--record`",
+            recorded.driver
+        )));
+    }
+    let rises = recorded.rises(costs, share);
+    if rises.is_empty() {
+        return Ok(());
+    }
+    let line = |rise: &Rise| {
+        let Rise { key, figure, before, after } = rise;
+        format!("  {key}: {figure} {before} -> {after}")
+    };
+    let lines: Vec<String> = rises.iter().map(line).collect();
+    Err(Failure::check(format!(
+        "{} figures are worse by more than {} %:\n{}",
+        lines.len(),
+        share * 100.0,
+        lines.join("\n")
+    )))
+}
+
+fn print(arguments: &Arguments, driver: &str, costs: &[Cost]) -> Result<(), Failure> {
+    if arguments.json {
+        let objects: Vec<_> = costs.iter().map(|cost| object(driver, cost)).collect();
+        return Ok(writeln!(stdout(), "{:#}", json!(objects))?);
+    }
+    let several_stages = costs.iter().any(|cost| cost.stage != Stage::Fragment);
+    let mut columns = vec!["gpu"];
+    columns.extend(several_stages.then_some("stage"));
+    columns.extend(FIGURES.iter().map(|figure| figure.heading));
+    columns.push("of");
+    let rows: Vec<Vec<String>> = costs
+        .iter()
+        .map(|cost| {
+            let figures = if arguments.whole { &cost.stage_figures } else { cost.figures() };
+            let mut row = vec![cost.gpu.name.to_owned()];
+            row.extend(several_stages.then(|| format!("{:?}", cost.stage).to_lowercase()));
+            row.extend(FIGURES.iter().map(|figure| figure.of(figures).to_string()));
+            row.push(cost.name.clone());
+            row
+        })
+        .collect();
+    writeln!(stdout(), "{driver}\n")?;
+    Ok(stdout().write_all(text::table(&columns, &rows).as_bytes())?)
+}
+
+fn object(driver: &str, cost: &Cost) -> serde_json::Value {
+    json!({
+        "name": cost.name,
+        "gpu": cost.gpu.name,
+        "generation": cost.gpu.generation,
+        "driver": driver,
+        "stage": cost.stage,
+        "figures": cost.stage_figures,
+        "net": cost.net,
+    })
+}

@@ -1,0 +1,189 @@
+//! What is measured: functions of the library, permutations, shaders of files.
+
+use std::path::Path;
+use std::sync::Mutex;
+
+use super::super::failure::{DiagnosticForm, Failure};
+use super::super::input::{Context, Ready};
+use super::super::progress::Bar;
+use super::super::variants;
+use super::Arguments;
+use crate::bundle::{Axis, Language, Stage, Target};
+use crate::catalogue::{self, Kind};
+use crate::cost::pipeline::Known;
+use crate::cost::{self, Subject, permutations};
+use crate::diagnostic::nearest;
+use crate::generate::{Memory, Request, Root, Tools, generate};
+use crate::permute::{Manifest, Quoted};
+use crate::proof::library::Library;
+use crate::resolve::Packages;
+use crate::source::SourceSet;
+
+/// How names of shaders' files end.
+const EXTENSIONS: [&str; 6] = ["wesl", "wgsl", "glsl", "vert", "frag", "comp"];
+
+/// What was asked for, in order.
+pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subject>, Failure> {
+    let mut subjects = Vec::new();
+    let (files, named): (Vec<&String>, Vec<&String>) =
+        arguments.subjects.iter().partition(|name| is_file(name));
+    let (keys, paths): (Vec<&String>, Vec<&String>) =
+        named.into_iter().partition(|name| name.contains(['=', ',']));
+    if arguments.subjects.is_empty() || !paths.is_empty() {
+        functions(&paths, language(arguments), &mut subjects)?;
+    }
+    for key in keys {
+        subjects.push(permutation(arguments, key)?);
+    }
+    for file in files {
+        subjects.extend(shaders(arguments, Path::new(file), form)?);
+    }
+    Ok(subjects)
+}
+
+/// Whether a name is that of a shader's file: it ends as one does.
+fn is_file(name: &str) -> bool {
+    let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
+    extension.is_some_and(|extension| EXTENSIONS.contains(&extension))
+}
+
+fn language(arguments: &Arguments) -> Language {
+    arguments.input.chosen_language().unwrap_or(Language::Wesl)
+}
+
+/// The subjects of a file: its vertex and its fragment stage together, where it has one of each,
+/// else each entry point by itself.
+fn shaders(
+    arguments: &Arguments,
+    file: &Path,
+    form: DiagnosticForm,
+) -> Result<Vec<Subject>, Failure> {
+    let Ready { sources, composed, context } =
+        arguments.input.compose(file, SourceSet::default(), form)?;
+    let Context { graph, settings, options, .. } = &context;
+    let root = Root { graph, settings, options };
+    let shaders = root
+        .entries(&composed)
+        .and_then(|entries| root.compile(&entries, &[Target::SPIRV]))
+        .map_err(|errors| Failure::Input(sources, context.explain(errors)))?;
+    let known = shaders.iter().filter_map(|shader| {
+        let artifact = shader.made.unit.targets.get(Target::SPIRV.name())?;
+        let reflection = shader.made.unit.reflection.as_ref().clone();
+        let known = Known::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
+        Some((shader.entry.as_str(), known))
+    });
+    let known: Vec<(&str, Known)> = known.collect();
+    let name = file.display();
+    let of = |stage| known.iter().filter(move |(_, known)| known.words.stage == stage).count();
+    let is_pair = (of(Stage::Vertex), of(Stage::Fragment), known.len()) == (1, 1, 2);
+    if is_pair {
+        let pair = known.into_iter().map(|(_, known)| known).collect();
+        return Ok(cost::stages(&name.to_string(), pair).into_iter().collect());
+    }
+    let each = known
+        .into_iter()
+        .filter_map(|(entry, known)| cost::stages(&format!("{name} {entry}"), vec![known]));
+    Ok(each.collect())
+}
+
+/// The subjects of functions, modules and folders; of all functions where none is named.
+fn functions(
+    paths: &[&String],
+    language: Language,
+    subjects: &mut Vec<Subject>,
+) -> Result<(), Failure> {
+    let library = Library::embedded();
+    let modules = catalogue::library();
+    let items = || modules.iter().flat_map(|module| &module.items);
+    let functions: Vec<_> = items().filter(|item| item.kind == Kind::Function).collect();
+    let is_below = |path: &str, named: &str| {
+        path == named || path.strip_prefix(named).is_some_and(|rest| rest.starts_with("::"))
+    };
+    for named in paths {
+        let named = named.strip_prefix("lamplight::").unwrap_or(named);
+        if !functions.iter().any(|item| is_below(&item.path(), named)) {
+            let known: Vec<String> = functions.iter().map(|item| item.path()).collect();
+            let hint = nearest(named, known.iter().map(String::as_str))
+                .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            return Err(Failure::input(format!("the library has no `{named}`{hint}")));
+        }
+    }
+    let is_wanted = |path: &str| {
+        let named = |named: &&String| is_below(path, named.trim_start_matches("lamplight::"));
+        paths.is_empty() || paths.iter().any(named)
+    };
+    let sources = Mutex::new(SourceSet::default());
+    for item in functions.iter().filter(|item| is_wanted(&item.path())) {
+        let path = item.path();
+        let Some((module, name)) = path.rsplit_once("::") else { continue };
+        let of_sources = |diagnostics| {
+            Failure::Input(
+                sources.lock().map(|sources| sources.clone()).unwrap_or_default(),
+                diagnostics,
+            )
+        };
+        let composed =
+            library.module(&sources, module, language, &[name.to_owned()]).map_err(of_sources)?;
+        let subject = cost::function(&path, &composed, name);
+        subjects.push(subject.map_err(|diagnostic| of_sources(vec![diagnostic]))?);
+    }
+    Ok(())
+}
+
+/// The subject of one permutation: its stages in SPIR-V, as a bundle has them.
+fn permutation(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
+    let mut sources = SourceSet::default();
+    let (manifest, packages) = variants::open(arguments.manifest.as_deref(), &mut sources)
+        .map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+    let program = program(arguments, &manifest)?;
+    let id = sources.add("KEY", key);
+    let request = Request {
+        program: Some(program),
+        only: Some(Quoted::whole(&sources, id)),
+        targets: vec![Target::SPIRV],
+        shard: None,
+    };
+    let subjects =
+        permutations_of(&mut sources, &packages, &manifest, &request, language(arguments));
+    subjects?.1.pop().ok_or_else(|| {
+        Failure::input(format!("the permutation `{key}` has no stages in this language"))
+    })
+}
+
+/// The permutations that a request chooses of a program, with the program's axes.
+pub fn permutations_of(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &Manifest,
+    request: &Request,
+    language: Language,
+) -> Result<(Vec<Axis>, Vec<Subject>), Failure> {
+    let (memory, bar) = (Memory::default(), Bar::new());
+    let progress = |progress| bar.show(progress);
+    let tools = Tools { sink: &memory, cache: None, progress: &progress };
+    let generated = generate(sources, packages, manifest, request, &tools);
+    bar.clear();
+    let generated =
+        generated.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+    let mut contents = generated.contents;
+    memory.fill(&mut contents);
+    let program = contents.programs.into_values().next();
+    Ok(program.map_or_else(Default::default, |program| {
+        let subjects = permutations::subjects(&program, language);
+        (program.axes, subjects)
+    }))
+}
+
+/// The program that a key is of.
+fn program(arguments: &Arguments, manifest: &Manifest) -> Result<String, Failure> {
+    if let Some(program) = &arguments.program {
+        return Ok(program.clone());
+    }
+    match manifest.programs.as_slice() {
+        [only] => Ok(only.name.clone()),
+        programs if programs.iter().any(|program| program.name == "forward") => {
+            Ok("forward".to_owned())
+        }
+        _ => Err(Failure::usage("the manifest has several programs: choose one with `--program`")),
+    }
+}

@@ -1,0 +1,122 @@
+//! `lamplight lint`: a whole package, reached or not.
+
+use std::io::{Write, stdout};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::{DiagnosticForm, Failure, warn};
+use super::features;
+use super::input::{self, feature};
+use crate::diagnostic::{Diagnostics, Severity};
+use crate::lint::{self, EXTENSIONS, Request};
+use crate::permute::{Setting, Settings};
+use crate::project;
+use crate::source::SourceSet;
+
+/// Look at every module of a package, whether anything reaches it or not.
+#[derive(Args)]
+pub struct Arguments {
+    /// Modules, or folders with all modules below [default: the package here].
+    path: Vec<PathBuf>,
+    /// Choose the value of a setting that no manifest declares.
+    #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = input::axis_value)]
+    set: Vec<(String, Setting)>,
+    /// Turn a feature on, or off with `=false`.
+    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = feature)]
+    feature: Vec<(String, Setting)>,
+    #[command(flatten)]
+    features: features::Arguments,
+}
+
+pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    let (mut modules, mut errors, mut warnings) = (0, 0, 0);
+    let settings = Settings {
+        values: arguments.set.iter().chain(&arguments.feature).cloned().collect(),
+        undeclared: arguments.features.undeclared(None),
+        ..Settings::default()
+    };
+    let mut last = SourceSet::default();
+    for (root, paths) in packages(&arguments.path)? {
+        let mut sources = SourceSet::default();
+        let found = match one(&root, &paths, &settings, &mut sources) {
+            Ok(found) => found,
+            Err(diagnostics) => lint::Found { diagnostics, modules: 0 },
+        };
+        warn(&sources, &found.diagnostics, form);
+        let is_error = |severity| severity == Severity::Error;
+        let count = found.diagnostics.iter().filter(|found| is_error(found.severity)).count();
+        errors += count;
+        warnings += found.diagnostics.len() - count;
+        modules += found.modules;
+        last = sources;
+    }
+    let counted = [(modules, "module"), (errors, "error"), (warnings, "warning")];
+    writeln!(stdout(), "{}", counted.map(|(count, what)| plural(count, what)).join(", "))?;
+    // What is wrong has been told.
+    if errors == 0 { Ok(()) } else { Err(Failure::Input(last, Vec::new())) }
+}
+
+/// `1 module`, `2 modules`.
+pub fn plural(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Roots of packages, each with what was asked for below it.
+fn packages(asked: &[PathBuf]) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, Failure> {
+    let mut found: Vec<(PathBuf, Vec<PathBuf>)> = Vec::new();
+    if asked.is_empty() {
+        let here = project::package_above(Path::new(""));
+        let none = "there is no package here: name its folder, or modules";
+        let root = here.ok_or_else(|| Failure::usage(none))?;
+        return Ok(vec![(root.clone(), vec![root])]);
+    }
+    for path in asked {
+        if !path.exists() {
+            let message = format!("there is no file or folder `{}`", path.display());
+            return Err(Failure::input(message));
+        }
+        let root = if path.is_dir() {
+            project::package_at(path).unwrap_or_else(|| path.clone())
+        } else {
+            project::root_of(path)
+        };
+        // The root of a package may be below the folder that was named.
+        let path =
+            if path.is_dir() && root.starts_with(path) { root.clone() } else { path.clone() };
+        match found.iter_mut().find(|(known, _)| *known == root) {
+            Some((_, paths)) => paths.push(path),
+            None => found.push((root, vec![path])),
+        }
+    }
+    Ok(found)
+}
+
+fn one(
+    root: &Path,
+    asked: &[PathBuf],
+    settings: &Settings,
+    sources: &mut SourceSet,
+) -> Result<lint::Found, Diagnostics> {
+    let packages = project::packages(root, sources)?;
+    let manifest = project::manifest(root, sources)?;
+    let all = packages.root.files.list(EXTENSIONS);
+    let mut paths: Vec<String> = Vec::new();
+    for path in asked {
+        if path.is_dir() {
+            let below = project::relative_folder(path, root).map_err(|error| vec![error])?;
+            paths.extend(all.iter().filter(|file| file.starts_with(&below)).cloned());
+        } else {
+            paths.push(project::relative(path, root).map_err(|error| vec![error])?);
+        }
+    }
+    paths.sort();
+    paths.dedup();
+    let warnings =
+        manifest.iter().flat_map(|manifest| manifest.warnings.clone()).collect::<Vec<_>>();
+    let request =
+        Request { packages: &packages, manifest: manifest.as_ref(), settings, paths: &paths };
+    let mut found = lint::lint(sources, &request);
+    found.diagnostics.splice(0..0, warnings);
+    Ok(found)
+}

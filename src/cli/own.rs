@@ -1,0 +1,59 @@
+//! The user's own package, for commands that are about the library and about it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+
+use super::failure::Failure;
+use crate::permute::Manifest;
+use crate::project::{self, LIBRARY};
+use crate::proof::library::Library;
+use crate::resolve::Packages;
+use crate::source::SourceSet;
+
+/// Where it is.
+#[derive(Args)]
+pub struct Own {
+    /// The root directory of your own package [default: the package here, if there is one].
+    #[arg(long, value_name = "DIR")]
+    root: Option<PathBuf>,
+}
+
+impl Own {
+    /// Its root folder. The library's own sources are no package beside the library.
+    pub fn root(&self) -> Option<PathBuf> {
+        let found = || {
+            project::package_above(Path::new(""))
+                .filter(|root| project::declared_name(root).as_deref() != Some(LIBRARY))
+        };
+        self.root.clone().or_else(found)
+    }
+
+    /// It and what it may import.
+    pub fn packages(&self) -> Result<Option<Packages>, Failure> {
+        let mut sources = SourceSet::default();
+        let opened = self.root().map(|root| project::packages(&root, &mut sources)).transpose();
+        opened.map_err(|diagnostics| Failure::Input(sources, diagnostics))
+    }
+
+    /// Its manifest.
+    pub fn manifest(&self) -> Result<Option<Manifest>, Failure> {
+        let mut sources = SourceSet::default();
+        let found = self.root().map(|root| project::manifest(&root, &mut sources)).transpose();
+        Ok(found.map_err(|diagnostics| Failure::Input(sources, diagnostics))?.flatten())
+    }
+
+    /// The functions that expressions may call: those of the library, and its own.
+    pub fn library(&self) -> Result<Library, Failure> {
+        let Some(packages) = self.packages()? else { return Ok(Library::embedded()) };
+        let dependencies = packages.dependencies.into_iter();
+        let dependencies =
+            dependencies.map(|package| (package.name, Arc::from(package.files))).collect();
+        Ok(Library::new(NAME, Arc::from(packages.root.files), dependencies))
+    }
+}
+
+/// What the package is called in expressions, which are a package of their own: `package::` there
+/// means this one.
+const NAME: &str = "lamplight_own";

@@ -1,0 +1,66 @@
+//! Things by a word: in their names first, then in what is said of them.
+
+use serde_json::json;
+
+use super::{Library, Shown};
+use crate::cli::text;
+
+/// What has the word, or all of several words; nothing where nothing has.
+pub fn search(library: &Library, asked: &str) -> Option<Shown> {
+    let words: Vec<String> = asked.split_whitespace().map(str::to_lowercase).collect();
+    let has = |text: &str| {
+        let text = text.to_lowercase();
+        words.iter().all(|word| text.contains(word.as_str()))
+    };
+    let things = things(library);
+    let (named, rest): (Vec<Thing>, Vec<Thing>) =
+        things.into_iter().partition(|thing| has(&thing.path));
+    let told = rest.into_iter().filter(|thing| has(&thing.summary) || has(&thing.doc));
+    let found: Vec<Thing> = named.into_iter().chain(told).collect();
+    if found.is_empty() || words.is_empty() {
+        return None;
+    }
+    let rows: Vec<Vec<String>> = found
+        .iter()
+        .map(|thing| vec![thing.path.clone(), thing.what.to_owned(), thing.summary.clone()])
+        .collect();
+    let json = found
+        .iter()
+        .map(|thing| json!({ "path": thing.path, "kind": thing.what, "summary": thing.summary }));
+    Some(Shown {
+        text: text::table(&["path", "kind", "summary"], &rows),
+        json: json!({ "matches": json.collect::<Vec<_>>() }),
+    })
+}
+
+struct Thing {
+    path: String,
+    what: &'static str,
+    summary: String,
+    doc: String,
+}
+
+fn things(library: &Library) -> Vec<Thing> {
+    let modules = library.modules.iter().map(|module| Thing {
+        path: module.path.clone(),
+        what: "module",
+        summary: module.summary().to_owned(),
+        doc: module.doc.join(" "),
+    });
+    let items = library.modules.iter().flat_map(|module| &module.items).map(|item| Thing {
+        path: item.path(),
+        what: item.kind.name(),
+        summary: item.summary().to_owned(),
+        doc: item.doc.join(" "),
+    });
+    let programs = library.manifests.iter().flat_map(|manifest| &manifest.programs);
+    let axes = programs.flat_map(|program| {
+        program.space.axes().iter().map(|axis| Thing {
+            path: format!("{}.{}", program.name, axis.name),
+            what: "axis",
+            summary: axis.doc.clone().unwrap_or_default(),
+            doc: axis.value_names().join(" "),
+        })
+    });
+    items.chain(modules).chain(axes).collect()
+}

@@ -1,0 +1,27 @@
+//! Flags of conditions that nothing declares.
+
+use super::Request;
+use crate::diagnostic::{Diagnostics, Severity};
+use crate::permute::Settings;
+use crate::resolve::Graph;
+
+/// An error for each flag of the package's own conditions that no axis and no option gives a
+/// value, unless it was said what such flags are.
+pub fn undeclared(graph: &Graph, request: &Request<'_>) -> Diagnostics {
+    let mut known = request.settings.clone();
+    for program in request.manifest.iter().flat_map(|manifest| &manifest.programs) {
+        let Settings { values, undeclared, .. } =
+            program.space.settings(&program.space.default_assignment());
+        known.values.extend(values);
+        known.undeclared = known.undeclared.or(undeclared);
+    }
+    let found = graph.undeclared(&known).into_iter().map(|mut error| {
+        error.severity = Severity::Error;
+        error.labels.iter_mut().for_each(|label| label.message = "asked for here".to_owned());
+        error.note(
+            "help: declare an axis in `lamplight.toml`, or say what such features are with \
+             `--features-default` or the manifest's `features_default`",
+        )
+    });
+    found.collect()
+}

@@ -1,0 +1,60 @@
+//! The settings under which a module is looked at.
+
+use super::Request;
+use crate::permute::axis::Mode;
+use crate::permute::space::{Lists, Space};
+use crate::permute::{Program, Settings, cover};
+use crate::resolve::Graph;
+
+/// Permutations of one program that a module is looked at in.
+const MOST: usize = 64;
+
+/// Where a program has the module as a root, or the module asks for a program's axes: permutations
+/// that have every pair of values of the axes that it may ask for. Else what was chosen.
+pub fn candidates(graph: &Graph, request: &Request<'_>, path: &str) -> Vec<Settings> {
+    let programs = || request.manifest.iter().flat_map(|manifest| &manifest.programs);
+    let is_root = |program: &&Program| program.files().any(|file| file.path == path);
+    let asked =
+        |program: &&Program| program.space.axes().iter().any(|axis| graph.may_ask(&axis.name));
+    let roots: Vec<&Program> = programs().filter(is_root).collect();
+    let chosen = if roots.is_empty() { programs().filter(asked).collect() } else { roots };
+    if chosen.is_empty() {
+        return vec![without_errors(request.settings.clone())];
+    }
+    chosen.into_iter().flat_map(|program| of_program(graph, request, program)).collect()
+}
+
+fn of_program(graph: &Graph, request: &Request<'_>, program: &Program) -> Vec<Settings> {
+    let space = narrowed(graph, &program.space);
+    let points = std::iter::once(program.space.default_assignment())
+        .chain(cover::pairwise(&space).points)
+        .filter(|point| program.space.is_valid(point))
+        .take(MOST);
+    let settings = points.map(|point| {
+        let mut settings = program.space.settings(&point);
+        settings.values.extend(request.settings.values.clone());
+        settings.undeclared = request.settings.undeclared.or(settings.undeclared);
+        without_errors(settings)
+    });
+    settings.collect()
+}
+
+/// The space with the axes at their defaults that the module cannot ask for; all of it where that
+/// leaves nothing.
+fn narrowed(graph: &Graph, space: &Space) -> Space {
+    let mut axes = space.axes().to_vec();
+    for axis in axes.iter_mut().filter(|axis| !graph.may_ask(&axis.name)) {
+        // Such an axis is always at its default.
+        axis.mode = Mode::Dynamic;
+    }
+    Space::new(axes, space.constraints().to_vec(), Lists::default())
+        .ok()
+        .filter(|space| space.count() > 0)
+        .unwrap_or_else(|| space.clone())
+}
+
+/// Flags that nothing declares are told on their own: what else is wrong is looked for without
+/// them.
+fn without_errors(settings: Settings) -> Settings {
+    Settings { undeclared: settings.undeclared.or(Some(false)), ..settings }
+}

@@ -1,0 +1,89 @@
+//! Several mistakes of one text: naga stops at the first, so each declaration is also looked at
+//! with nothing but what it needs.
+
+use super::{Validated, validate};
+use crate::bundle::Language;
+use crate::compose::{Composed, PartKind};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+
+/// Declarations of a text from which on only the first mistake is looked for.
+const PARTS: usize = 500;
+
+/// Mistakes after which no more are looked for.
+const MOST: usize = 20;
+
+/// As [`validate`], but goes on after the first mistake. For a text that is known or feared to be
+/// wrong: a mistake costs a run of naga for each declaration.
+///
+/// # Errors
+/// Each mistake once, in the order of the composed text's places.
+pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
+    let first = match validate(composed) {
+        Ok(validated) => return Ok(validated),
+        Err(errors) => errors,
+    };
+    let stops = |error: &Diagnostic| {
+        [codes::NAGA_INTERNAL, codes::LIMIT_EXCEEDED, codes::NO_ENTRY_POINT].contains(&error.code)
+    };
+    if composed.parts.len() > PARTS || first.iter().any(stops) {
+        return Err(first);
+    }
+    let mut found = first;
+    let mut wrong = vec![false; composed.parts.len()];
+    for index in 0..composed.parts.len() {
+        if found.len() >= MOST {
+            break;
+        }
+        let needed = needed(composed, index);
+        // What is wrong with a part is told there, not again at all that need it.
+        if needed.iter().zip(&wrong).any(|(needed, wrong)| *needed && *wrong) {
+            continue;
+        }
+        let Err(errors) = validate(&alone(composed, &needed)) else { continue };
+        wrong[index] = true;
+        let new = errors.into_iter().filter(|error| {
+            !stops(error)
+                && !error.labels.is_empty()
+                && !found.iter().any(|known| same(known, error))
+        });
+        found.extend(new.collect::<Vec<_>>());
+    }
+    found.sort_by_key(|error| error.labels.first().map(|label| label.span));
+    Err(found)
+}
+
+/// The same mistake at the same place.
+fn same(one: &Diagnostic, other: &Diagnostic) -> bool {
+    one.code == other.code
+        && one.labels.first().map(|label| label.span)
+            == other.labels.first().map(|label| label.span)
+}
+
+/// A part, all that it names, and what is there for the text as a whole.
+fn needed(composed: &Composed, index: usize) -> Vec<bool> {
+    let whole = |kind| matches!(kind, PartKind::Directive | PartKind::Other);
+    let mut needed: Vec<bool> = composed.parts.iter().map(|part| whole(part.kind)).collect();
+    let mut open = vec![index as u32];
+    while let Some(next) = open.pop() {
+        if !std::mem::replace(&mut needed[next as usize], true) {
+            open.extend(&composed.parts[next as usize].uses);
+        }
+    }
+    needed
+}
+
+/// The text with blanks in the place of what is not needed, so that places stay as they are.
+fn alone(composed: &Composed, needed: &[bool]) -> Composed {
+    let mut bytes = composed.text.clone().into_bytes();
+    let left_out = || composed.parts.iter().zip(needed).filter(|(_, needed)| !**needed);
+    for (part, _) in left_out() {
+        let range = part.range.start.min(bytes.len())..part.range.end.min(bytes.len());
+        bytes[range].iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
+    }
+    let main = |names: &[String]| names.iter().any(|name| name == "main");
+    if composed.language == Language::Glsl && left_out().any(|(part, _)| main(&part.names)) {
+        bytes.extend_from_slice(b"\nvoid main() {}\n");
+    }
+    let text = String::from_utf8(bytes).unwrap_or_default();
+    Composed { text, ..composed.clone() }
+}
