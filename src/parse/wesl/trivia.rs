@@ -1,4 +1,4 @@
-//! Which comments and blanks belong to what: they go where it goes.
+//! Which comments and blanks belong to an item. They are kept, moved and removed with it.
 
 use std::ops::Range;
 
