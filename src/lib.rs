@@ -134,6 +134,8 @@ pub mod emit;
 pub mod eval;
 #[cfg(feature = "compile")]
 pub mod generate;
+#[cfg(feature = "eval")]
+pub mod judge;
 #[cfg(feature = "compile")]
 pub mod keys;
 #[cfg(feature = "compile")]

@@ -13,6 +13,7 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod conventions;
 mod cost;
 mod determinism;
 mod diagnostics;
@@ -21,14 +22,13 @@ mod doors;
 mod emit;
 mod eval;
 mod examples;
-#[path = "../xtask/src/external.rs"]
-mod external;
 mod fragments;
 mod frames;
 mod generate;
 mod guide;
 mod harness;
 mod house;
+mod judges;
 mod keys;
 mod library;
 mod link;
@@ -62,6 +62,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    conventions::trials,
     cost::trials,
     determinism::trials,
     diagnostics::trials,
@@ -75,6 +76,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     guide::trials,
     harness::trials,
     house::trials,
+    judges::trials,
     keys::trials,
     library::trials,
     link::trials,

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::contents::{checksum, hex};
+use super::contents::{checksum, hex, unhex};
 use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
 use super::store::{self, Artifact, Program, Programs, Store};
-use super::{Error, Native, Reflection, Stage};
+use super::{Error, Hash, Native, Reflection, Stage};
 use crate::input;
 
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -89,24 +89,44 @@ pub struct BlobFile {
     pub target: String,
     /// Stage of the entry point.
     pub stage: Stage,
+    /// Name of the entry point in the output.
+    pub entry: String,
     /// The file.
     pub path: PathBuf,
+    /// A unit that has it.
+    pub unit: Hash,
 }
 
 /// Every distinct blob of a directory bundle: for tools that take files.
 pub fn blob_files(path: impl AsRef<Path>) -> Result<BTreeSet<BlobFile>, Error> {
-    let directory = open(path.as_ref())?;
-    let mut files = BTreeSet::new();
-    for (reflection, targets) in &directory.units {
-        for (target, (artifact, _)) in targets {
-            files.insert(BlobFile {
+    let path = path.as_ref();
+    listed(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
+}
+
+/// The same of a manifest whose blobs are where `place` says.
+pub(super) fn listed(
+    manifest: &Manifest,
+    place: &dyn Fn(&str) -> PathBuf,
+) -> Result<BTreeSet<BlobFile>, Error> {
+    let lost = |what: &str| Error::corrupt(MANIFEST, format!("a unit names no {what}"));
+    let mut files = BTreeMap::new();
+    for (name, unit) in &manifest.units {
+        let reflection = manifest.reflections.get(&unit.reflection);
+        let stage = reflection.ok_or_else(|| lost("reflection"))?.stage;
+        let hash = unhex(name).ok_or_else(|| Error::corrupt(MANIFEST, "a unit has no name"))?;
+        for (target, artifact) in &unit.targets {
+            let native = manifest.natives.get(&artifact.native).ok_or_else(|| lost("native"))?;
+            let file = artifact.file()?;
+            files.entry((target, file)).or_insert_with_key(|(_, file)| BlobFile {
                 target: target.clone(),
-                stage: reflection.stage,
-                path: directory.blobs.join(artifact.file()?),
+                stage,
+                entry: native.entry_name.clone(),
+                path: place(file),
+                unit: hash,
             });
         }
     }
-    Ok(files)
+    Ok(files.into_values().collect())
 }
 
 impl Directory {

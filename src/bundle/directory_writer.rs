@@ -13,7 +13,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::directory::{BLOBS, MANIFEST, MOST_MANIFEST_BYTES, read_manifest};
+use super::directory::{BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, listed, read_manifest};
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
 use super::{Contents, Digest, Error, Unit};
 use crate::output::{self, Foreign, Replace, Scratch};
@@ -133,6 +133,17 @@ impl DirectoryWriter {
         drop(staged);
         self.scratch.write(&name, bytes)?;
         Ok(())
+    }
+
+    /// The blobs of all units so far, where they are now: in the scratch folder, or already in
+    /// their place. They can be looked at before [`Self::finish`].
+    pub fn blob_files(&self) -> Result<BTreeSet<BlobFile>, Error> {
+        let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = |name: &str| match staged.contains(name) {
+            true => self.scratch.path(name),
+            false => self.path.join(BLOBS).join(name),
+        };
+        listed(&self.manifest(), &place)
     }
 
     /// Writes the manifest for the programs and keys of `contents`, whose own units are not

@@ -12,7 +12,7 @@ pub use folder::Folder;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::bundle::{Hash, Target, Unit};
+use crate::bundle::{Clip, Hash, Target, Unit};
 use crate::compose::{Composed, Options};
 use crate::diagnostic::Diagnostics;
 
@@ -41,7 +41,7 @@ struct Counted {
 }
 
 /// What names of records begin with.
-const KINDS: [&str; 4] = ["errors", "runs", "units", "warnings"];
+const KINDS: [&str; 5] = ["errors", "judged", "runs", "units", "warnings"];
 
 const MOST_FAILURES: usize = 8;
 
@@ -58,6 +58,8 @@ pub struct Job<'a> {
     pub options: &'a Options,
     /// Targets that are asked for, in order.
     pub targets: &'a [Target],
+    /// The clip space of its outputs.
+    pub clip: Clip,
 }
 
 /// What comes of a text: a unit, and what its author can mend.
@@ -171,10 +173,12 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 }
 
 fn unit_key(job: Job<'_>) -> Hash {
-    let Job { text, composed, entry, options, targets } = job;
+    let Job { text, composed, entry, options, targets, clip } = job;
     let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
-    let rest =
-        format!("{:?} {:?} {options:?} {entry:?} {names:?}", composed.language, composed.stage);
+    let rest = format!(
+        "{:?} {:?} {options:?} {entry:?} {names:?} {clip:?}",
+        composed.language, composed.stage
+    );
     hash(&["unit", BUILD, &rest, text])
 }
 

@@ -20,6 +20,7 @@ mod generate;
 mod guide;
 mod init;
 mod input;
+mod judged;
 mod keys;
 mod lint;
 mod list;

@@ -8,7 +8,7 @@ use naga::back::glsl::Version;
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::{Emitted, Entry, GlslRules, Judge, Source, clip};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -16,6 +16,8 @@ pub const TARGET: Entry = Entry {
     extension: "essl300.glsl",
     binary: false,
     about: "GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2",
+    judge: Judge::Glslang(&[GlslRules::Own, GlslRules::Later("310 es")]),
+    clip: &clip::OPENGL,
     write,
 };
 

@@ -11,7 +11,7 @@ use naga::back::msl::{
 
 use crate::bundle::{BufferSizes, Kind, Target};
 use crate::emit::slots::{Numbering, assign, native};
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -19,6 +19,8 @@ pub const TARGET: Entry = Entry {
     extension: "metal",
     binary: false,
     about: "Metal Shading Language 2.0 (macOS 10.13, iOS 11)",
+    judge: Judge::Clang,
+    clip: &clip::SHARED,
     write,
 };
 
