@@ -27,6 +27,7 @@ mod frames;
 mod generate;
 mod guide;
 mod harness;
+mod hostile;
 mod house;
 mod judges;
 mod keys;
@@ -75,6 +76,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     generate::trials,
     guide::trials,
     harness::trials,
+    hostile::trials,
     house::trials,
     judges::trials,
     keys::trials,
