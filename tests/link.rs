@@ -7,6 +7,7 @@ use std::path::Path;
 use lamplight::bundle::{Unit, write_directory};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Generated, Request, in_memory};
+use lamplight::judge;
 use lamplight::link::Reason;
 use lamplight::permute::{Manifest, Quoted};
 use lamplight::project;
@@ -14,7 +15,6 @@ use lamplight::resolve::Packages;
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
-use crate::external::{self, Job};
 use crate::link_compare as compare;
 
 type Outcome = Result<(), Failed>;
@@ -283,26 +283,11 @@ fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {
 
 /// Every output of a bundle is well formed.
 fn judge_all(out: &Path) -> Outcome {
-    let files = lamplight::bundle::blob_files(out)?;
-    let texts = files.iter().filter(|file| file.target == "msl");
-    let texts = texts.map(|file| std::fs::read_to_string(&file.path));
-    let texts = texts.collect::<Result<Vec<String>, _>>()?;
-    let views: Vec<&str> = texts.iter().map(String::as_str).collect();
-    let mut wrong = Vec::new();
-    for refusal in lamplight::metal::judge(&views, &|_| ()).map_err(|missing| missing.reason)? {
-        wrong.push(format!("{}\n{}", refusal.errors, texts[refusal.index]));
+    let outputs = judge::outputs(lamplight::bundle::blob_files(out)?)?;
+    match judge::judge(&outputs, None, &|_, _| ())?.first() {
+        None if !outputs.is_empty() => Ok(()),
+        refusal => Err(format!("{refusal:?}").into()),
     }
-    let jobs: Vec<Job> = files
-        .into_iter()
-        .map(|file| Job {
-            stage: external::stage(file.stage),
-            target: file.target,
-            file: file.path,
-        })
-        .collect();
-    let (judged, refusals) = external::validate(jobs, &|_| {})?;
-    wrong.extend(refusals);
-    if wrong.is_empty() && judged > 0 { Ok(()) } else { Err(wrong.join("\n").into()) }
 }
 
 /// A program of one fragment shader with something more in it.
@@ -423,26 +408,7 @@ fn judged(text: &str, targets: &str) -> Result<Generated, Failed> {
     write_directory(&contents, &out)?;
     judge_all(&out)?;
     made.contents = contents;
-    for unit in units(&made).values() {
-        if let Some(hlsl) = unit.targets.get("hlsl") {
-            judge_hlsl(&out, hlsl, external::stage(unit.reflection.stage))?;
-        }
-    }
     Ok(made)
-}
-
-fn judge_hlsl(folder: &Path, hlsl: &lamplight::bundle::Artifact, stage: &str) -> Outcome {
-    let file = folder.join("text.hlsl");
-    std::fs::write(&file, &hlsl.bytes)?;
-    let said = std::process::Command::new("glslangValidator")
-        .args(["-D", "-V", "-S", stage, "-e", &hlsl.native.entry_name, "-o", "/dev/null"])
-        .arg(&file)
-        .output()?;
-    let text = String::from_utf8_lossy(&hlsl.bytes);
-    match said.status.success() {
-        true => Ok(()),
-        false => Err(format!("{}\n{text}", String::from_utf8_lossy(&said.stdout)).into()),
-    }
 }
 
 /// naga adds to an entry point that ends with a digit, and the manifest says what it is called; a

@@ -5,13 +5,15 @@
     clippy::expect_used,
     clippy::panic,
     clippy::print_stdout,
-    clippy::print_stderr
+    clippy::print_stderr,
+    clippy::wrong_self_convention
 )]
 
 mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod conventions;
 mod cost;
 mod determinism;
 mod diagnostics;
@@ -20,14 +22,14 @@ mod doors;
 mod emit;
 mod eval;
 mod examples;
-#[path = "../xtask/src/external.rs"]
-mod external;
 mod fragments;
 mod frames;
 mod generate;
 mod guide;
 mod harness;
+mod hostile;
 mod house;
+mod judges;
 mod keys;
 mod library;
 mod link;
@@ -63,6 +65,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    conventions::trials,
     cost::trials,
     determinism::trials,
     diagnostics::trials,
@@ -75,7 +78,9 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     generate::trials,
     guide::trials,
     harness::trials,
+    hostile::trials,
     house::trials,
+    judges::trials,
     keys::trials,
     library::trials,
     link::trials,

@@ -6,7 +6,7 @@ mod bench;
 mod ci;
 mod create;
 mod docs;
-mod external;
+mod faults;
 mod fuzz;
 mod generate;
 mod machine;
@@ -52,7 +52,11 @@ impl Failure {
 }
 
 const COMMANDS: &[Command] = &[
-    ("gen", "write the library's bundle to target/bundles/ and validate it", generate::run),
+    (
+        "gen",
+        "write the library's bundle to target/bundles/, once all its outputs are judged",
+        generate::run,
+    ),
     ("test", "install what the tests need, then run every test", test::run),
     (
         "new",
@@ -60,7 +64,7 @@ const COMMANDS: &[Command] = &[
         create::run,
     ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
-    ("validate", "run the external validators over a bundle", validate::run),
+    ("validate", "let the judges of all targets look at a bundle", validate::run),
     (
         "docs",
         "write the catalogue, the modules made from data, the guide as a book (--check: only compare)",
@@ -72,8 +76,13 @@ const COMMANDS: &[Command] = &[
         bench::run,
     ),
     (
+        "faults",
+        "make calls of the system fail, or end runs at them: the bundle stays whole",
+        faults::run,
+    ),
+    (
         "fuzz",
-        "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...; or random programs: link [--programs N] [--seed N]",
+        "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...; or `link`",
         fuzz::run,
     ),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
