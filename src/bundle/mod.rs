@@ -18,6 +18,7 @@ mod manifest;
 mod merge;
 mod pack;
 mod reflection;
+mod reload;
 mod store;
 mod target;
 mod usage;

@@ -58,6 +58,9 @@ pub trait Store: Send + Sync {
     /// The bytes of a blob, verified.
     fn blob(&self, blob: u32) -> Result<Vec<u8>, Error>;
 
+    /// The hash of a blob's bytes, without reading them.
+    fn digest(&self, blob: u32) -> Result<String, Error>;
+
     /// Checks every byte.
     fn verify(&self) -> Result<(), Error>;
 }

@@ -5,9 +5,11 @@
 
 mod every;
 mod guard;
+mod hints;
 mod limits;
 mod report;
 mod uniformity;
+mod words;
 
 pub use every::every;
 pub use guard::{guard, on_large_stack};
@@ -82,7 +84,7 @@ fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
 fn analyse(composed: &Composed, module: naga::Module) -> Result<Validated, Diagnostics> {
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
         .validate(&module)
-        .map_err(|error| vec![report::validation(composed, &error)])?;
+        .map_err(|error| vec![report::validation(composed, &module, &error)])?;
     Ok(Validated { language: composed.language, module, info })
 }
 
