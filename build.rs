@@ -45,12 +45,23 @@ fn build_id(root: &Path, out: &Path) -> std::io::Result<String> {
         .find(|lock| lock.is_file());
     if let Some(lock) = lock {
         println!("cargo::rerun-if-changed={}", lock.display());
-        hash.add(&fs::read(lock)?);
+        let lock = fs::read_to_string(lock)?;
+        hash.add(lock.as_bytes());
+        println!("cargo::rustc-env=LAMPLIGHT_NAGA={}", version_of(&lock, "naga"));
+    } else {
+        println!("cargo::rustc-env=LAMPLIGHT_NAGA=");
     }
     for variable in ["CARGO_PKG_VERSION", "TARGET"] {
         hash.add(env::var(variable).unwrap_or_default().as_bytes());
     }
     Ok(format!("{:032x}", hash.0))
+}
+
+/// The version of a dependency; empty where the lock file does not have it.
+fn version_of<'a>(lock: &'a str, name: &str) -> &'a str {
+    let (_, after) =
+        lock.split_once(&format!("name = \"{name}\"\nversion = \"")).unwrap_or_default();
+    after.split('"').next().unwrap_or_default()
 }
 
 /// FNV-1a of 128 bits: short enough to write down here, and build scripts should stay light.

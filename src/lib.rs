@@ -114,6 +114,8 @@ pub mod bundle;
 #[doc(hidden)]
 pub mod input;
 #[doc(hidden)]
+pub mod limits;
+#[doc(hidden)]
 pub mod output;
 #[cfg(feature = "single-file")]
 #[path = "packing/zstd.rs"]
@@ -134,6 +136,8 @@ pub mod emit;
 pub mod eval;
 #[cfg(feature = "compile")]
 pub mod generate;
+#[cfg(feature = "eval")]
+pub mod judge;
 #[cfg(feature = "compile")]
 pub mod keys;
 #[cfg(feature = "compile")]

@@ -7,6 +7,7 @@ use std::path::Path;
 use lamplight::bundle::{Unit, write_directory};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Generated, Request, in_memory};
+use lamplight::judge;
 use lamplight::link::Reason;
 use lamplight::permute::{Manifest, Quoted};
 use lamplight::project;
@@ -14,7 +15,6 @@ use lamplight::resolve::Packages;
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
-use crate::external::{self, Job};
 use crate::link_compare as compare;
 
 type Outcome = Result<(), Failed>;
@@ -275,16 +275,11 @@ fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {
     let contents = std::mem::take(&mut together.contents);
     let out = folder.path().join("out");
     write_directory(&contents, &out)?;
-    let files = lamplight::bundle::blob_files(&out)?.into_iter();
-    let jobs: Vec<Job> = files
-        .map(|file| Job {
-            stage: external::stage(file.stage),
-            target: file.target,
-            file: file.path,
-        })
-        .collect();
-    let (judged, refusals) = external::validate(jobs, &|_| {})?;
-    if refusals.is_empty() && judged > 0 { Ok(()) } else { Err(refusals.join("\n").into()) }
+    let outputs = judge::outputs(lamplight::bundle::blob_files(&out)?)?;
+    match judge::judge(&outputs, None, &|_, _| ())?.first() {
+        None if !outputs.is_empty() => Ok(()),
+        refusal => Err(format!("{refusal:?}").into()),
+    }
 }
 
 /// A program of one fragment shader with something more in it.

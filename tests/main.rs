@@ -12,6 +12,7 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod conventions;
 mod cost;
 mod determinism;
 mod diagnostics;
@@ -20,14 +21,14 @@ mod doors;
 mod emit;
 mod eval;
 mod examples;
-#[path = "../xtask/src/external.rs"]
-mod external;
 mod fragments;
 mod frames;
 mod generate;
 mod guide;
 mod harness;
+mod hostile;
 mod house;
+mod judges;
 mod keys;
 mod library;
 mod link;
@@ -61,6 +62,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    conventions::trials,
     cost::trials,
     determinism::trials,
     diagnostics::trials,
@@ -73,7 +75,9 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     generate::trials,
     guide::trials,
     harness::trials,
+    hostile::trials,
     house::trials,
+    judges::trials,
     keys::trials,
     library::trials,
     link::trials,

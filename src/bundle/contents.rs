@@ -39,6 +39,13 @@ pub struct Axis {
     pub mode: String,
 }
 
+impl Axis {
+    /// All of its names.
+    pub(super) fn names(&self) -> impl Iterator<Item = &String> {
+        [&self.name, &self.default, &self.mode].into_iter().chain(&self.values)
+    }
+}
+
 /// One entry point: many keys share a unit.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct EntryContents {
@@ -155,6 +162,19 @@ fn merge_entry(mine: &mut EntryContents, other: EntryContents) -> Result<(), Err
     Ok(())
 }
 
+/// Refuses names that would be more than a name where they are printed.
+pub(super) fn plain<'a>(
+    part: &str,
+    names: impl IntoIterator<Item = &'a String>,
+) -> Result<(), Error> {
+    match names.into_iter().find(|name| name.chars().any(char::is_control)) {
+        None => Ok(()),
+        Some(name) => {
+            Err(Error::corrupt(part, format!("{name:?} has control characters, and is no name")))
+        }
+    }
+}
+
 pub(super) fn json<T: Serialize>(value: &T) -> Result<Vec<u8>, Error> {
     serde_json::to_vec(value).map_err(|error| Error::Io(error.to_string()))
 }
@@ -177,4 +197,18 @@ pub(super) fn hex(bytes: &[u8]) -> String {
         .flat_map(|byte| [byte >> 4, byte & 15])
         .filter_map(|digit| char::from_digit(u32::from(digit), 16))
         .collect()
+}
+
+/// What [`hex`] wrote.
+pub(super) fn unhex(text: &str) -> Option<Hash> {
+    let mut hash = [0; 16];
+    let (pairs, rest) = text.as_bytes().as_chunks::<2>();
+    if pairs.len() != hash.len() || !rest.is_empty() {
+        return None;
+    }
+    for (byte, [high, low]) in hash.iter_mut().zip(pairs) {
+        let digit = |letter: &u8| char::from(*letter).to_digit(16);
+        *byte = u8::try_from(digit(high)? << 4 | digit(low)?).ok()?;
+    }
+    Some(hash)
 }

@@ -5,6 +5,7 @@
 //! Of the crate, this module uses the compression of the single file, the one way to write files,
 //! and nothing else.
 
+mod clip;
 mod contents;
 mod diff;
 mod directory;
@@ -23,6 +24,7 @@ mod store;
 mod target;
 mod usage;
 
+pub use clip::Clip;
 pub use contents::{Artifact, Axis, Contents, Digest, EntryContents, Hash, ProgramContents, Unit};
 pub use diff::{Change, Difference, diff};
 pub use directory::{BlobFile, blob_files};
@@ -34,8 +36,9 @@ pub use manifest::SCHEMA;
 pub use merge::{merge, merge_directory, merge_into, patch_directory};
 pub use pack::{pack, replace_file, write_file};
 pub use reflection::{
-    Binding, BufferSizes, Choice, Combined, HeapSampler, Kind, Language, Member, Native, Override,
-    Pair, Place, Reflection, SamplerHeap, Semantic, Slot, Stage, Varying,
+    Binding, BufferSizes, Choice, ClipSpace, Combined, FrontFace, HeapSampler, Kind, Language,
+    Member, Native, Override, Pair, Place, Reflection, Rows, SamplerHeap, Semantic, Slot, Stage,
+    Varying, Viewport, YAxis,
 };
 pub use target::Target;
 pub use usage::Usage;

@@ -199,6 +199,72 @@ pub struct Native {
     /// The argument that takes lengths of buffers, where the entry point has one (MSL).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buffer_sizes: Option<BufferSizes>,
+    /// The uniform of type `uint` that takes the number of a draw's first instance, where the
+    /// target's own numbers leave that out and the shader asks for them (GLSL).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_instance: Option<String>,
+    /// The clip space of a vertex stage's positions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clip: Option<ClipSpace>,
+}
+
+/// The clip space that an output takes the author's positions in, and what the host has to do for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct ClipSpace {
+    /// Where the author's y axis points in the picture.
+    pub y: YAxis,
+    /// Depth of the near plane, and of the far plane, in the author's normalised coordinates.
+    pub near: i8,
+    /// Depth of the far plane.
+    pub far: i8,
+    /// Whether the output converts positions before the API sees them.
+    pub is_converted: bool,
+    /// The height that the host has to give its viewport.
+    pub viewport: Viewport,
+    /// Which row of a texture or framebuffer comes first in memory.
+    pub rows: Rows,
+    /// How triangles wind for the API that wind counter-clockwise in the picture.
+    pub front_face: FrontFace,
+}
+
+/// Direction of an axis in the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum YAxis {
+    /// Upwards.
+    Up,
+    /// Downwards.
+    Down,
+}
+
+/// Sign of a viewport's height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Viewport {
+    /// As usual.
+    Positive,
+    /// Turned over: it starts at the bottom.
+    Negative,
+}
+
+/// Order of rows in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rows {
+    /// The top row.
+    TopFirst,
+    /// The bottom row.
+    BottomFirst,
+}
+
+/// Winding for the API against winding in the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FrontFace {
+    /// Counter-clockwise.
+    Same,
+    /// Clockwise.
+    Reversed,
 }
 
 /// How a target takes the value of an override: in WGSL as the pipeline constant of its `@id` or
@@ -229,6 +295,9 @@ pub struct Slot {
     /// Register, binding, table index or texture unit; `None` where only names exist.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub index: Option<u32>,
+    /// The class of the register, where the target has classes: `b`, `t`, `u` (HLSL).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub register: Option<String>,
     /// The identifier in the output, where the API looks it up by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,

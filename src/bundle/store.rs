@@ -61,6 +61,9 @@ pub trait Store: Send + Sync {
     /// The hash of a blob's bytes, without reading them.
     fn digest(&self, blob: u32) -> Result<String, Error>;
 
+    /// Refuses what would take memory or time out of proportion to its size.
+    fn measure(&self) -> Result<(), Error>;
+
     /// Checks every byte.
     fn verify(&self) -> Result<(), Error>;
 }

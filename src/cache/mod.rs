@@ -10,11 +10,13 @@ mod record;
 
 pub use folder::Folder;
 
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::bundle::{Hash, Target, Unit};
+use crate::bundle::{Clip, Hash, Target, Unit};
 use crate::compose::{Composed, Options};
 use crate::diagnostic::Diagnostics;
+use crate::source::SourceId;
 
 /// Changes with the sources of this crate, its dependencies' versions and the compiler's target.
 pub const BUILD: &str = env!("LAMPLIGHT_BUILD");
@@ -41,7 +43,7 @@ struct Counted {
 }
 
 /// What names of records begin with.
-const KINDS: [&str; 4] = ["errors", "runs", "units", "warnings"];
+const KINDS: [&str; 5] = ["errors", "judged", "runs", "units", "warnings"];
 
 const MOST_FAILURES: usize = 8;
 
@@ -58,6 +60,8 @@ pub struct Job<'a> {
     pub options: &'a Options,
     /// Targets that are asked for, in order.
     pub targets: &'a [Target],
+    /// The clip space of its outputs.
+    pub clip: Clip,
 }
 
 /// What comes of a text: a unit, and what its author can mend.
@@ -80,8 +84,11 @@ impl Cache {
     pub fn find(&self, job: Job<'_>) -> Option<Result<Made, Diagnostics>> {
         let key = unit_key(job);
         let told = |kind| {
+            let segments = job.composed.map.segments().iter();
+            let known: BTreeSet<SourceId> =
+                segments.filter_map(|segment| Some(segment.span?.source)).collect();
             self.get(kind, told_key(key, job.composed))
-                .and_then(|bytes| record::decode_diagnostics(&bytes))
+                .and_then(|bytes| record::decode_diagnostics(&bytes, |id| known.contains(&id)))
         };
         let found = match self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)) {
             Some((unit, false)) => Some(Ok(Made { unit, warnings: Vec::new() })),
@@ -123,7 +130,7 @@ impl Cache {
         let name = name(kind, key);
         for (index, storage) in self.storages.iter().enumerate() {
             let Some(record) = storage.get(&name) else { continue };
-            if let Some(payload) = record::open(&record) {
+            if let Some(payload) = record::open(&name, &record) {
                 self.storages[..index].iter().for_each(|nearer| nearer.put(&name, &record));
                 return Some(payload);
             }
@@ -132,8 +139,11 @@ impl Cache {
     }
 
     pub(crate) fn put(&self, kind: &str, key: Hash, payload: Option<Vec<u8>>) {
-        let Some(record) = payload.map(|payload| record::seal(&payload)) else { return };
-        self.storages.iter().for_each(|storage| storage.put(&name(kind, key), &record));
+        let name = name(kind, key);
+        let Some(record) = payload.and_then(|payload| record::seal(&name, &payload)) else {
+            return;
+        };
+        self.storages.iter().for_each(|storage| storage.put(&name, &record));
     }
 }
 
@@ -171,10 +181,12 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 }
 
 fn unit_key(job: Job<'_>) -> Hash {
-    let Job { text, composed, entry, options, targets } = job;
+    let Job { text, composed, entry, options, targets, clip } = job;
     let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
-    let rest =
-        format!("{:?} {:?} {options:?} {entry:?} {names:?}", composed.language, composed.stage);
+    let rest = format!(
+        "{:?} {:?} {options:?} {entry:?} {names:?} {clip:?}",
+        composed.language, composed.stage
+    );
     hash(&["unit", BUILD, &rest, text])
 }
 

@@ -1,14 +1,16 @@
 //! `lamplight gen`: the bundle of a manifest.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::time::Instant;
 
 use clap::Args;
 
-use super::compile::{Wanted, wanted, wanted_one};
+use super::compile::{Wanted, clip, wanted, wanted_one};
 use super::failure::{DiagnosticForm, Failure};
+use super::terminal::stdout;
 use super::work::{Places, Work};
-use crate::generate::{Request, Shard};
+use crate::bundle::Clip;
+use crate::generate::{Request, Shard, Summary};
 use crate::permute::Quoted;
 use crate::source::SourceSet;
 
@@ -26,12 +28,20 @@ pub struct Arguments {
     /// Only these targets.
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
     target: Vec<Wanted>,
+    /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: the
+    /// manifest's].
+    #[arg(long, value_name = "SPACE", value_parser = clip)]
+    clip: Option<Clip>,
     /// Only the k-th of n parts, for `lamplight merge`.
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
     /// Write nothing; compare with the bundle that is there.
     #[arg(long)]
     check: bool,
+    /// Let the judges of all targets look at the outputs; the bundle that is there stays as it is
+    /// where they refuse one.
+    #[arg(long)]
+    validate: bool,
     /// The summary as JSON.
     #[arg(long)]
     json: bool,
@@ -41,8 +51,11 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let start = Instant::now();
     let mut work = Work::open(&arguments.places)?;
     let request = request(&arguments, &mut work.sources);
+    if arguments.validate {
+        work.judge(&request)?;
+    }
     let mut summary = match work.up_to_date(&request, form) {
-        Some(summary) => summary,
+        Some(summary) => Summary { judged: work.judge_bundle()?, ..summary },
         None => work.run(&request, arguments.check, form)?,
     };
     summary.seconds = start.elapsed().as_secs_f64();
@@ -61,6 +74,7 @@ fn request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
         program: arguments.program.clone(),
         only,
         targets: wanted(&arguments.target),
+        clip: arguments.clip,
         shard: arguments.shard,
     }
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::{features, stream};
-use crate::bundle::{Language, Stage};
+use crate::bundle::{Clip, Language, Stage};
 use crate::compose::{self, Composed, Keep, Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::permute::{Assignment, Program, Quoted, Setting, Settings, key};
@@ -141,6 +141,8 @@ pub struct Context {
     pub graph: Graph,
     pub settings: Settings,
     pub options: Options,
+    /// Of the program that the file belongs to.
+    pub clip: Clip,
     permutation: Option<String>,
 }
 
@@ -164,6 +166,7 @@ fn of_permutation(diagnostics: Diagnostics, permutation: Option<&str>) -> Diagno
 /// The settings of a composition, as chosen.
 struct Chosen {
     settings: Settings,
+    clip: Clip,
     /// A note that names them.
     permutation: Option<String>,
     /// The axes come from a manifest.
@@ -239,8 +242,8 @@ impl Input {
         }
         chosen.warnings.append(&mut composed.warnings);
         composed.warnings = chosen.warnings;
-        let Chosen { settings, permutation, .. } = chosen;
-        Ok((composed, Context { graph, settings, options, permutation }))
+        let Chosen { settings, clip, permutation, .. } = chosen;
+        Ok((composed, Context { graph, settings, options, clip, permutation }))
     }
 
     /// The language asked for.
@@ -324,7 +327,14 @@ impl Input {
             settings.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
         let permutation =
             (!parts.is_empty()).then(|| format!("with the settings `{}`", parts.join(",")));
-        Chosen { settings, permutation, declared: false, axes: Vec::new(), warnings: Vec::new() }
+        Chosen {
+            settings,
+            clip: Clip::default(),
+            permutation,
+            declared: false,
+            axes: Vec::new(),
+            warnings: Vec::new(),
+        }
     }
 
     /// The point of the program's space that the options name; broken constraints are warnings,
@@ -356,6 +366,7 @@ impl Input {
             program.name
         ));
         let axes = program.space.axes().iter().map(|axis| axis.name.clone()).collect();
-        Ok(Chosen { settings, permutation, declared: true, axes, warnings: broken.collect() })
+        let (clip, warnings) = (program.clip, broken.collect());
+        Ok(Chosen { settings, clip, permutation, declared: true, axes, warnings })
     }
 }

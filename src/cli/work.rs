@@ -1,18 +1,20 @@
 //! What `gen` and `watch` share: a package, its manifest, the cache, and a run over them.
 
-use std::io::{Write, stderr};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
+use super::judged::{Inputs, Judges};
 use super::overwrite::{Overwrite, unwritable, waiting};
 use super::partial;
 use super::progress::Bar;
+use super::terminal::stderr;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
 use crate::cache::{Cache, Folder, Storage};
 use crate::generate::{
-    Generated, Memory, Recorder, Request, Run, Sink, Summary, Told, Tools, Trace, generate,
+    Generated, Judged, Memory, Recorder, Request, Run, Sink, Summary, Told, Tools, Trace, generate,
 };
 use crate::output::Replace;
 use crate::permute::Manifest;
@@ -62,6 +64,9 @@ pub struct Work {
     manifest: Manifest,
     recorder: Recorder,
     cache: Option<Cache>,
+    /// Of the cache, as it was asked for.
+    cache_folder: Option<PathBuf>,
+    judges: Option<Judges>,
     replace: Replace,
     /// The manifest and what declares packages: all that is read before the packages are.
     declared: SourceSet,
@@ -83,9 +88,30 @@ impl Work {
             manifest,
             recorder,
             cache: cache(places, &path)?,
+            cache_folder: places.cache.clone(),
+            judges: None,
             path,
             replace: places.overwrite.replace(),
         })
+    }
+
+    /// Lets the judges of the request's targets look at what runs make from now on.
+    pub fn judge(&mut self, request: &Request) -> Result<(), Failure> {
+        let cache = self.cache_folder.clone();
+        self.judges = Some(Judges::open(&self.manifest, request, &self.path, cache)?);
+        Ok(())
+    }
+
+    /// Judges the bundle that is there, if anything is to be judged.
+    pub fn judge_bundle(&mut self) -> Result<Option<Judged>, Failure> {
+        let (out, bar) = (self.out.clone(), Bar::new());
+        let (judges, inputs) = self.judges();
+        judges.map(|judges| judges.bundle(&out, inputs, &bar)).transpose()
+    }
+
+    fn judges(&mut self) -> (Option<&Judges>, Inputs<'_>) {
+        let Self { sources, packages, manifest, cache, judges, .. } = self;
+        (judges.as_ref(), Inputs { sources, packages, manifest, cache: cache.as_ref() })
     }
 
     /// Whether files are as they were when they were read.
@@ -103,7 +129,7 @@ impl Work {
     pub fn up_to_date(&self, request: &Request, form: DiagnosticForm) -> Option<Summary> {
         let Trace { summary, told, .. } = Trace::find(self.cache.as_ref()?, self.as_run(request))?;
         let _ = stderr().write_all(told.text(form.into()).as_bytes());
-        Some(Summary { up_to_date: true, ..summary })
+        Some(Summary { up_to_date: true, judged: None, ..summary })
     }
 
     /// Generates, and writes the bundle or compares with it.
@@ -157,7 +183,15 @@ impl Work {
     fn streamed(&mut self, request: &Request, bar: &Bar) -> Result<Generated, Failure> {
         let writer = DirectoryWriter::take_over(&self.out, self.replace, &|| waiting(&self.out));
         let writer = writer.map_err(|error| unwritable(&self.out, error))?;
-        let generated = self.generate(request, &writer, bar)?;
+        let mut generated = self.generate(request, &writer, bar)?;
+        let (judges, inputs) = self.judges();
+        if let Some(judges) = judges {
+            let files = writer
+                .blob_files()
+                .map_err(|error: bundle::Error| Failure::environment(error.to_string()))?;
+            let contents = || Ok(generated.contents.clone());
+            generated.summary.judged = Some(judges.files(files, &contents, inputs, bar)?);
+        }
         writer.finish(&generated.contents).map_err(|error| unwritable(&self.out, error))?;
         Ok(generated)
     }
@@ -172,6 +206,10 @@ impl Work {
         let memory = Memory::default();
         let mut generated = self.generate(request, &memory, bar)?;
         memory.fill(&mut generated.contents);
+        let (judges, inputs) = self.judges();
+        if let Some(judges) = judges {
+            generated.summary.judged = Some(judges.contents(&generated.contents, inputs, bar)?);
+        }
         match check {
             true => compare(&generated.contents, &self.out)?,
             false => bundle::replace_file(&generated.contents, &self.out, self.replace)

@@ -10,6 +10,8 @@ pub use lean::lean;
 pub use part::{Part, PartKind};
 pub use source_map::{Segment, SourceMap};
 
+use std::ops::Range;
+
 use crate::bundle::{Language, Stage};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Setting, Settings};
@@ -86,6 +88,31 @@ impl Composed {
             decisions: Vec::new(),
         }
     }
+
+    /// The function of that name.
+    pub fn function(&self, name: &str) -> Option<&Part> {
+        let is_it = |part: &&Part| {
+            part.kind == PartKind::Function && part.names.iter().any(|found| found == name)
+        };
+        self.parts.iter().find(is_it)
+    }
+
+    /// The author's first line of a declaration, comments aside.
+    pub fn place_of(&self, part: &Part) -> Option<Span> {
+        self.map.lookup(code_lines(&self.text, part.range.clone()).next()?)
+    }
+}
+
+/// The lines with code in a part of a text, without what surrounds it.
+pub fn code_lines(text: &str, part: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let mut at = part.start;
+    let lines = text.get(part).unwrap_or_default().split_inclusive('\n');
+    lines.filter_map(move |line| {
+        let code = line.split("//").next().unwrap_or_default();
+        let start = at + code.len() - code.trim_start().len();
+        at += line.len();
+        (!code.trim().is_empty()).then(|| start..start + code.trim().len())
+    })
 }
 
 /// A condition of an `#if` or `#elif`, and how it came out.

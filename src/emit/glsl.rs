@@ -5,8 +5,12 @@ use naga::proc::BoundsCheckPolicies;
 
 use super::reflect::place;
 use super::slots::{EXPLICIT_LIMIT, Numbering, assign, native};
+use super::text::Text;
 use super::{Emitted, Source};
-use crate::bundle::{Combined, Kind, Native};
+use crate::bundle::{Clip, Combined, Kind, Native};
+
+/// naga's name for what WebGPU counts instances from, and OpenGL does not.
+const FIRST_INSTANCE: &str = "naga_vs_first_instance";
 
 /// Writes GLSL of one version.
 pub fn write(
@@ -20,8 +24,8 @@ pub fn write(
         entry_point: source.entry.to_owned(),
         multiview: None,
     };
-    let mut text = String::new();
-    let mut info = Writer::new(
+    let mut text = Text::default();
+    let written = Writer::new(
         &mut text,
         source.module,
         source.info,
@@ -29,18 +33,24 @@ pub fn write(
         &pipeline,
         BoundsCheckPolicies::default(),
     )
-    .and_then(|mut writer| writer.write())
-    .map_err(|error| error.to_string())?;
+    .and_then(|mut writer| writer.write());
+    let mut info = written.map_err(|error| text.explain(error))?;
     // naga forgets the prefix of this one extension's name, without which no driver knows it.
-    text = text.replacen("#extension ARB_", "#extension GL_ARB_", 1);
+    let mut text = text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1);
     name_blocks(source, &mut text, &mut info);
-    Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &info, numbering) })
+    let mut native = reflection(source, &info, numbering);
+    let is_asked = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));
+    native.first_instance = is_asked.then(|| FIRST_INSTANCE.to_owned());
+    Ok(Emitted { bytes: text.into_bytes(), native })
 }
 
 fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Result<Options, String> {
     let mut options = Options {
         version,
-        writer_flags: WriterFlags::ADJUST_COORDINATE_SPACE,
+        writer_flags: match source.clip {
+            Clip::Wgpu => WriterFlags::ADJUST_COORDINATE_SPACE,
+            Clip::Native => WriterFlags::empty(),
+        },
         ..Options::default()
     };
     if numbering == Numbering::Explicit {

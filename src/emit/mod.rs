@@ -1,14 +1,16 @@
 //! One output language a file, from a valid module.
 //!
-//! All targets keep WebGPU's conventions, so that one host-side path serves them: NDC depth is
-//! [0, 1], NDC y points up, texture and framebuffer rows start at the top.
-//! - `spirv`: as written; the host gives a viewport of negative height (Vulkan 1.1), as wgpu does.
+//! Unless [`Clip::Native`] is asked for, all targets keep WebGPU's conventions, so that one
+//! host-side path serves them: NDC depth is [0, 1], NDC y points up, texture and framebuffer rows
+//! start at the top.
+//! - `spirv`: as written; the host gives a viewport of negative height, as wgpu does.
 //! - `glsl450`, `glsl330`, `essl300`: a vertex stage ends with `y = -y, z = 2z - w`, so that under
 //!   GL's own clip space (leave `glClipControl` alone) depth values, shadow lookups, derivatives
 //!   and `gl_FragCoord` are those of the other targets. Images are stored top row first: the last
 //!   pass to the window flips them, and front faces wind the other way round for `glFrontFace`.
 //! - `msl`, `hlsl`, `wgsl`: the same conventions are native.
 
+pub mod clip;
 mod glsl;
 mod header;
 mod isolate;
@@ -17,6 +19,8 @@ mod reflect;
 mod slots;
 mod specialise;
 pub mod spirv;
+mod text;
+mod zeros;
 
 pub use header::is_header_line;
 pub use isolate::isolate;
@@ -26,7 +30,8 @@ pub use specialise::check;
 
 use naga::ShaderStage;
 
-use crate::bundle::{self, Native, Target};
+use crate::bundle::{self, Clip, Native, Target};
+use crate::compose::{Composed, Part, PartKind};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::validate::{Validated, guard, on_large_stack};
 
@@ -41,8 +46,39 @@ pub struct Entry {
     pub binary: bool,
     /// One line for listings.
     pub about: &'static str,
+    /// Who says whether its outputs are well formed.
+    pub judge: Judge,
+    /// The clip spaces of its vertex stages.
+    pub clip: &'static clip::Spaces,
     /// Writes the entry point of a module without overrides; only [`emit`] calls it.
     pub write: fn(&Source<'_>) -> Result<Emitted, String>,
+}
+
+/// Who judges the outputs of a target, from their bytes: there is no target without. How that is
+/// done is in `judge`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Judge {
+    /// spirv-val, by the rules of each of these environments.
+    SpirvVal(&'static [&'static str]),
+    /// glslangValidator, by each of these rules.
+    Glslang(&'static [GlslRules]),
+    /// glslangValidator as a compiler of HLSL for Vulkan.
+    GlslangHlsl,
+    /// clang, with headers in the place of Metal's.
+    Clang,
+    /// naga, and Tint, the compiler of Chromium and Dawn.
+    NagaAndTint,
+}
+
+/// The rules that a text of GLSL has to keep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum GlslRules {
+    /// OpenGL's, or OpenGL ES's, of the version that the text names.
+    Own,
+    /// Those of a later version, named in the place of the text's own.
+    Later(&'static str),
+    /// Vulkan's, as far as texts for OpenGL can keep them.
+    Vulkan,
 }
 
 /// One file for each output language.
@@ -68,6 +104,8 @@ pub struct Source<'a> {
     pub entry: &'a str,
     /// Index of the entry point in the module.
     pub index: usize,
+    /// The clip space of the output.
+    pub clip: Clip,
 }
 
 /// One shader in one output language.
@@ -86,6 +124,19 @@ pub struct Emitted {
 /// `emit-failed` with the writer's words; `naga-internal` where it panicked;
 /// `unknown-entry-point`; `dependent-override`, for whose place see [`check`].
 pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
+    emit_for(validated, entry, target, Clip::default())
+}
+
+/// [`emit()`] for a clip space.
+///
+/// # Errors
+/// As of [`emit()`].
+pub fn emit_for(
+    validated: &Validated,
+    entry: &str,
+    target: Target,
+    clip: Clip,
+) -> Result<Emitted, Diagnostic> {
     let index = find(validated, entry)?;
     let Some(writer) = targets::find(target) else {
         return Err(Diagnostic::error(
@@ -93,12 +144,29 @@ pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitte
             format!("there is no writer for target `{target}`"),
         ));
     };
-    on_large_stack(|| guard("", || write(validated, index, writer)))
+    on_large_stack(|| guard("", || write(validated, index, writer, clip)))
         .and_then(|result| result)
         .map_err(|error| error.note(format!("while writing `{entry}` for target `{target}`")))
 }
 
-fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted, Diagnostic> {
+fn write(
+    validated: &Validated,
+    index: usize,
+    writer: &Entry,
+    clip: Clip,
+) -> Result<Emitted, Diagnostic> {
+    let mut emitted = written(validated, index, writer, clip)?;
+    let is_vertex = validated.module.entry_points[index].stage == ShaderStage::Vertex;
+    emitted.native.clip = is_vertex.then(|| writer.clip.of(clip));
+    Ok(emitted)
+}
+
+fn written(
+    validated: &Validated,
+    index: usize,
+    writer: &Entry,
+    clip: Clip,
+) -> Result<Emitted, Diagnostic> {
     let failed = |reason: String| {
         Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target))
     };
@@ -111,6 +179,7 @@ fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted,
             stage: point.stage,
             entry: &point.name,
             index,
+            clip,
         };
         return (writer.write)(&source).map_err(failed);
     }
@@ -120,6 +189,7 @@ fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted,
         stage: point.stage,
         entry: &point.name,
         index,
+        clip,
     };
     if let Some(written) = specialise::write(&source, writer) {
         return written.map_err(failed);
@@ -138,8 +208,25 @@ fn write(validated: &Validated, index: usize, writer: &Entry) -> Result<Emitted,
         stage: point.stage,
         entry: &point.name,
         index: 0,
+        clip,
     })
     .map_err(failed)
+}
+
+/// An error of a writer has no place of its own: it is put at the entry point.
+pub fn at_entry(error: Diagnostic, composed: &Composed, entry: &str) -> Diagnostic {
+    let is_entry = |part: &&Part| {
+        part.kind == PartKind::Function && part.names.iter().any(|name| name == entry)
+    };
+    let part = composed.parts.iter().find(is_entry).filter(|_| error.labels.is_empty());
+    let name = part.and_then(|part| {
+        let at = composed.text[part.range.clone()].find(&format!("fn {entry}"));
+        Some(part.range.start + at.map_or(0, |at| at + 3))
+    });
+    match name.and_then(|start| composed.map.lookup(start..start + entry.len())) {
+        Some(span) => error.at(span, "of this entry point"),
+        None => error,
+    }
 }
 
 /// Index of the entry point of that name.

@@ -48,6 +48,7 @@ pub fn native(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native 
             binding: binding.binding,
             space: (numbering == Numbering::Author).then_some(binding.group),
             index,
+            register: None,
             name: None,
         })
         .collect();

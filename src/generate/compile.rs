@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::entry::Entry;
 use super::sink::Sink;
 use super::weave::Text;
-use crate::bundle::{Digest, Target};
+use crate::bundle::{Clip, Digest, Target};
 use crate::cache::{Cache, Job, Made};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::{self, Linker, Reason};
@@ -21,6 +21,7 @@ pub struct Compiled {
 /// Compiles texts, all for the same targets, and passes on what comes of them.
 pub struct Compiler<'a> {
     pub targets: &'a [Target],
+    pub clip: Clip,
     pub sink: &'a dyn Sink,
     pub cache: Option<&'a Cache>,
     pub linker: Linker<'a>,
@@ -42,6 +43,7 @@ impl Compiler<'_> {
             entry: &entry.name,
             options: &entry.options,
             targets: self.targets,
+            clip: self.clip,
         };
         if let Some(found) = self.cache.and_then(|cache| cache.find(job)) {
             return self.pass_on(found?, Vec::new());

@@ -10,6 +10,7 @@
 mod compile;
 mod entry;
 mod lint;
+mod permutation;
 mod shader;
 mod shard;
 mod sink;
@@ -17,16 +18,17 @@ mod summary;
 mod trace;
 mod weave;
 
+pub use permutation::{Named, Permutation, permutation};
 pub use shader::{Root, Shader};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
-pub use summary::{EntrySummary, ProgramSummary, Summary, WholeSummary};
+pub use summary::{EntrySummary, Judged, ProgramSummary, Summary, WholeSummary};
 pub use trace::{Recorder, Run, Told, Trace};
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::bundle::{Axis, Contents, Digest, EntryContents, ProgramContents, Target};
+use crate::bundle::{Axis, Clip, Contents, Digest, EntryContents, ProgramContents, Target};
 use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::Linker;
@@ -52,6 +54,8 @@ pub struct Request {
     pub only: Option<Quoted>,
     /// Only these targets; those of each program where there are none.
     pub targets: Vec<Target>,
+    /// Clip space of all programs, in the place of what each declares.
+    pub clip: Option<Clip>,
     /// Only this part of each program's permutations.
     pub shard: Option<Shard>,
 }
@@ -117,11 +121,13 @@ pub fn generate(
         };
         targets.sort();
         targets.dedup();
+        let clip = request.clip.unwrap_or(program.clip);
         let compiler = Compiler {
             targets: &targets,
+            clip,
             sink: tools.sink,
             cache: tools.cache,
-            linker: Linker::new(&targets),
+            linker: Linker::for_clip(&targets, clip),
         };
         let make = |batch: &[(&Text, &Entry)]| compiler.make(batch);
         let woven = on_large_stack(|| {

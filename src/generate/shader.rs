@@ -1,7 +1,7 @@
 //! One root file under one choice of settings, outside of any manifest: the bytes are those that
 //! a run over a manifest gives for the same settings.
 
-use crate::bundle::{Language, Target};
+use crate::bundle::{Clip, Language, Target};
 use crate::compose::{self, Composed, Keep, Options, lean};
 use crate::diagnostic::Diagnostics;
 use crate::link::{self, Linker, Made};
@@ -29,6 +29,8 @@ pub struct Root<'a> {
     pub settings: &'a Settings,
     /// How it is composed.
     pub options: &'a Options,
+    /// The clip space of its outputs.
+    pub clip: Clip,
 }
 
 impl Root<'_> {
@@ -55,7 +57,7 @@ impl Root<'_> {
         entries: &[(String, naga::ShaderStage)],
         targets: &[Target],
     ) -> Result<Vec<Shader>, Diagnostics> {
-        let linker = Linker::new(targets);
+        let linker = Linker::for_clip(targets, self.clip);
         let (mut shaders, mut errors) = (Vec::new(), Diagnostics::new());
         for (entry, stage) in entries {
             match on_large_stack(|| self.one(entry, targets, &linker)) {

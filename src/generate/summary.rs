@@ -21,10 +21,22 @@ pub struct Summary {
     /// What was compiled as a whole, and not from functions that are translated once.
     #[serde(default)]
     pub whole: Vec<WholeSummary>,
+    /// Where the outputs were judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judged: Option<Judged>,
     /// Whether nothing was done, since neither the inputs nor the bundle changed since they were made.
     pub up_to_date: bool,
     /// Time of the whole run.
     pub seconds: f64,
+}
+
+/// Outputs that the judges of their targets took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Judged {
+    /// In this run.
+    pub now: usize,
+    /// In an earlier one.
+    pub before: usize,
 }
 
 /// One program.
@@ -177,6 +189,9 @@ impl fmt::Display for Summary {
                 target.outputs,
                 target.bytes as f64 / 1e6
             )?;
+        }
+        if let Some(Judged { now, before }) = self.judged {
+            writeln!(f, "{now} outputs judged, {before} known to pass")?;
         }
         if self.up_to_date {
             return writeln!(

@@ -148,7 +148,8 @@ impl Trace {
 
 fn key(sources: &SourceSet, request: &Request) -> crate::bundle::Hash {
     let only = request.only.as_ref().map(|only| &only.text);
-    let asked = format!("{:?} {only:?} {:?} {:?}", request.program, request.targets, request.shard);
+    let Request { program, targets, clip, shard, .. } = request;
+    let asked = format!("{program:?} {only:?} {targets:?} {clip:?} {shard:?}");
     let texts = sources.iter().map(|(_, source)| &*source.text);
     hash(&["run", BUILD, &asked].into_iter().chain(texts).collect::<Vec<_>>())
 }

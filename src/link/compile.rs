@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{Linker, Reason};
-use crate::bundle::{Artifact, Target, Unit};
+use crate::bundle::{Artifact, Clip, Target, Unit};
 use crate::compose::Composed;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::{self, targets};
+use crate::limits::GROUP_BYTES;
 use crate::validate::{self, Validated, validate};
 
 /// A text as its author reads it, for errors, and without comments and layout, to compile.
@@ -39,7 +40,8 @@ pub fn compile(
     let linked = match linker.link(text.lean, entry) {
         Ok(linked) => linked,
         Err(reason) => {
-            let (unit, warnings) = compile_whole(text, entry, targets)?;
+            let (unit, warnings) = compile_whole(text, entry, targets, linker)?;
+            bounded(&unit).map_err(|error| vec![error])?;
             let whole = targets.iter().map(|target| (*target, reason)).collect();
             return Ok(Made { unit, warnings, whole });
         }
@@ -56,10 +58,26 @@ pub fn compile(
     }
     if !whole.is_empty() {
         let left: Vec<Target> = whole.iter().map(|(target, _)| *target).collect();
-        unit.targets.extend(compile_whole(text, entry, &left)?.0.targets);
+        unit.targets.extend(compile_whole(text, entry, &left, linker)?.0.targets);
     }
     let warnings = if linked.suspect { lint(text)? } else { Vec::new() };
+    bounded(&unit).map_err(|error| vec![error])?;
     Ok(Made { unit, warnings, whole })
+}
+
+/// Refuses an output that no bundle takes.
+fn bounded(unit: &Unit) -> Result<(), Diagnostic> {
+    match unit.targets.iter().find(|(_, artifact)| artifact.bytes.len() > GROUP_BYTES) {
+        None => Ok(()),
+        Some((target, artifact)) => {
+            let bytes = artifact.bytes.len();
+            let message = format!(
+                "the output for target `{target}` has {bytes} bytes, more than the {GROUP_BYTES} \
+                 that a bundle takes"
+            );
+            Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message))
+        }
+    }
 }
 
 fn lint(text: &Text<'_>) -> Result<Diagnostics, Diagnostics> {
@@ -71,28 +89,63 @@ fn compile_whole(
     text: &Text<'_>,
     entry: &str,
     targets: &[Target],
+    linker: &Linker<'_>,
 ) -> Result<(Unit, Diagnostics), Diagnostics> {
     let whole = || validate(text.composed);
     // The lean text is quick to read; the whole one knows where its mistakes are.
     let validated = validate(text.lean).or_else(|_| whole())?;
     emit::check(text.lean, &validated).or_else(|_| emit::check(text.composed, &whole()?))?;
-    let unit = unit(&validated, entry, targets).map_err(|error| vec![error])?;
+    let unit = unit(text, &validated, entry, targets, linker)
+        .map_err(|error| vec![emit::at_entry(error, text.composed, entry)])?;
     // The lean text has no places to tell of.
     let warnings = if validate::has_lints(&validated) { lint(text)? } else { Vec::new() };
     Ok((unit, warnings))
 }
 
-fn unit(validated: &Validated, entry: &str, targets: &[Target]) -> Result<Unit, Diagnostic> {
+fn unit(
+    text: &Text<'_>,
+    validated: &Validated,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<Unit, Diagnostic> {
     let reflection = Arc::new(emit::reflect(validated, entry)?);
-    let artifacts = targets
-        .iter()
-        .map(|&target| Ok((target.name().to_owned(), artifact(validated, entry, target)?)));
+    let artifacts = targets.iter().map(|&target| {
+        let artifact = artifact(validated, entry, target, linker.clip);
+        let artifact = artifact.map_err(|error| placed(error, text, entry, target, linker))?;
+        Ok((target.name().to_owned(), artifact))
+    });
     let targets = artifacts.collect::<Result<BTreeMap<_, _>, Diagnostic>>()?;
     Ok(Unit { reflection, targets })
 }
 
-fn artifact(validated: &Validated, entry: &str, target: Target) -> Result<Artifact, Diagnostic> {
-    let emitted = emit::emit(validated, entry, target)?;
+/// A writer tells no place: the function that it has no words for, or else the entry point.
+fn placed(
+    error: Diagnostic,
+    text: &Text<'_>,
+    entry: &str,
+    target: Target,
+    linker: &Linker<'_>,
+) -> Diagnostic {
+    if !error.labels.is_empty() {
+        return error;
+    }
+    let culprit = linker.culprit(text.lean, entry, target);
+    let function = culprit.as_deref().and_then(|name| text.composed.function(name));
+    let function = function.or_else(|| text.composed.function(entry));
+    match function.and_then(|function| text.composed.place_of(function)) {
+        Some(span) => error.at(span, format!("`{target}` has no words for this function")),
+        None => error,
+    }
+}
+
+fn artifact(
+    validated: &Validated,
+    entry: &str,
+    target: Target,
+    clip: Clip,
+) -> Result<Artifact, Diagnostic> {
+    let emitted = emit::emit_for(validated, entry, target, clip)?;
     let extension = targets::find(target).map_or("", |entry| entry.extension).to_owned();
     Ok(Artifact { bytes: emitted.bytes.into(), extension, native: Arc::new(emitted.native) })
 }

@@ -66,7 +66,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
 use crate::bundle::Language;
-use crate::bundle::{Artifact, Reflection, Target};
+use crate::bundle::{Artifact, Clip, Reflection, Target};
 use crate::compose::Composed;
 use canonical::{Recipe, recipe};
 use outline::Outline;
@@ -85,6 +85,7 @@ const SIZE_UNSHARED: usize = 2 << 20;
 /// Functions in some targets, each translated once.
 pub struct Linker<'a> {
     targets: &'a [Target],
+    clip: Clip,
     pool: RwLock<Pool>,
     /// Units asked for since the last batch, and those of them that were new.
     asked: AtomicUsize,
@@ -103,8 +104,13 @@ pub struct Linked {
 
 impl<'a> Linker<'a> {
     pub fn new(targets: &'a [Target]) -> Self {
+        Self::for_clip(targets, Clip::default())
+    }
+
+    /// For outputs in a clip space.
+    pub fn for_clip(targets: &'a [Target], clip: Clip) -> Self {
         let (asked, new) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        Self { targets, pool: RwLock::new(Pool::new(targets)), asked, new }
+        Self { targets, clip, pool: RwLock::new(Pool::new(targets)), asked, new }
     }
 
     /// Puts a lean text together from its functions; those that are new are translated first.
@@ -136,6 +142,26 @@ impl<'a> Linker<'a> {
         Ok(Linked { reflection, targets, suspect })
     }
 
+    /// The author's name of the function that a target has no words for: of those that are refused
+    /// by themselves the first, callees before callers.
+    pub fn culprit(&self, lean: &Composed, entry: &str, target: Target) -> Option<String> {
+        let outline = Outline::read(lean, entry).ok()?;
+        let index = self.targets.iter().position(|known| *known == target)?;
+        let mut units: Vec<Option<Arc<Unit>>> = vec![None; outline.declarations.len()];
+        let is_wesl = outline.language == Language::Wesl;
+        let count = outline.functions.len() - usize::from(is_wesl);
+        for function in &outline.functions[..count] {
+            let name = || Some(outline.declarations[*function].name().to_owned());
+            match self.unit(&outline, canonical::Unit::Function(*function), &units) {
+                Ok(unit) if unit.is_refused(index) => return name(),
+                Ok(unit) => units[*function] = Some(unit),
+                Err(Reason::Refused) => return name(),
+                Err(_) => return None,
+            }
+        }
+        None
+    }
+
     /// A unit, translated now if it never was.
     fn unit(
         &self,
@@ -153,7 +179,7 @@ impl<'a> Linker<'a> {
             return known;
         }
         self.new.fetch_add(1, Ordering::Relaxed);
-        let translated = translate(outline, &recipe, self.targets);
+        let translated = translate(outline, &recipe, self.targets, self.clip);
         let function = match unit {
             canonical::Unit::Function(function) => Some(outline.declarations[function].name()),
             canonical::Unit::Entry => None,

@@ -181,6 +181,13 @@ impl Pool {
     }
 }
 
+impl Unit {
+    /// Whether a target has no words for it.
+    pub fn is_refused(&self, index: usize) -> bool {
+        matches!(self.targets.get(index), Some(Err(Reason::Refused)))
+    }
+}
+
 fn piece(unit: &Unit, index: usize) -> Result<&Piece, Reason> {
     match unit.targets.get(index) {
         Some(piece) => piece.as_ref().map_err(|reason| *reason),

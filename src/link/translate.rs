@@ -17,10 +17,10 @@ use super::outline::Outline;
 use super::reason::Reason;
 use super::summary::{Summary, globals, name_of, summarise};
 use crate::bundle::Language;
-use crate::bundle::{Native, Reflection, Target};
+use crate::bundle::{Clip, Native, Reflection, Target};
 use crate::compose::Composed;
 use crate::emit::{self, type_name};
-use crate::validate::{CAPABILITIES, Validated, check_limits, guard, on_large_stack};
+use crate::validate::{CAPABILITIES, Validated, check_limits, guard, is_bounded, on_large_stack};
 
 /// A unit in every target.
 pub struct Translated {
@@ -56,6 +56,7 @@ pub fn translate(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
     targets: &[Target],
+    clip: Clip,
 ) -> Result<Translated, Reason> {
     let text = recipe.text(outline)?;
     let stage = Some(match outline.stage {
@@ -64,7 +65,7 @@ pub fn translate(
     });
     let composed = Composed::of_text(outline.language, stage, text);
     check_limits(&composed).map_err(|_| Reason::Refused)?;
-    on_large_stack(|| guard(&composed.text, || inner(outline, recipe, &composed, targets)))
+    on_large_stack(|| guard(&composed.text, || inner(outline, recipe, &composed, targets, clip)))
         .unwrap_or(Err(Reason::Refused))
 }
 
@@ -73,8 +74,12 @@ fn inner(
     recipe: &Recipe<'_>,
     composed: &Composed,
     targets: &[Target],
+    clip: Clip,
 ) -> Result<Translated, Reason> {
     let mut module = parse(outline, &composed.text)?;
+    if !is_bounded(&module) {
+        return Err(Reason::Refused);
+    }
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
@@ -92,7 +97,7 @@ fn inner(
     let reflection = is_entry.then(|| emit::reflect(&validated, &entry).map(Arc::new));
     let reflection = reflection.transpose().map_err(|_| Reason::Refused)?;
     let parsed = Parsed { validated, entry, names, marked };
-    let targets = targets.iter().map(|target| write(outline, recipe, &parsed, *target));
+    let targets = targets.iter().map(|target| write(outline, recipe, &parsed, *target, clip));
     Ok(Translated { summary, targets: targets.collect(), reflection })
 }
 
@@ -369,16 +374,17 @@ fn write(
     recipe: &Recipe<'_>,
     parsed: &Parsed,
     target: Target,
+    clip: Clip,
 ) -> Result<Written, Reason> {
     if target == Target::SPIRV {
-        let emitted = emit::emit(&parsed.validated, &parsed.entry, target);
+        let emitted = emit::emit_for(&parsed.validated, &parsed.entry, target, clip);
         let emitted = emitted.map_err(|_| Reason::Refused)?;
         let words = emitted.bytes.as_chunks::<4>().0;
         let words = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
         return Ok(Written::Words { words, native: emitted.native });
     }
     let entry = parsed.marked.module.entry_points.first().map_or(IDLE, |point| &point.name);
-    let emitted = emit::emit(&parsed.marked, entry, target);
+    let emitted = emit::emit_for(&parsed.marked, entry, target, clip);
     let emitted = emitted.map_err(|_| Reason::Refused)?;
     let text = String::from_utf8(emitted.bytes).map_err(|_| Reason::Shape)?;
     let function = match recipe.unit {

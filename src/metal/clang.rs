@@ -51,6 +51,17 @@ pub struct Clang {
     folder: PathBuf,
 }
 
+/// What the headers and the way they are read are, in short: other headers judge otherwise.
+pub fn shim() -> String {
+    let mut hasher = blake3::Hasher::new();
+    let texts = SHIM.iter().flat_map(|(name, text)| [*name, *text]).chain(FLAGS.iter().copied());
+    texts.for_each(|text| {
+        hasher.update(&text.len().to_le_bytes());
+        hasher.update(text.as_bytes());
+    });
+    hasher.finalize().to_hex().to_string()
+}
+
 /// What the installed clang says of itself.
 ///
 /// # Errors

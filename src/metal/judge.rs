@@ -36,7 +36,7 @@ pub fn judge(texts: &[&str], progress: &(dyn Fn(usize) + Sync)) -> Refusals {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
             scope.spawn(|| {
                 while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    add(&outcome, judge_all(&clang, batch));
+                    add(&outcome, judge_batch(&clang, batch));
                     progress(done.fetch_add(batch.len(), Ordering::Relaxed) + batch.len());
                 }
             });
@@ -58,7 +58,11 @@ fn add(outcome: &Mutex<Refusals>, found: Refusals) {
     }
 }
 
-fn judge_all(clang: &Clang, batch: &[Text<'_>]) -> Refusals {
+/// Judges some texts, each with a number by which refusals name it.
+///
+/// # Errors
+/// clang cannot be run.
+pub fn judge_batch(clang: &Clang, batch: &[Text<'_>]) -> Refusals {
     let (mut refusals, mut sound) = (Vec::new(), Vec::new());
     for (index, text) in batch {
         match before_clang(text) {
@@ -66,7 +70,7 @@ fn judge_all(clang: &Clang, batch: &[Text<'_>]) -> Refusals {
             None => sound.push((*index, *text)),
         }
     }
-    judge_batch(clang, &sound, &mut refusals)?;
+    judge_sound(clang, &sound, &mut refusals)?;
     Ok(refusals)
 }
 
@@ -98,7 +102,7 @@ fn batches<'b, 't>(texts: &'b [Text<'t>]) -> Vec<&'b [Text<'t>]> {
 
 /// A batch that is refused is judged in halves, down to the texts that are at fault: a mistake in
 /// one of them may make others look wrong.
-fn judge_batch(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Result<(), Missing> {
+fn judge_sound(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Result<(), Missing> {
     if batch.is_empty() {
         return Ok(());
     }
@@ -111,8 +115,8 @@ fn judge_batch(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Resu
         return Ok(());
     }
     let (first, second) = batch.split_at(batch.len() / 2);
-    judge_batch(clang, first, to)?;
-    judge_batch(clang, second, to)
+    judge_sound(clang, first, to)?;
+    judge_sound(clang, second, to)
 }
 
 /// Texts side by side, each in a namespace of its own.

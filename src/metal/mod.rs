@@ -17,6 +17,6 @@ pub mod program;
 pub mod request;
 mod token;
 
-pub use clang::{Missing, version};
-pub use judge::{Refusal, judge};
+pub use clang::{Clang, Missing, shim, version};
+pub use judge::{Refusal, judge, judge_batch};
 pub use program::Program;

@@ -54,7 +54,7 @@ fn generated(program: &str, key: &str) -> Result<Bundle, Failed> {
             program: Some(program.to_owned()),
             only: Some(Quoted::whole(&sources, id)),
             targets: Target::ALL.to_vec(),
-            shard: None,
+            ..Request::default()
         };
         in_memory(&mut sources, &packages, &manifest, &request, &|_| ())
     });

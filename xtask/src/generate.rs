@@ -1,19 +1,20 @@
-//! `cargo xtask gen`: the library's bundle, as `lamplight gen` makes it, and what the external validators say of it.
+//! `cargo xtask gen`: the library's bundle, as `lamplight gen` makes it, once all targets are judged.
 
 use std::io::{IsTerminal, Write, stderr};
 use std::path::{Path, PathBuf};
 
-use lamplight::bundle::{self, DirectoryWriter};
+use lamplight::bundle::{self, Bundle, DirectoryWriter, blob_files};
 use lamplight::cache::{Cache, Folder};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{
     Generated, Progress, Recorder, Request, Run, Summary, Told, Tools, Trace, generate,
 };
+use lamplight::judge::{Made, blame};
 use lamplight::project;
 use lamplight::source::SourceSet;
 
-use crate::validate::{Earlier, validate};
+use crate::validate::{Judged, judge};
 use crate::{Failure, Outcome};
 
 /// Where the library's bundle goes.
@@ -26,7 +27,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new(".")).to_owned()
 }
 
-/// Generates, prints the summary, and validates what is new.
+/// Generates, judges what is new, writes the bundle and prints the summary. An output that is
+/// refused leaves the older bundle as it was.
 pub fn run(arguments: &[String]) -> Outcome {
     if !arguments.is_empty() {
         return Err(Failure::usage("usage: cargo xtask gen (for other manifests: lamplight gen)"));
@@ -53,28 +55,41 @@ pub fn run(arguments: &[String]) -> Outcome {
     };
     if let Some(Trace { summary, told, .. }) = Trace::find(&cache, as_run()) {
         eprint!("{}", told.text(Form::Human));
-        return finish(&Summary {
-            up_to_date: true,
-            seconds: start.elapsed().as_secs_f64(),
-            ..summary
-        });
+        let files = blob_files(&out).map_err(environment)?;
+        let judged = judge(files, Some(&cache))?;
+        let summary =
+            Summary { up_to_date: true, seconds: start.elapsed().as_secs_f64(), ..summary };
+        if !judged.refusals.is_empty() {
+            let contents = Bundle::open(&out).and_then(|bundle| bundle.contents());
+            let contents = &contents.map_err(environment)?;
+            let made = Made { packages: &packages, manifest: &manifest, contents };
+            let refused = blame(&mut sources, &made, &judged.refusals);
+            return Err(input(&sources, refused));
+        }
+        return finish(&summary, &judged);
     }
     let writer = DirectoryWriter::create(&out).map_err(environment)?;
     let tools = Tools { sink: &writer, cache: Some(&cache), progress: &show };
     let generated = generate(&mut sources, &packages, &manifest, &request, &tools);
     let Generated { contents, summary, warnings } =
         generated.map_err(|diagnostics| input(&sources, diagnostics))?;
+    let judged = judge(writer.blob_files().map_err(environment)?, Some(&cache))?;
+    if !judged.refusals.is_empty() {
+        let made = Made { packages: &packages, manifest: &manifest, contents: &contents };
+        let refused = blame(&mut sources, &made, &judged.refusals);
+        return Err(input(&sources, refused));
+    }
     writer.finish(&contents).map_err(environment)?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
     let trace = Trace::new(&recorder, &out, summary.clone(), Told::new(&path, &sources, &warnings));
     trace.into_iter().for_each(|trace| trace.keep(&cache, as_run()));
-    finish(&summary)
+    finish(&summary, &judged)
 }
 
-fn finish(summary: &Summary) -> Outcome {
+fn finish(summary: &Summary, judged: &Judged) -> Outcome {
     print!("{summary}");
     println!("written to target/bundles/lamplight");
-    validate(&bundle(), Earlier::Trust)
+    judged.complete()
 }
 
 fn environment(error: bundle::Error) -> Failure {

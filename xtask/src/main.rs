@@ -6,7 +6,6 @@ mod bench;
 mod ci;
 mod create;
 mod docs;
-mod external;
 mod fuzz;
 mod generate;
 mod machine;
@@ -52,7 +51,11 @@ impl Failure {
 }
 
 const COMMANDS: &[Command] = &[
-    ("gen", "write the library's bundle to target/bundles/ and validate it", generate::run),
+    (
+        "gen",
+        "write the library's bundle to target/bundles/, once all its outputs are judged",
+        generate::run,
+    ),
     ("test", "install what the tests need, then run every test", test::run),
     (
         "new",
@@ -60,7 +63,7 @@ const COMMANDS: &[Command] = &[
         create::run,
     ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
-    ("validate", "run the external validators over a bundle", validate::run),
+    ("validate", "let the judges of all targets look at a bundle", validate::run),
     (
         "docs",
         "write the catalogue, the modules made from data, the guide as a book (--check: only compare)",

@@ -1,129 +1,103 @@
-//! `cargo xtask validate [BUNDLE]`: every output of a bundle through the external validators.
+//! `cargo xtask validate [BUNDLE]`: every output of a bundle before the judges of all targets.
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
-use lamplight::bundle::blob_files;
+use lamplight::bundle::{BlobFile, Target, blob_files};
+use lamplight::cache::Cache;
+use lamplight::judge::{Missing, Output, Refusal, Tint, missing, outputs, verdict};
 
-use crate::external::{self, Job};
 use crate::{Failure, Outcome, generate, machine};
 
-/// Programs that judge outputs, with the Debian package that brings each.
-const VALIDATORS: &[(&str, &str)] =
-    &[("spirv-val", "spirv-tools"), ("glslangValidator", "glslang-tools")];
+/// Refusals that are told.
+const TOLD: usize = 20;
 
-/// Outputs that passed, beside the bundle: files are named by their content, so that a name that
-/// passed once passes always.
-const PASSED: &str = "validated.txt";
-
-/// Validates a bundle directory, all of it.
+/// Judges a bundle directory, all of it, whatever passed before.
 pub fn run(arguments: &[String]) -> Outcome {
     let bundle = arguments.first().map_or_else(generate::bundle, PathBuf::from);
-    validate(&bundle, Earlier::Forget)
-}
-
-/// What to do with outputs that passed in an earlier run.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Earlier {
-    Trust,
-    Forget,
-}
-
-/// Judges every output of the bundle by the validators that are installed, and says which are not.
-pub fn validate(bundle: &Path, earlier: Earlier) -> Outcome {
-    let missing: Vec<_> =
-        VALIDATORS.iter().filter(|(program, _)| !machine::program(program)).collect();
-    for (program, package) in &missing {
-        eprintln!("not validated: {program} is not installed (Debian package {package})");
-    }
-    if earlier == Earlier::Forget && !missing.is_empty() {
-        return Err(Failure::environment(
-            "install the validators: `cargo xtask test` does, where it may",
-        ));
-    }
-    let versions = versions();
-    let passed =
-        if earlier == Earlier::Trust { read_passed(bundle, &versions) } else { BTreeSet::new() };
-    let mut jobs = jobs(bundle)?;
-    jobs.retain(|job| {
-        job.is_covered()
-            && !passed.contains(&name(job))
-            && !missing.iter().any(|(program, _)| judges(program, job))
-    });
-    let (total, names) = (jobs.len(), jobs.iter().map(name).collect::<BTreeSet<_>>());
-    let (judged, refusals) = external::validate(jobs, &|done| show(done, total))
-        .map_err(|error| Failure::environment(error.to_string()))?;
-    println!(
-        "validated {judged} outputs ({} passed before), {} refused",
-        passed.len(),
-        refusals.len()
-    );
-    if refusals.is_empty() {
-        return write_passed(bundle, &versions, passed.union(&names))
-            .map_err(|error| Failure::environment(error.to_string()));
-    }
-    Err(Failure::check(refusals.into_iter().take(20).collect::<Vec<_>>().join("\n")))
-}
-
-fn judges(program: &str, job: &Job) -> bool {
-    (program == "spirv-val") == (job.target == "spirv")
-}
-
-/// Every distinct output, with its stage.
-fn jobs(bundle: &Path) -> Result<Vec<Job>, Failure> {
-    let files = blob_files(bundle)
+    let files = blob_files(&bundle)
         .map_err(|error| Failure::input(format!("`{}`: {error}", bundle.display())))?;
-    Ok(files
-        .into_iter()
-        .map(|file| Job {
-            stage: external::stage(file.stage),
-            target: file.target,
-            file: file.path,
-        })
-        .collect())
-}
-
-fn name(job: &Job) -> String {
-    job.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-/// What the validators call themselves, in one line: another version judges anew.
-fn versions() -> String {
-    let version = |program: &str| {
-        Command::new(program).arg("--version").output().map_or(String::new(), |output| {
-            String::from_utf8_lossy(&output.stdout).replace('\n', " ")
-        })
+    let judged = judge(files, None)?;
+    let line = |refusal: &Refusal| {
+        let Refusal { output: Output { target, file, .. }, judge, words, .. } = refusal;
+        format!("{} ({target}): {judge}: {words}", file.display())
     };
-    VALIDATORS.iter().map(|(program, _)| version(program)).collect()
-}
-
-fn read_passed(bundle: &Path, versions: &str) -> BTreeSet<String> {
-    let text = std::fs::read_to_string(bundle.with_file_name(PASSED)).unwrap_or_default();
-    let mut lines = text.lines();
-    if lines.next() == Some(versions) {
-        lines.map(str::to_owned).collect()
-    } else {
-        BTreeSet::new()
+    match judged.refusals.as_slice() {
+        [] => judged.complete(),
+        refusals => {
+            let lines: Vec<String> = refusals.iter().take(TOLD).map(line).collect();
+            Err(Failure::check(lines.join("\n")))
+        }
     }
 }
 
-fn write_passed<'a>(
-    bundle: &Path,
-    versions: &str,
-    names: impl Iterator<Item = &'a String>,
-) -> std::io::Result<()> {
-    let lines = names.fold(format!("{versions}\n"), |text, name| text + name + "\n");
-    Ok(lamplight::output::write(&bundle.with_file_name(PASSED), lines.as_bytes())?)
+/// What the judges that are here say, and which are not.
+pub struct Judged {
+    pub refusals: Vec<Refusal>,
+    missing: Vec<Missing>,
+}
+
+impl Judged {
+    /// Fails if a judge was not there.
+    pub fn complete(&self) -> Outcome {
+        if self.missing.is_empty() {
+            return Ok(());
+        }
+        let lines: Vec<String> = self.missing.iter().map(Missing::to_string).collect();
+        Err(Failure::environment(format!("not all outputs are judged:\n{}", lines.join("\n"))))
+    }
+}
+
+/// Judges the outputs of all targets whose judges are here, and says which are not. What the cache
+/// knows to pass is not judged again.
+pub fn judge(
+    files: impl IntoIterator<Item = BlobFile>,
+    cache: Option<&Cache>,
+) -> Result<Judged, Failure> {
+    let tint = tint();
+    let mut outputs = outputs(files).map_err(|error| Failure::input(error.to_string()))?;
+    let mut lacking: Vec<Missing> = Vec::new();
+    let mut targets: Vec<Target> = outputs.iter().map(|output| output.target).collect();
+    targets.sort();
+    targets.dedup();
+    for target in targets {
+        let found = missing(&[target], &tint);
+        if !found.is_empty() {
+            outputs.retain(|output| output.target != target);
+            lacking.extend(found);
+        }
+    }
+    lacking.sort();
+    lacking.dedup();
+    let start = std::time::Instant::now();
+    let verdict = verdict(outputs, cache, &tint, &show).map_err(Failure::environment)?;
+    println!(
+        "judged {} outputs in {:.1} s ({} passed before), {} refused",
+        verdict.judged,
+        start.elapsed().as_secs_f64(),
+        verdict.known,
+        verdict.refusals.len()
+    );
+    Ok(Judged { refusals: verdict.refusals, missing: lacking })
+}
+
+/// Tint below `target/`, installed now if it is not there and npm is.
+fn tint() -> Tint {
+    let tint = Tint::at(generate::root().join("target/lamplight-tint"));
+    let is_missing = !missing(&[Target::WGSL], &tint).is_empty();
+    if is_missing && machine::program("npm") && machine::program("node") {
+        let [npm, arguments @ ..] = tint.install();
+        eprintln!("installing Tint: {npm} {}", arguments.join(" "));
+        // Where it fails, what is missing is told.
+        let _ = Command::new(npm).args(arguments).stdout(std::io::stderr()).status();
+    }
+    tint
 }
 
 fn show(done: usize, total: usize) {
     use std::io::{IsTerminal, Write, stderr};
     if stderr().is_terminal() {
-        let _ = write!(
-            stderr(),
-            "\rvalidating {done} of {total}{}",
-            if done == total { "\n" } else { "" }
-        );
+        let end = if done == total { "\n" } else { "" };
+        let _ = write!(stderr(), "\rjudging {done} of {total}{end}");
     }
 }

@@ -4,7 +4,7 @@ mod depfile;
 mod files;
 mod target;
 
-pub use target::{Wanted, target, wanted, wanted_one};
+pub use target::{Wanted, clip, target, wanted, wanted_one};
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::input::{Context, Input, Ready};
 use super::overwrite::Overwrite;
-use crate::bundle::Target;
+use crate::bundle::{Clip, Target};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::generate::{Root, Shader};
 use crate::source::SourceSet;
@@ -31,6 +31,10 @@ pub struct Arguments {
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
     #[arg(required_unless_present = "reflection")]
     target: Vec<Wanted>,
+    /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: that
+    /// of the file's program in the manifest, or else `wgpu`].
+    #[arg(long, value_name = "SPACE", value_parser = clip)]
+    clip: Option<Clip>,
     /// Only this entry point; may be given several times.
     #[arg(long, value_name = "NAME")]
     entry: Vec<String>,
@@ -95,8 +99,9 @@ fn compile(
     form: DiagnosticForm,
 ) -> Result<(SourceSet, Vec<File>), Failure> {
     let Ready { sources, composed, context } = ready;
-    let root =
-        Root { graph: &context.graph, settings: &context.settings, options: &context.options };
+    let Context { graph, settings, options, .. } = &context;
+    let clip = arguments.clip.unwrap_or(context.clip);
+    let root = Root { graph, settings, options, clip };
     let shaders = root.entries(&composed).and_then(|entries| {
         let entries = chosen(arguments, file, entries)?;
         root.compile(&entries, targets)

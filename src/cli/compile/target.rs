@@ -1,6 +1,6 @@
 //! Targets by name.
 
-use crate::bundle::Target;
+use crate::bundle::{Clip, Target};
 use crate::diagnostic::nearest;
 
 /// What `--target` may name.
@@ -35,5 +35,13 @@ pub fn target(name: &str) -> Result<Target, String> {
         let hint = nearest(name, names.iter().copied())
             .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         format!("no such target{hint} (targets: {})", names.join(", "))
+    })
+}
+
+/// A clip space by name, as an option's value.
+pub fn clip(name: &str) -> Result<Clip, String> {
+    Clip::find(name).ok_or_else(|| {
+        let names: Vec<&str> = Clip::ALL.iter().map(|(name, _)| *name).collect();
+        format!("no such clip space (clip spaces: {})", names.join(", "))
     })
 }

@@ -8,7 +8,7 @@ use super::super::input::{Context, Ready};
 use super::super::progress::Bar;
 use super::super::variants;
 use super::Arguments;
-use crate::bundle::{Axis, Language, Stage, Target};
+use crate::bundle::{Axis, Clip, Language, Stage, Target};
 use crate::catalogue::{self, Kind};
 use crate::cost::pipeline::Known;
 use crate::cost::{self, Subject, permutations};
@@ -61,7 +61,7 @@ fn shaders(
     let Ready { sources, composed, context } =
         arguments.input.compose(file, SourceSet::default(), form)?;
     let Context { graph, settings, options, .. } = &context;
-    let root = Root { graph, settings, options };
+    let root = Root { graph, settings, options, clip: Clip::default() };
     let shaders = root
         .entries(&composed)
         .and_then(|entries| root.compile(&entries, &[Target::SPIRV]))
@@ -141,7 +141,7 @@ fn permutation(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
         program: Some(program),
         only: Some(Quoted::whole(&sources, id)),
         targets: vec![Target::SPIRV],
-        shard: None,
+        ..Request::default()
     };
     let subjects =
         permutations_of(&mut sources, &packages, &manifest, &request, language(arguments));

@@ -112,6 +112,7 @@ pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, Stri
             stage: source.stage,
             entry: &point.name,
             index: source.index,
+            clip: source.clip,
         };
         finish((writer.write)(&source)?, &opens, writer.target)
     }))

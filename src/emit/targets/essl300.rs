@@ -4,11 +4,12 @@
 //! `glGetUniformBlockIndex` and `glGetUniformLocation`. Coordinates: see [`crate::emit`].
 
 use naga::back::glsl::Version;
+use naga::{ImageDimension, TypeInner};
 
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::{Emitted, Entry, GlslRules, Judge, Source, clip};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -16,9 +17,18 @@ pub const TARGET: Entry = Entry {
     extension: "essl300.glsl",
     binary: false,
     about: "GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2",
+    judge: Judge::Glslang(&[GlslRules::Own, GlslRules::Later("310 es")]),
+    clip: &clip::OPENGL,
     write,
 };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
+    // naga writes `sampler1D` here, which no driver of this version knows.
+    let is_line = |inner: &TypeInner| {
+        matches!(inner, TypeInner::Image { dim: ImageDimension::D1, .. })
+    };
+    if source.module.types.iter().any(|(_, ty)| is_line(&ty.inner)) {
+        return Err("the language has no textures of one dimension".to_owned());
+    }
     glsl::write(source, Version::new_gles(300), Numbering::Named)
 }

@@ -8,11 +8,18 @@ use naga::back::glsl::Version;
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::{Emitted, Entry, GlslRules, Judge, Source, clip};
 
 /// The target, for the table of all.
-pub const TARGET: Entry =
-    Entry { target: Target::GLSL330, extension: "glsl330.glsl", binary: false, about: "GLSL 3.30 core, for OpenGL 3.3", write };
+pub const TARGET: Entry = Entry {
+    target: Target::GLSL330,
+    extension: "glsl330.glsl",
+    binary: false,
+    about: "GLSL 3.30 core, for OpenGL 3.3",
+    judge: Judge::Glslang(&[GlslRules::Own]),
+    clip: &clip::OPENGL,
+    write,
+};
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     glsl::write(source, Version::Desktop(330), Numbering::Named)

@@ -9,11 +9,18 @@ use naga::back::glsl::Version;
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::{Emitted, Entry, GlslRules, Judge, Source, clip};
 
 /// The target, for the table of all.
-pub const TARGET: Entry =
-    Entry { target: Target::GLSL450, extension: "glsl450.glsl", binary: false, about: "GLSL 4.50 core, for OpenGL 4.5", write };
+pub const TARGET: Entry = Entry {
+    target: Target::GLSL450,
+    extension: "glsl450.glsl",
+    binary: false,
+    about: "GLSL 4.50 core, for OpenGL 4.5",
+    judge: Judge::Glslang(&[GlslRules::Own, GlslRules::Vulkan]),
+    clip: &clip::OPENGL,
+    write,
+};
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     glsl::write(source, Version::Desktop(450), Numbering::Explicit)

@@ -12,10 +12,11 @@ use naga::back::hlsl::{
     ShaderModel, Writer,
 };
 
-use crate::bundle::{HeapSampler, Kind, Native, SamplerHeap, Semantic, Target};
-use crate::emit::reflect::inputs;
+use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
+use crate::emit::reflect::{inputs, kind};
 use crate::emit::slots::{Numbering, assign, native};
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::text::Text;
+use crate::emit::{Emitted, Entry, Judge, Source, clip, zeros};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -23,6 +24,8 @@ pub const TARGET: Entry = Entry {
     extension: "hlsl",
     binary: false,
     about: "HLSL, shader model 5.1 (Direct3D 12)",
+    judge: Judge::GlslangHlsl,
+    clip: &clip::SHARED,
     write,
 };
 
@@ -38,66 +41,17 @@ const HEAPS: [(&str, Kind); 2] =
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let options = options(source)?;
     let pipeline = PipelineOptions { entry_point: Some((source.stage, source.entry.to_owned())) };
-    let mut text = String::new();
-    let info = Writer::new(&mut text, &options, &pipeline)
-        .write(source.module, source.info, None)
-        .map_err(|error| error.to_string())?;
+    let mut text = Text::default();
+    let written = Writer::new(&mut text, &options, &pipeline).write(source.module, source.info, None);
+    let info = written.map_err(|error| text.explain(error))?;
     let name = info
         .entry_point_names
         .into_iter()
         .next()
         .ok_or("no entry point was written")?
         .map_err(|error| error.to_string())?;
-    let text = with_plain_zeros(&text);
+    let text = zeros::without_casts(&text.0);
     Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &name, &options) })
-}
-
-/// Elements up to which a zero array is written out.
-const MAX_ELEMENTS: usize = 1024;
-
-/// naga writes an array of zeros as `(float3[9])0`. fxc and dxc take that, glslang does not; all
-/// of them take a list of elements, where a variable is declared.
-fn with_plain_zeros(text: &str) -> String {
-    let line = |line: &str| {
-        declared_zeros(line).or_else(|| returned_zeros(line)).unwrap_or_else(|| line.to_owned())
-    };
-    if text.contains("])0;") {
-        text.split_inclusive('\n').map(line).collect()
-    } else {
-        text.to_owned()
-    }
-}
-
-/// `float3 a[2] = (float3[2])0;` with a list instead.
-fn declared_zeros(line: &str) -> Option<String> {
-    let (declaration, cast) = line.split_once(" = (")?;
-    let (list, end) = zeros(cast)?;
-    declaration.ends_with(']').then(|| format!("{declaration} = {list}{end}"))
-}
-
-/// `return (float3[2])0;` by way of a variable.
-fn returned_zeros(line: &str) -> Option<String> {
-    let (indent, cast) = line.split_once("return (")?;
-    let (list, end) = zeros(cast)?;
-    let (ty, _) = cast.split_once(")0;")?;
-    let (element, sizes) = ty.split_at(ty.find('[')?);
-    Some(format!("{indent}{element} zeros{sizes} = {list};\n{indent}return zeros{end}"))
-}
-
-/// The list for `float3[2])0;`, and what follows the cast from the semicolon on.
-fn zeros(cast: &str) -> Option<(String, &str)> {
-    let (ty, _) = cast.split_once(")0;")?;
-    let (element, sizes) = ty.split_at(ty.find('[')?);
-    let sizes = sizes.strip_prefix('[')?.strip_suffix(']')?.split("][");
-    let sizes: Vec<usize> = sizes.map(|size| size.parse().ok()).collect::<Option<_>>()?;
-    let count = sizes.iter().try_fold(1usize, |count, size| count.checked_mul(*size))?;
-    if count > MAX_ELEMENTS {
-        return None;
-    }
-    let list = sizes.iter().rev().fold(format!("({element})0"), |inner, size| {
-        format!("{{ {} }}", vec![inner; *size].join(", "))
-    });
-    Some((list, &cast[ty.len() + 2..]))
 }
 
 fn options(source: &Source<'_>) -> Result<Options, String> {
@@ -137,8 +91,28 @@ fn reflection(source: &Source<'_>, entry: &str, options: &Options) -> Native {
             .any(|sampler| [sampler.group, sampler.binding] == [group, binding])
     };
     native.slots.retain(|slot| !in_heap(slot.group, slot.binding));
+    for slot in &mut native.slots {
+        slot.register = class(source, [slot.group, slot.binding]).map(str::to_owned);
+    }
     native.semantics = semantics(source);
     native
+}
+
+/// The class of register that naga gives what is bound.
+fn class(source: &Source<'_>, place: Place) -> Option<&'static str> {
+    let mut variables = source.module.global_variables.iter();
+    let (_, variable) = variables
+        .find(|(_, one)| one.binding.is_some_and(|one| [one.group, one.binding] == place))?;
+    Some(match (kind(source.module, variable)?, variable.space) {
+        (Kind::Uniform, _) => "b",
+        (Kind::Storage, naga::AddressSpace::Storage { access })
+            if access.contains(naga::StorageAccess::STORE) =>
+        {
+            "u"
+        }
+        (Kind::StorageTexture, _) => "u",
+        _ => "t",
+    })
 }
 
 /// The heaps that the entry point takes samplers from.

@@ -6,12 +6,13 @@
 use std::collections::BTreeMap;
 
 use naga::back::msl::{
-    BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string,
+    BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, Writer,
 };
 
 use crate::bundle::{BufferSizes, Kind, Target};
 use crate::emit::slots::{Numbering, assign, native};
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::text::Text;
+use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -19,6 +20,8 @@ pub const TARGET: Entry = Entry {
     extension: "metal",
     binary: false,
     about: "Metal Shading Language 2.0 (macOS 10.13, iOS 11)",
+    judge: Judge::Clang,
+    clip: &clip::SHARED,
     write,
 };
 
@@ -38,8 +41,10 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         entry_point: Some((source.stage, source.entry.to_owned())),
         ..PipelineOptions::default()
     };
-    let (text, info) = write_string(source.module, source.info, &options, &pipeline)
-        .map_err(|error| error.to_string())?;
+    let mut text = Text::default();
+    let written = Writer::new(&mut text).write(source.module, source.info, &options, &pipeline);
+    let info = written.map_err(|error| text.explain(error))?;
+    let text = text.0;
     let name = info
         .entry_point_names
         .into_iter()

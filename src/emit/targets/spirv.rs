@@ -1,4 +1,4 @@
-//! SPIR-V 1.3, for Vulkan 1.1 and later.
+//! SPIR-V 1.0, for every version of Vulkan.
 //!
 //! Descriptor set and binding are the author's group and binding. Names are kept for debuggers;
 //! no source text and no path is. Loops and indices are as written, without inserted checks.
@@ -7,21 +7,30 @@ use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::bundle::Target;
 use crate::emit::slots::{Numbering, native};
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
 /// The target, for the table of all.
-pub const TARGET: Entry =
-    Entry { target: Target::SPIRV, extension: "spv", binary: true, about: "SPIR-V 1.3 (Vulkan 1.1), little-endian words", write };
+pub const TARGET: Entry = Entry {
+    target: Target::SPIRV,
+    extension: "spv",
+    binary: true,
+    about: "SPIR-V 1.0 (Vulkan 1.0), little-endian words",
+    judge: Judge::SpirvVal(&["vulkan1.0", "vulkan1.1"]),
+    clip: &clip::VULKAN,
+    write,
+};
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let options = Options {
-        lang_version: (1, 3),
+        lang_version: (1, 0),
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
         force_loop_bounding: false,
         ..Options::default()
     };
-    let pipeline = PipelineOptions { shader_stage: source.stage, entry_point: source.entry.to_owned() };
-    let words = write_vec(source.module, source.info, &options, Some(&pipeline)).map_err(|error| error.to_string())?;
+    let pipeline =
+        PipelineOptions { shader_stage: source.stage, entry_point: source.entry.to_owned() };
+    let words = write_vec(source.module, source.info, &options, Some(&pipeline))
+        .map_err(|error| error.to_string())?;
     let bytes = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     Ok(Emitted { bytes, native: native(source, source.entry, Numbering::Author) })
 }

@@ -18,8 +18,8 @@ pub use split::split;
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// Magic number, version 1.3 and the generator number: other writers lay their modules out otherwise.
-const HEADER: [u32; 3] = [0x0723_0203, 0x0001_0300, 28];
+/// Magic number, version 1.0 and the generator number: other writers lay their modules out otherwise.
+const HEADER: [u32; 3] = [0x0723_0203, 0x0001_0000, 28];
 /// Logical addressing with the GLSL memory model, as one instruction.
 const MEMORY_MODEL: [u32; 3] = [3 << 16 | 14, 0, 1];
 /// Bounds the recursion through calls and nested types, so that bad content cannot fill the stack of a small thread.

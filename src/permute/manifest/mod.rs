@@ -5,6 +5,7 @@
 //! wesl = "programs/forward.wesl"
 //! glsl = { vertex = "programs/forward.vert.glsl", fragment = "programs/forward.frag.glsl" }
 //! targets = ["spirv", "glsl330"]          # all, where it is left out
+//! clip = "native"                         # the API's own clip space; "wgpu", where it is left out
 //! limit = 5000                            # permutations; a million, where it is left out
 //! include = ["shadow=hard,two_sided"]     # keys: wanted whatever the next two say
 //! only = [{ lights = ["spot", "point"], shadow = "*" }]

@@ -4,7 +4,7 @@ use toml::de::DeTable;
 
 use super::reader::{Name, Reader, Value};
 use super::{axes, lists, names};
-use crate::bundle::Target;
+use crate::bundle::{Clip, Target};
 use crate::diagnostic::{Diagnostic, Severity, codes};
 use crate::permute::axis::Axis;
 use crate::permute::space::{Constraint, Lists, Space, TooComplex};
@@ -24,6 +24,8 @@ pub struct Program {
     pub glsl: Option<Glsl>,
     /// In the order declared; all, where the manifest names none.
     pub targets: Vec<Target>,
+    /// The clip space of its outputs.
+    pub clip: Clip,
     /// Its permutations.
     pub space: Space,
     /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
@@ -70,6 +72,7 @@ const KEYS: &[&str] = &[
     "wesl",
     "glsl",
     "targets",
+    "clip",
     "axis",
     "constraint",
     "include",
@@ -101,12 +104,14 @@ pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> 
     }
     let usage = table.get("usage").and_then(|value| file(reader, value, "`usage`"));
     let targets = table.get("targets").map_or(Target::ALL.to_vec(), |value| targets(reader, value));
+    let clip = table.get("clip").map_or(Some(Clip::default()), |value| clip(reader, value));
     let limit = table.get("limit").map_or(Some(LIMITS.permutations), |value| limit(reader, value));
     let undeclared =
         table.get("features_default").and_then(|value| features_default(reader, value));
     let mut space = space(reader, table, &what, span)?;
     space.undeclared = undeclared;
-    let program = Program { name, doc, wesl, glsl, targets, space, usage, limit: limit?, span };
+    let program =
+        Program { name, doc, wesl, glsl, targets, clip: clip?, space, usage, limit: limit?, span };
     check_limit(reader, &program);
     (self::errors(reader) == errors).then_some(program)
 }
@@ -159,6 +164,19 @@ fn target(reader: &mut Reader, value: &Value) -> Option<Target> {
                 .suggest(&text.text, names())
                 .note(format!("targets: {}", names().collect::<Vec<_>>().join(", "))),
         );
+    }
+    found
+}
+
+fn clip(reader: &mut Reader, value: &Value) -> Option<Clip> {
+    let text = reader.string(value, "`clip`")?;
+    let found = Clip::find(&text.text);
+    if found.is_none() {
+        let names = || Clip::ALL.iter().map(|(name, _)| *name);
+        let message = format!("there is no clip space `{}`", text.text);
+        let unknown = Diagnostic::error(codes::UNKNOWN_CLIP, message).at(text.span, "not one");
+        let known = format!("clip spaces: {}", names().collect::<Vec<_>>().join(", "));
+        reader.problems.push(unknown.suggest(&text.text, names()).note(known));
     }
     found
 }

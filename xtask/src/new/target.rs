@@ -9,10 +9,13 @@ fn make(repository: &Repository<'_>, name: &str) -> Result<Made, String> {
     let file = format!("src/emit/targets/{name}.rs");
     repository.refuse_existing(&file)?;
     let next = vec![
-        format!("{file}: `about`, `extension`, and `write` with naga's writer (trial emit)"),
-        "docs/guide/targets.md: a column of its conventions (trial guide lists are whole)"
+        format!(
+            "{file}: `about`, `extension`, `judge`, `clip`, and `write` with naga's writer (trial emit)"
+        ),
+        "docs/guide/targets.md: a column of its conventions and of its clip spaces, and its judge \
+         (trials guide lists are whole, conventions::guide)"
             .to_owned(),
-        "xtask/src/external.rs: the validator that judges it (trial library::external_validators)"
+        "src/judge/: where no judge that is there takes it, a file for its own (trials judges)"
             .to_owned(),
         "INSTA_UPDATE=always cargo xtask test emit; read the outputs".to_owned(),
     ];
@@ -23,13 +26,15 @@ fn make(repository: &Repository<'_>, name: &str) -> Result<Made, String> {
 const TEXT: &str = r#"//! NAME.
 
 use crate::bundle::Target;
-use crate::emit::{Emitted, Entry, Source};
+use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
 pub const TARGET: Entry = Entry {
     target: Target::CONSTANT,
     extension: "NAME",
     binary: false,
     about: "",
+    judge: Judge::NagaAndTint,
+    clip: &clip::SHARED,
     write,
 };
 

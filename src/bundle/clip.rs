@@ -1,0 +1,29 @@
+//! Which clip space outputs take positions in.
+
+/// Clip space as an author may ask for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Clip {
+    /// WebGPU's, in every target: where an API has another, the output converts.
+    #[default]
+    Wgpu,
+    /// The API's own: outputs leave positions as the author's matrices made them.
+    Native,
+}
+
+impl Clip {
+    /// Both, as they are called in manifests and on the command line.
+    pub const ALL: [(&'static str, Self); 2] = [("wgpu", Self::Wgpu), ("native", Self::Native)];
+
+    /// The one of that name.
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, clip)| clip)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wgpu => "wgpu",
+            Self::Native => "native",
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! `gen --validate`: what the judges of the targets say of a run's outputs, before they replace
+//! the bundle that is there.
+
+use std::path::{Path, PathBuf};
+
+use super::failure::Failure;
+use super::progress::Bar;
+use crate::bundle::{BlobFile, Bundle, Contents, Error, Target, blob_files, write_directory};
+use crate::cache::Cache;
+use crate::generate::{Judged, Progress, Request};
+use crate::judge::{Made, Missing, Tint, blame, missing, outputs, verdict};
+use crate::output::Scratch;
+use crate::permute::Manifest;
+use crate::project;
+use crate::resolve::Packages;
+use crate::source::SourceSet;
+
+/// The judges of a run's targets, all there.
+pub struct Judges {
+    tint: Tint,
+}
+
+/// What the outputs were made of.
+pub struct Inputs<'a> {
+    pub sources: &'a mut SourceSet,
+    pub packages: &'a Packages,
+    pub manifest: &'a Manifest,
+    pub cache: Option<&'a Cache>,
+}
+
+impl Judges {
+    /// Looks whether everything is there; Tint is beside the cache folder.
+    pub fn open(
+        manifest: &Manifest,
+        request: &Request,
+        path: &Path,
+        cache: Option<PathBuf>,
+    ) -> Result<Self, Failure> {
+        let cache = cache.or_else(|| project::cache_folder(path));
+        let tint = Tint::beside(&cache.unwrap_or_else(|| std::env::temp_dir().join("cache")));
+        let declared = manifest.programs.iter().flat_map(|program| program.targets.clone());
+        let mut targets: Vec<Target> = match request.targets.is_empty() {
+            true => declared.collect(),
+            false => request.targets.clone(),
+        };
+        targets.sort();
+        let lacking: Vec<String> =
+            missing(&targets, &tint).iter().map(Missing::to_string).collect();
+        match lacking.is_empty() {
+            true => Ok(Self { tint }),
+            false => Err(Failure::environment(format!("cannot judge: {}", lacking.join("\n")))),
+        }
+    }
+
+    /// Judges files; a refusal is a mistake of the input.
+    pub fn files(
+        &self,
+        files: impl IntoIterator<Item = BlobFile>,
+        contents: &dyn Fn() -> Result<Contents, Error>,
+        inputs: Inputs<'_>,
+        bar: &Bar,
+    ) -> Result<Judged, Failure> {
+        let broken = |error: Error| Failure::input(error.to_string());
+        let progress = |done, total| {
+            bar.show(Progress { stage: "judging".to_owned(), done, total });
+        };
+        let Inputs { sources, packages, manifest, cache } = inputs;
+        let outputs = outputs(files).map_err(broken)?;
+        let verdict = verdict(outputs, cache, &self.tint, &progress);
+        let verdict = verdict.map_err(Failure::environment)?;
+        if verdict.refusals.is_empty() {
+            return Ok(Judged { now: verdict.judged, before: verdict.known });
+        }
+        bar.clear();
+        let made = Made { packages, manifest, contents: &contents().map_err(broken)? };
+        let diagnostics = blame(sources, &made, &verdict.refusals);
+        Err(Failure::Input(sources.clone(), diagnostics))
+    }
+
+    /// Judges a bundle in memory.
+    pub fn contents(
+        &self,
+        contents: &Contents,
+        inputs: Inputs<'_>,
+        bar: &Bar,
+    ) -> Result<Judged, Failure> {
+        let failed = |error: Error| Failure::environment(error.to_string());
+        let scratch = Scratch::new(&std::env::temp_dir())?;
+        let folder = scratch.path("bundle");
+        write_directory(contents, &folder).map_err(failed)?;
+        let files = blob_files(&folder).map_err(failed)?;
+        self.files(files, &|| Ok(contents.clone()), inputs, bar)
+    }
+
+    /// Judges a bundle that is there.
+    pub fn bundle(&self, out: &Path, inputs: Inputs<'_>, bar: &Bar) -> Result<Judged, Failure> {
+        let broken = |error: Error| Failure::input(error.to_string());
+        let contents = || Bundle::open(out)?.contents();
+        match out.is_dir() {
+            true => self.files(blob_files(out).map_err(broken)?, &contents, inputs, bar),
+            false => self.contents(&contents().map_err(broken)?, inputs, bar),
+        }
+    }
+}

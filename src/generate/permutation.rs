@@ -1,0 +1,68 @@
+//! One entry point of one permutation, composed again: to show its author what came of it.
+
+use std::sync::Arc;
+
+use super::entry::{self, Entry};
+use crate::bundle::Language;
+use crate::compose::{self, Composed};
+use crate::diagnostic::Diagnostics;
+use crate::permute::{Manifest, Quoted, key};
+use crate::resolve::{Graph, Packages};
+use crate::source::SourceSet;
+
+/// Which shader of a bundle.
+#[derive(Debug, Clone, Copy)]
+pub struct Named<'a> {
+    /// Its program.
+    pub program: &'a str,
+    /// Its source language.
+    pub language: Language,
+    /// The entry point's name in the bundle.
+    pub label: &'a str,
+    /// The key of its permutation.
+    pub key: &'a str,
+}
+
+/// A shader's text, with its places.
+pub struct Permutation {
+    /// The text.
+    pub composed: Composed,
+    /// The entry point's name in the text.
+    pub entry: String,
+    graph: Arc<Graph>,
+    note: String,
+}
+
+impl Permutation {
+    /// Diagnostics about the text, with the chain of imports and the permutation.
+    pub fn named(&self, diagnostics: Diagnostics) -> Diagnostics {
+        let one = |error: crate::diagnostic::Diagnostic| error.note(self.note.as_str());
+        self.graph.traced(diagnostics).into_iter().map(one).collect()
+    }
+}
+
+/// Composes a shader of the manifest; `None` where it has no such shader.
+///
+/// # Errors
+/// As of composing it.
+pub fn permutation(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &Manifest,
+    named: Named<'_>,
+) -> Result<Option<Permutation>, Diagnostics> {
+    let Some(program) = manifest.program(named.program) else { return Ok(None) };
+    let id = sources.add("key", named.key);
+    let point = key::parse(&program.space, &Quoted::whole(sources, id))?;
+    let entries = entry::entries(sources, packages, program, Some(&point))?;
+    let is_it = |entry: &&Entry| entry.language == named.language && entry.label == named.label;
+    let Some(entry) = entries.iter().find(is_it) else { return Ok(None) };
+    let settings = program.space.settings(&point);
+    let composed = compose::compose(&entry.graph, &settings, &entry.options)?;
+    Ok(Some(Permutation {
+        composed,
+        entry: entry.name.clone(),
+        graph: entry.graph.clone(),
+        note: format!("in permutation `{}` of {}", program.space.key(&point), entry.title()),
+    }))
+}

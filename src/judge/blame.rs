@@ -1,0 +1,168 @@
+//! Which of the author's lines an output was refused for.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use super::{Output, Refusal};
+use crate::bundle::{Contents, Target};
+use crate::compose::{Part, PartKind, code_lines};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::generate::{Named, Permutation, permutation};
+use crate::permute::Manifest;
+use crate::resolve::Packages;
+use crate::source::SourceSet;
+
+/// Refusals after which no more are told.
+const REPORTED: usize = 20;
+
+/// Lines of a judge's words after which no more are told.
+const LINES: usize = 6;
+
+/// What made the outputs.
+pub struct Made<'a> {
+    /// Where the sources are.
+    pub packages: &'a Packages,
+    /// What declares the programs.
+    pub manifest: &'a Manifest,
+    /// The keys, with the units that they refer to.
+    pub contents: &'a Contents,
+}
+
+/// Refusals as diagnostics in the author's text, each with the first permutation that shows it.
+pub fn blame(sources: &mut SourceSet, made: &Made<'_>, refusals: &[Refusal]) -> Diagnostics {
+    let mut told: Diagnostics = Vec::new();
+    for refusal in refusals {
+        let found = one(sources, made, refusal);
+        let is_told = |error: &Diagnostic| {
+            told.iter()
+                .any(|known| (&known.message, &known.labels) == (&error.message, &error.labels))
+        };
+        if !found.iter().any(is_told) {
+            told.extend(found);
+        }
+        if told.len() >= REPORTED {
+            break;
+        }
+    }
+    let left = refusals.len().saturating_sub(told.len());
+    if let Some(last) = told.pop() {
+        told.push(match left {
+            0 => last,
+            left => last.note(format!("{left} more outputs are refused, most for the same")),
+        });
+    }
+    told
+}
+
+fn one(sources: &mut SourceSet, made: &Made<'_>, refusal: &Refusal) -> Diagnostics {
+    let error = Diagnostic::error(
+        codes::OUTPUT_REFUSED,
+        format!("{} refuses the output for `{}`", refusal.judge, refusal.output.target),
+    );
+    let line = line(refusal);
+    let words: Vec<&str> = refusal.words.lines().take(LINES).collect();
+    let mut error = error.note(words.join("\n"));
+    if let (Some(number), Some((_, text))) = (refusal.line, &line) {
+        error = error.note(format!("line {number} of the output: `{}`", text.trim()));
+    }
+    let Some(named) = shader(made.contents, &refusal.output) else { return vec![error] };
+    match permutation(sources, made.packages, made.manifest, named) {
+        Ok(Some(permutation)) => permutation.named(vec![placed(error, &permutation, line)]),
+        // It was composed before: this cannot be.
+        Ok(None) | Err(_) => {
+            vec![error.note(format!("in permutation `{}` of {}", named.key, named.program))]
+        }
+    }
+}
+
+/// The first shader that has the output, in the order of names and keys.
+fn shader<'c>(contents: &'c Contents, output: &Output) -> Option<Named<'c>> {
+    let languages = contents.programs.iter().flat_map(|(program, contents)| {
+        contents.languages.iter().map(move |(language, entries)| (program, language, entries))
+    });
+    let entries = languages.flat_map(|(program, language, entries)| {
+        entries.iter().map(move |(label, entry)| (program, language, label, entry))
+    });
+    let mut found = entries.filter_map(|(program, language, label, entry)| {
+        let (key, _) = entry.keys.iter().find(|(_, unit)| **unit == output.unit)?;
+        Some(Named { program, language: *language, label, key })
+    });
+    found.next()
+}
+
+/// The declaration and the text of the line at fault.
+type Line = (Option<String>, String);
+
+fn line(refusal: &Refusal) -> Option<Line> {
+    let number = refusal.line?.checked_sub(1)? as usize;
+    let text = refusal.output.text().ok()?;
+    let lines: Vec<&str> = text.lines().collect();
+    let line = lines.get(number)?;
+    let before = lines[..=number].iter().rev();
+    let name = before.filter_map(|line| declares(line, refusal.output.target)).next();
+    Some((name, (*line).to_owned()))
+}
+
+/// What a line that begins a declaration declares: such lines are not indented.
+fn declares(line: &str, target: Target) -> Option<String> {
+    if !line.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
+        return None;
+    }
+    let words = words(line);
+    if let Some(at) = words.iter().position(|word| *word == "struct") {
+        return words.get(at + 1).map(|word| (*word).to_owned());
+    }
+    let (head, _) = match target {
+        Target::WGSL if !line.starts_with("fn ") => return None,
+        _ => line.split_once('(')?,
+    };
+    self::words(head).last().map(|word| (*word).to_owned())
+}
+
+/// The error in the author's line, or at the entry point.
+fn placed(error: Diagnostic, permutation: &Permutation, line: Option<Line>) -> Diagnostic {
+    let composed = &permutation.composed;
+    let (name, text) = line.map_or((None, None), |(name, text)| (name, Some(text)));
+    let named = name.and_then(|name| part(&composed.parts, &name));
+    let is_entry = |part: &&Part| part.names.contains(&permutation.entry);
+    let Some(part) = named.or_else(|| composed.parts.iter().find(is_entry)) else { return error };
+    let place = nearest(&composed.text, part, text.as_deref().unwrap_or_default());
+    match composed.map.lookup(place) {
+        Some(span) => error.at(span, "written from here"),
+        None => error,
+    }
+}
+
+/// The author's declaration of a name that naga may have written with something behind it.
+fn part<'p>(parts: &'p [Part], name: &str) -> Option<&'p Part> {
+    let plain = name.trim_end_matches('_');
+    let bare = plain.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
+    let find = |name: &str| {
+        let is_it = |part: &&Part| {
+            matches!(part.kind, PartKind::Function | PartKind::Struct)
+                && part.names.iter().any(|found| found == name)
+        };
+        parts.iter().find(is_it)
+    };
+    find(name).or_else(|| find(plain)).or_else(|| find(bare))
+}
+
+/// The line of a declaration that has most of the words of a line of the output: writers keep the
+/// author's names. The first line with code where none has any.
+fn nearest(text: &str, part: &Part, output: &str) -> Range<usize> {
+    let wanted: BTreeSet<&str> = words(output).into_iter().collect();
+    let mut best: Option<(usize, Range<usize>)> = None;
+    for line in code_lines(text, part.range.clone()) {
+        let words: BTreeSet<&str> = words(&text[line.clone()]).into_iter().collect();
+        let score = words.intersection(&wanted).count();
+        if best.as_ref().is_none_or(|(most, _)| score > *most) {
+            best = Some((score, line));
+        }
+    }
+    best.map_or(part.range.clone(), |(_, range)| range)
+}
+
+fn words(text: &str) -> Vec<&str> {
+    let parts = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+    parts.filter(|word| word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')).collect()
+}

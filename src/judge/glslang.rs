@@ -1,0 +1,145 @@
+//! GLSL and HLSL: glslangValidator.
+//!
+//! To start it costs more than to read a text, so it is given many. Where it makes SPIR-V, it
+//! links all that it is given, which has no meaning here: what it says of that is left out, and
+//! the outputs that have something new in them ([`novel`]) are compiled to SPIR-V one by one.
+
+use std::path::Path;
+use std::process::Output as Said;
+
+use super::novel::novel;
+use super::{Found, Output, Refusal, Work, parts};
+use crate::bundle::Stage;
+use crate::emit::GlslRules;
+use crate::output::Scratch;
+use crate::tools::{GLSLANG, words};
+
+const BATCH: usize = 64;
+
+const NAME: &str = "glslangValidator";
+
+/// A stage as glslangValidator calls it.
+fn stage(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Vertex => "vert",
+        Stage::Fragment => "frag",
+        Stage::Compute => "comp",
+    }
+}
+
+/// The work for texts of GLSL of one stage.
+pub fn glsl<'w>(
+    group: &'w [&'w Output],
+    rules: &[GlslRules],
+    scratch: &'w Scratch,
+) -> Result<Vec<Work<'w>>, String> {
+    let Some(first) = group.first() else { return Ok(Vec::new()) };
+    let own = vec!["-S", stage(first.stage)];
+    let mut works = Vec::new();
+    for rules in rules {
+        match rules {
+            GlslRules::Own => {
+                let arguments = own.clone();
+                works.extend(parts(group, BATCH, move |outputs| together(&arguments, outputs)));
+            }
+            GlslRules::Later(version) => {
+                let (arguments, version) = (own.clone(), *version);
+                works.extend(parts(group, BATCH, move |outputs| {
+                    later(&arguments, outputs, version, scratch)
+                }));
+            }
+            GlslRules::Vulkan => {
+                // Relaxed rules know OpenGL's names of built-in variables, and loose uniforms, which
+                // get bindings of their own.
+                let more = ["-V", "-R", "--amb", "-o", "/dev/null"];
+                works.extend(compiled(group, [&own[..], &more].concat())?);
+            }
+        }
+    }
+    Ok(works)
+}
+
+/// The work for texts of HLSL of one stage and entry point.
+pub fn hlsl<'w>(group: &'w [&'w Output]) -> Result<Vec<Work<'w>>, String> {
+    let Some(first) = group.first() else { return Ok(Vec::new()) };
+    let stage = stage(first.stage);
+    compiled(group, vec!["-D", "-V", "-S", stage, "-e", &first.entry, "-o", "/dev/null"])
+}
+
+/// Each text is read; those with something new in them are compiled.
+fn compiled<'w>(group: &'w [&'w Output], arguments: Vec<&'w str>) -> Result<Vec<Work<'w>>, String> {
+    let alone = arguments.clone();
+    let mut works = parts(group, BATCH, move |outputs| read(&arguments, outputs));
+    let each = novel(group)?.into_iter().map(|output| {
+        let arguments = alone.clone();
+        Work { outputs: 1, run: Box::new(move || one(&arguments, output)) }
+    });
+    works.extend(each);
+    Ok(works)
+}
+
+/// Judges texts as the files they are.
+fn together(arguments: &[&str], outputs: &[&Output]) -> Found {
+    if run(arguments, outputs.iter().map(|output| &*output.file))?.status.success() {
+        return Ok(Vec::new());
+    }
+    each(arguments, outputs)
+}
+
+fn each(arguments: &[&str], outputs: &[&Output]) -> Found {
+    let found = outputs.iter().map(|output| one(arguments, output));
+    Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+fn one(arguments: &[&str], output: &Output) -> Found {
+    Ok(refusal(output, &output.file, &run(arguments, [&*output.file])?).into_iter().collect())
+}
+
+/// The same with another version in the first line.
+fn later(arguments: &[&str], outputs: &[&Output], version: &str, scratch: &Scratch) -> Found {
+    let mut files = Vec::new();
+    for output in outputs {
+        let text = output.text()?;
+        let rest = text.find('\n').map_or("", |end| &text[end..]);
+        let text = format!("#version {version}{rest}");
+        files.push(scratch.write_unsynced(text.as_bytes()).map_err(|error| error.to_string())?);
+    }
+    let said = run(arguments, files.iter().map(|file| &**file))?;
+    let mut refusals = Vec::new();
+    for (output, file) in outputs.iter().zip(&files) {
+        if !said.status.success() {
+            refusals.extend(refusal(output, file, &run(arguments, [&**file])?));
+        }
+        // What stays is removed with the folder.
+        let _ = std::fs::remove_file(file);
+    }
+    Ok(refusals)
+}
+
+/// Reads texts by the rules of Vulkan. What fails is linking, which always does.
+fn read(arguments: &[&str], outputs: &[&Output]) -> Found {
+    let said = run(arguments, outputs.iter().map(|output| &*output.file))?;
+    let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");
+    if said.status.code().is_some() && !words(&said).lines().any(of_a_text) {
+        return Ok(Vec::new());
+    }
+    each(arguments, outputs)
+}
+
+fn run<'f>(arguments: &[&str], files: impl IntoIterator<Item = &'f Path>) -> Result<Said, String> {
+    GLSLANG.run(arguments, files).map_err(|error| error.to_string())
+}
+
+fn refusal(output: &Output, file: &Path, said: &Said) -> Option<Refusal> {
+    let path = file.display().to_string();
+    let said = (!said.status.success()).then(|| words(said))?;
+    let lines = said.lines().map(str::trim).filter(|line| !line.is_empty() && *line != path);
+    let words = lines.collect::<Vec<_>>().join("\n").replace(&path, "0");
+    let line = words.lines().find_map(line_of);
+    Some(Refusal { output: output.clone(), judge: NAME, line, words })
+}
+
+/// The number in `ERROR: 0:12: ...`.
+fn line_of(words: &str) -> Option<u32> {
+    words.strip_prefix("ERROR: 0:")?.split(':').next()?.parse().ok()
+}

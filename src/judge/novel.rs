@@ -1,0 +1,59 @@
+//! Which texts have something in them that no text before them had.
+
+use std::collections::HashSet;
+
+use super::Output;
+
+/// The outputs that have two neighbouring tokens which no output before them had next to each
+/// other. Whatever a compiler cannot do with a text of this kind, it cannot do with one of these:
+/// operations, types and the values that they are given stand next to each other.
+pub fn novel<'o>(outputs: &[&'o Output]) -> Result<Vec<&'o Output>, String> {
+    let (mut lines, mut pairs) = (HashSet::new(), HashSet::new());
+    let mut found = Vec::new();
+    for output in outputs {
+        let text = output.text()?;
+        let mut is_new = false;
+        // Most lines are those of other outputs.
+        for line in text.lines().map(str::trim) {
+            if !lines.contains(line) {
+                lines.insert(line.to_owned());
+                is_new |= add(line, &mut pairs);
+            }
+        }
+        if is_new {
+            found.push(*output);
+        }
+    }
+    Ok(found)
+}
+
+/// Adds the pairs of a line; whether one of them is new.
+fn add(line: &str, pairs: &mut HashSet<(String, String)>) -> bool {
+    let tokens = tokens(line);
+    let ends = [""].into_iter().chain(tokens.iter().copied());
+    let (mut before, mut is_new) = (String::new(), false);
+    for token in ends.skip(1).chain([""]) {
+        is_new |= pairs.insert((before, token.to_owned()));
+        before = token.to_owned();
+    }
+    is_new
+}
+
+/// Words, other characters, and all numbers as one.
+fn tokens(line: &str) -> Vec<&str> {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let (mut rest, mut found) = (line, Vec::new());
+    while let Some(first) = rest.chars().next() {
+        let is_number = first.is_ascii_digit();
+        let length = match is_part(first) {
+            true => rest.find(|c: char| !(is_part(c) || is_number && c == '.')),
+            false => Some(first.len_utf8()),
+        };
+        let (token, after) = rest.split_at(length.unwrap_or(rest.len()));
+        if !token.trim().is_empty() {
+            found.push(if is_number { "0" } else { token });
+        }
+        rest = after;
+    }
+    found
+}

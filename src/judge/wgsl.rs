@@ -1,0 +1,52 @@
+//! WGSL: naga, which is here, and Tint.
+
+use naga::front::wgsl;
+use naga::valid::{ValidationFlags, Validator};
+
+use super::{Found, Output, Refusal, Tint, Work, parts};
+use crate::validate::{CAPABILITIES, guard};
+
+/// Texts for naga, and for each start of node.
+const BATCH: usize = 64;
+const TINT_BATCH: usize = 512;
+
+pub fn plan<'w>(group: &'w [&'w Output], tint: Option<&'w Tint>) -> Vec<Work<'w>> {
+    let mut works = parts(group, BATCH, |outputs: &[&Output]| {
+        let found = outputs.iter().map(|output| by_naga(output));
+        Ok(found.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect())
+    });
+    works.extend(tint.into_iter().flat_map(|tint| {
+        parts(group, TINT_BATCH, move |outputs: &[&Output]| by_tint(outputs, tint))
+    }));
+    works
+}
+
+fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
+    let text = output.text()?;
+    let judged = guard(&text, || {
+        let told = |line: Option<u32>, words: String| (line, words);
+        let module = wgsl::parse_str(&text).map_err(|error| {
+            let line = error.location(&text).map(|place| place.line_number);
+            told(line, error.emit_to_string(&text))
+        })?;
+        let judged = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module);
+        judged.map(|_| ()).map_err(|error| {
+            let line = error.location(&text).map(|place| place.line_number);
+            told(line, error.emit_to_string(&text))
+        })
+    });
+    let judged = judged.unwrap_or_else(|error| Err((None, error.message)));
+    let refusal = |(line, words)| Refusal { output: output.clone(), judge: "naga", line, words };
+    Ok(judged.err().map(refusal))
+}
+
+fn by_tint(outputs: &[&Output], tint: &Tint) -> Found {
+    let files: Vec<_> = outputs.iter().map(|output| &*output.file).collect();
+    let said = tint.judge(&files)?;
+    let one = |said: super::tint::Said| {
+        let output = outputs.get(said.index).ok_or("Tint judged a text that it was not given")?;
+        let words = format!("{}:{}: error: {}", said.line, said.column, said.message);
+        Ok(Refusal { output: (*output).clone(), judge: "Tint", line: Some(said.line), words })
+    };
+    said.into_iter().map(one).collect()
+}

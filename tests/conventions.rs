@@ -1,0 +1,391 @@
+//! What the reflection says of a target, against what the text of the output says.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+
+use lamplight::bundle::{
+    Bundle, Clip, ClipSpace, Found, FrontFace, Kind, Rows, Target, Viewport, YAxis, blob_files,
+    pack,
+};
+use lamplight::emit::targets;
+use lamplight::judge;
+use libtest_mimic::{Failed, Trial};
+
+use crate::judges::{Package, expect};
+
+type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [Case; 5] = [
+        ("clip_spaces", clip_spaces),
+        ("clip_in_manifest_and_cache", clip_in_manifest_and_cache),
+        ("registers", registers),
+        ("slots", slots),
+        ("guide", guide),
+    ];
+    cases
+        .into_iter()
+        .map(|(name, case)| Trial::test(format!("conventions::{name}"), case))
+        .collect()
+}
+
+const SHADER: &str = "
+struct View { matrix: mat4x4f, tint: vec4f }
+@group(0) @binding(3) var<uniform> view: View;
+@group(1) @binding(2) var<uniform> scale: vec4f;
+@group(0) @binding(5) var image: texture_2d<f32>;
+@group(2) @binding(1) var image_sampler: sampler;
+@group(1) @binding(0) var depth: texture_depth_2d;
+@group(2) @binding(4) var depth_sampler: sampler_comparison;
+struct Carried { @builtin(position) at: vec4f, @location(2) uv: vec2f }
+@vertex fn vs_main(@location(0) place: vec3f, @location(4) uv: vec2f) -> Carried {
+    return Carried(view.matrix * vec4f(place, 1.0) * scale, uv);
+}
+@fragment fn fs_main(in: Carried) -> @location(0) vec4f {
+    let lit = textureSampleCompareLevel(depth, depth_sampler, in.uv, 0.5);
+    return view.tint * textureSample(image, image_sampler, in.uv) * lit;
+}
+";
+
+const MANIFEST: &str = "[program.one]\nwesl = \"one.wesl\"\n";
+
+/// The line that converts clip space in GLSL.
+const CONVERTS: &str =
+    "    gl_Position.yz = vec2(-gl_Position.y, gl_Position.z * 2.0 - gl_Position.w);\n";
+
+fn found(package: &Package, out: &str, entry: &str, target: Target) -> Result<Found, Failed> {
+    let bundle = Bundle::open(package.path(out))?;
+    Ok(bundle.program("one")?.shader(entry)?.get("default", target)?)
+}
+
+fn text(found: &Found) -> Result<String, Failed> {
+    Ok(String::from_utf8(found.bytes.clone())?)
+}
+
+/// The vertex stages of both clip spaces differ by one line of GLSL, and in what is said of them;
+/// fragment stages do not differ. All are judged.
+fn clip_spaces() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    for clip in ["wgpu", "native"] {
+        expect(&package.run(&["gen", "--no-cache", "--clip", clip, "-o", clip])?, 0, &[])?;
+        let outputs = judge::outputs(blob_files(package.path(clip))?)?;
+        if let Some(refusal) = judge::judge(&outputs, None, &|_, _| ())?.first() {
+            return Err(format!("{refusal:?}").into());
+        }
+    }
+    for target in Target::ALL {
+        let is_glsl = ["glsl450", "glsl330", "essl300"].contains(&target.name());
+        let [wgpu, native] =
+            ["wgpu", "native"].map(|clip| found(&package, clip, "vs_main", *target));
+        let (wgpu, native) = (wgpu?, native?);
+        let expected = match is_glsl {
+            true => text(&wgpu)?.replacen(CONVERTS, "", 1).into_bytes(),
+            false => wgpu.bytes.clone(),
+        };
+        if native.bytes != expected || is_glsl == (native.bytes == wgpu.bytes) {
+            return Err(format!("{target}:\n{}", String::from_utf8_lossy(&native.bytes)).into());
+        }
+        let spaces = targets::find(*target).ok_or("no such target")?.clip;
+        if [wgpu.native.clip, native.native.clip]
+            != [Clip::Wgpu, Clip::Native].map(|clip| Some(spaces.of(clip)))
+        {
+            return Err(
+                format!("{target}: {:?}, {:?}", wgpu.native.clip, native.native.clip).into()
+            );
+        }
+        if wgpu.native.clip.is_some_and(|clip| clip.is_converted) != is_glsl {
+            return Err(format!("{target} says wrongly whether it converts").into());
+        }
+        let [wgpu, native] =
+            ["wgpu", "native"].map(|clip| found(&package, clip, "fs_main", *target));
+        if wgpu? != native? {
+            return Err(format!("{target}: fragment stages differ").into());
+        }
+    }
+    Ok(())
+}
+
+/// The manifest asks for a clip space, an option for another; a cache mixes nothing up; both forms
+/// of a bundle tell it.
+fn clip_in_manifest_and_cache() -> Outcome {
+    let package = Package::new(&format!("{MANIFEST}clip = \"native\"\n"), SHADER)?;
+    let is_converted = |out: &str| -> Result<bool, Failed> {
+        let found = found(&package, out, "vs_main", Target::GLSL330)?;
+        let told = found.native.clip.ok_or("no clip space")?.is_converted;
+        match text(&found)?.contains(CONVERTS) == told {
+            true => Ok(told),
+            false => Err("the reflection is wrong".into()),
+        }
+    };
+    let runs: [(&[&str], bool); 4] =
+        [(&[], false), (&["--clip", "wgpu"], true), (&["--clip", "native"], false), (&[], false)];
+    for (arguments, expected) in runs {
+        let all = [&["gen", "--cache", "cache", "-o", "out"], arguments].concat();
+        expect(&package.run(&all)?, 0, &[])?;
+        if is_converted("out")? != expected {
+            return Err(format!("{arguments:?}: not what was asked for").into());
+        }
+    }
+    for (arguments, expected) in [(&[][..], false), (&["--clip", "wgpu"], true)] {
+        let compile = ["compile", "one.wesl", "--target", "glsl330", "--entry", "vs_main"];
+        let said = package.run(&[&compile, arguments].concat())?;
+        expect(&said, 0, &["gl_Position = "])?;
+        if String::from_utf8_lossy(&said.stdout).contains(CONVERTS) != expected {
+            return Err(format!("compile {arguments:?}: not what was asked for").into());
+        }
+    }
+    fs::write(
+        package.path("one.lamplight"),
+        pack(&Bundle::open(package.path("out"))?.contents()?)?,
+    )?;
+    if is_converted("one.lamplight")? {
+        return Err("the single file has another clip space".into());
+    }
+    let said = package.run(&["gen", "--clip", "opengl"])?;
+    expect(&said, 2, &["no such clip space (clip spaces: wgpu, native)"])?;
+    fs::write(package.path("lamplight.toml"), format!("{MANIFEST}clip = \"natve\"\n"))?;
+    let words = ["error[unknown-clip]", "lamplight.toml:3:8", "did you mean `native`?"];
+    expect(&package.run(&["gen"])?, 1, &words)
+}
+
+/// What follows a word of a text, up to one of some characters.
+fn after<'t>(text: &'t str, word: &str, until: &[char]) -> Option<&'t str> {
+    let (_, rest) = text.split_once(word)?;
+    rest.split(until).next().map(str::trim)
+}
+
+/// HLSL: registers and spaces, heaps, their buffers of places, and semantics are those of the text.
+fn registers() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
+    for entry in ["vs_main", "fs_main"] {
+        let found = found(&package, "bundle", entry, Target::HLSL)?;
+        let text = text(&found)?;
+        let mut said = BTreeSet::new();
+        for line in text.lines() {
+            let (Some(register), Some((head, _))) =
+                (after(line, "register(", &[')']), line.split_once(':'))
+            else {
+                continue;
+            };
+            let name = head.split_whitespace().last().unwrap_or_default().to_owned();
+            let (register, space) = register.split_once(", space").unwrap_or((register, "0"));
+            said.insert((name, register.to_owned(), space.parse::<u32>()?));
+        }
+        let mut told = BTreeSet::new();
+        for slot in &found.native.slots {
+            let is_it = |found: &&lamplight::bundle::Binding| {
+                (found.group, found.binding) == (slot.group, slot.binding)
+            };
+            let binding = found.reflection.bindings.iter().find(is_it).ok_or("no binding")?;
+            let class = slot.register.clone().ok_or("no class of register")?;
+            let number = slot.index.ok_or("no number")?;
+            told.insert((
+                binding.name.clone(),
+                format!("{class}{number}"),
+                slot.space.unwrap_or(9),
+            ));
+        }
+        for heap in &found.native.sampler_heaps {
+            let name = format!("{}[{}]", heap.name, heap.size);
+            told.insert((name, format!("s{}", heap.register), heap.space));
+            for sampler in &heap.samplers {
+                let array = format!("nagaGroup{}SamplerIndexArray", sampler.group);
+                let place = format!("{}[{array}[{}]]", heap.name, sampler.element);
+                if !text.contains(&place) {
+                    return Err(format!("the text has no {place}").into());
+                }
+                let register = format!("t{}", sampler.buffer_register);
+                told.insert((array, register, sampler.buffer_space));
+            }
+        }
+        // Both heaps are declared, whichever is used.
+        let heaps = told.iter().any(|(name, ..)| name.starts_with("naga"));
+        said.retain(|(name, ..)| !name.starts_with("naga") || heaps);
+        if said != told {
+            return Err(format!("{entry}: {said:?} in the text, {told:?} told:\n{text}").into());
+        }
+        let semantics: BTreeSet<String> =
+            found.native.semantics.iter().map(|one| format!("{}{}", one.name, one.index)).collect();
+        let expected: &[&str] = if entry == "vs_main" { &["LOC0", "LOC4"] } else { &[] };
+        if !semantics.iter().map(String::as_str).eq(expected.iter().copied()) {
+            return Err(format!("{entry}: {semantics:?}").into());
+        }
+        let lost = expected.iter().find(|semantic| !text.contains(&format!(": {semantic}")));
+        if let Some(lost) = lost {
+            return Err(format!("the text has no {lost}").into());
+        }
+    }
+    Ok(())
+}
+
+/// What the text of an output says: for each thing that is bound, its name and its number.
+fn bound(target: Target, text: &str) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    let last =
+        |head: &str| head.split([' ', '*', '&']).rfind(|word| !word.is_empty()).map(str::to_owned);
+    for line in text.lines().map(str::trim) {
+        let pair = match target.name() {
+            "msl" => ["buffer(", "texture(", "sampler("].iter().find_map(|kind| {
+                let number = after(line, &format!("[[{kind}"), &[')'])?;
+                let name = last(line.split("[[").next()?.trim())?;
+                Some((name, format!("{kind}{number}")))
+            }),
+            "wgsl" => after(line, "@group(", &['v']).map(|place| (place.to_owned(), String::new())),
+            // In GLSL a block is known by its name, anything else by that of the variable.
+            _ if !line.contains("uniform ") => None,
+            _ => {
+                let number = after(line, "binding = ", &[')', ',']).unwrap_or("none").to_owned();
+                // A block may have its members in the same line.
+                let head = line.split('{').next().unwrap_or_default();
+                let head = head.trim_end_matches([';', ' ']);
+                last(head).map(|name| (name, number))
+            }
+        };
+        found.extend(pair);
+    }
+    found
+}
+
+/// MSL, GLSL and WGSL: every slot, combined samplers and buffer sizes are those of the text, and
+/// nothing of the text is left out.
+fn slots() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
+    for target in [Target::MSL, Target::GLSL450, Target::GLSL330, Target::ESSL300] {
+        for entry in ["vs_main", "fs_main"] {
+            let found = found(&package, "bundle", entry, target)?;
+            let said = bound(target, &text(&found)?);
+            let mut told = BTreeMap::new();
+            for slot in &found.native.slots {
+                let binding = found
+                    .reflection
+                    .bindings
+                    .iter()
+                    .find(|one| (one.group, one.binding) == (slot.group, slot.binding))
+                    .ok_or("no binding")?;
+                let kind = match binding.kind {
+                    Kind::Uniform | Kind::Storage => "buffer(",
+                    Kind::Texture | Kind::StorageTexture => "texture(",
+                    Kind::Sampler | Kind::ComparisonSampler => "sampler(",
+                };
+                let number = slot.index.map_or("none".to_owned(), |index| index.to_string());
+                match target.name() {
+                    "msl" => told.insert(binding.name.clone(), format!("{kind}{number}")),
+                    _ => told.insert(slot.name.clone().ok_or("no name")?, number),
+                };
+            }
+            if said != told {
+                return Err(format!("{target} {entry}: {said:?} in the text, {told:?} told").into());
+            }
+            let combined: BTreeSet<_> =
+                found.native.combined.iter().map(|one| (one.texture, one.sampler)).collect();
+            let pairs: BTreeSet<_> =
+                found.reflection.pairs.iter().map(|one| (one.texture, Some(one.sampler))).collect();
+            if target != Target::MSL && combined != pairs {
+                return Err(format!("{target} {entry}: {combined:?}, not {pairs:?}").into());
+            }
+        }
+    }
+    first_instance()?;
+    sizes()
+}
+
+/// The uniform of GLSL for the first instance is told where the text has it.
+fn first_instance() -> Outcome {
+    let shader = "@vertex fn vs_main(@builtin(instance_index) i: u32) -> @builtin(position) vec4f { return vec4f(f32(i)); }";
+    for (shader, is_there) in [(shader, true), (SHADER, false)] {
+        let package = Package::new(MANIFEST, shader)?;
+        expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
+        let outputs = judge::outputs(blob_files(package.path("bundle"))?)?;
+        if let Some(refusal) = judge::judge(&outputs, None, &|_, _| ())?.first() {
+            return Err(format!("{refusal:?}").into());
+        }
+        for target in [Target::GLSL450, Target::GLSL330, Target::ESSL300] {
+            let found = found(&package, "bundle", "vs_main", target)?;
+            let name = found.native.first_instance.clone().unwrap_or_default();
+            if text(&found)?.contains("_first_instance;") != is_there
+                || name.is_empty() == is_there
+                || !text(&found)?.contains(&name)
+            {
+                return Err(format!("{target}: {name}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The argument of MSL with sizes of buffers is that of the text.
+fn sizes() -> Outcome {
+    let shader = "
+@group(0) @binding(1) var<storage> few: array<vec4f>;
+@group(1) @binding(0) var<storage> many: array<f32>;
+@fragment fn fs_main() -> @location(0) vec4f { return few[arrayLength(&many)] * f32(arrayLength(&few)); }
+";
+    let package = Package::new(&format!("{MANIFEST}targets = [\"msl\"]\n"), shader)?;
+    expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
+    let found = found(&package, "bundle", "fs_main", Target::MSL)?;
+    let text = text(&found)?;
+    let sizes = found.native.buffer_sizes.as_ref().ok_or("no sizes of buffers")?;
+    let argument = format!("_mslBufferSizes& _buffer_sizes [[buffer({})]]", sizes.index);
+    let members = after(&text, "struct _mslBufferSizes {", &['}']).ok_or("no struct")?;
+    if !text.contains(&argument) || members.matches("uint size").count() != sizes.buffers.len() {
+        return Err(format!("{sizes:?}:\n{text}").into());
+    }
+    if sizes.buffers != [[0, 1], [1, 0]] {
+        return Err(format!("{sizes:?}").into());
+    }
+    Ok(())
+}
+
+/// The table of the guide says what the table of targets does.
+fn guide() -> Outcome {
+    let page = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/targets.md"))?;
+    let (_, section) = page.split_once("## Clip space").ok_or("no section about clip space")?;
+    let rows: Vec<Vec<&str>> = section
+        .lines()
+        .skip_while(|line| !line.starts_with('|'))
+        .take_while(|line| line.starts_with('|'))
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    let columns: Vec<Vec<&str>> = rows[0][1..]
+        .iter()
+        .map(|names| names.split(", ").map(|name| name.trim_matches('`')).collect())
+        .collect();
+    for target in Target::ALL {
+        let column = columns.iter().position(|names| names.contains(&target.name()));
+        let column = column.ok_or_else(|| format!("no column for {target}"))? + 1;
+        let spaces = targets::find(*target).ok_or("no such target")?.clip;
+        let told: Vec<String> = [spaces.wgpu, spaces.native].iter().flat_map(in_words).collect();
+        let said: Vec<&str> = rows[2..].iter().map(|row| row[column]).collect();
+        if told != said {
+            return Err(format!("{target}: the guide says {said:?}, the table {told:?}").into());
+        }
+    }
+    Ok(())
+}
+
+fn in_words(clip: &ClipSpace) -> [String; 6] {
+    let words = [
+        match clip.y {
+            YAxis::Up => "up",
+            YAxis::Down => "down",
+        },
+        match clip.viewport {
+            Viewport::Positive => "positive",
+            Viewport::Negative => "negative",
+        },
+        if clip.is_converted { "yes" } else { "no" },
+        match clip.rows {
+            Rows::TopFirst => "top",
+            Rows::BottomFirst => "bottom",
+        },
+        match clip.front_face {
+            FrontFace::Same => "the same",
+            FrontFace::Reversed => "clockwise",
+        },
+    ];
+    let [y, viewport, converted, rows, front_face] = words.map(str::to_owned);
+    [y, format!("{} to {}", clip.near, clip.far), viewport, converted, rows, front_face]
+}

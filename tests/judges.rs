@@ -1,0 +1,373 @@
+//! The judges of the targets: what they refuse, what is told of it, and what is there afterwards.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output as Said};
+
+use lamplight::bundle::{Bundle, Target, blob_files};
+use lamplight::judge::{self, Output};
+use libtest_mimic::{Failed, Trial};
+
+type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [Case; 9] = [
+        ("every_judge_refuses", every_judge_refuses),
+        ("one_of_many_is_found", one_of_many_is_found),
+        ("later_versions", later_versions),
+        ("refusals_are_placed", refusals_are_placed),
+        ("writers_are_placed", writers_are_placed),
+        ("what_passed_is_known", what_passed_is_known),
+        ("missing_programs_are_told", missing_programs_are_told),
+        ("tint", tint),
+        ("arrays_of_zeros", arrays_of_zeros),
+    ];
+    cases.into_iter().map(|(name, case)| Trial::test(format!("judges::{name}"), case)).collect()
+}
+
+/// A shader with something of everything, whose functions have names that outputs keep.
+const SHADER: &str = "
+struct Lamp { color: vec3f, power: f32, weights: array<vec4f, 3> }
+@group(0) @binding(0) var<uniform> lamp: Lamp;
+@group(0) @binding(1) var image: texture_2d<f32>;
+@group(0) @binding(2) var image_sampler: sampler;
+
+fn powered(level: f32) -> f32 {
+    let twice = level + level;
+    return twice * lamp.power;
+}
+
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    var sums: array<vec3f, 9>;
+    sums[1] = lamp.color;
+    @if(number == one) { sums[2] *= 2.0; }
+    @if(number == two) { sums[3] += sums[1]; }
+    return textureSample(image, image_sampler, at) * powered(sums[2].x);
+}
+";
+
+const MANIFEST: &str =
+    "[program.one]\nwesl = \"one.wesl\"\naxis.number = { values = [\"none\", \"one\", \"two\"] }\n";
+
+/// A package in a folder of its own.
+pub struct Package(tempfile::TempDir);
+
+impl Package {
+    pub fn new(manifest: &str, shader: &str) -> Result<Self, Failed> {
+        let package = Self(tempfile::tempdir()?);
+        fs::write(package.path("lamplight.toml"), manifest)?;
+        fs::write(package.path("one.wesl"), shader)?;
+        Ok(package)
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+        command.current_dir(self.0.path()).args(arguments);
+        command
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Result<Said, Failed> {
+        Ok(self.command(arguments).output()?)
+    }
+
+    /// The outputs of the package's bundle, which is made now.
+    fn outputs(&self) -> Result<Vec<Output>, Failed> {
+        let said = self.run(&["gen", "--no-cache"])?;
+        if !said.status.success() {
+            return Err(told(&said).into());
+        }
+        Ok(judge::outputs(blob_files(self.path("bundle"))?)?)
+    }
+}
+
+fn told(said: &Said) -> String {
+    let all = [said.stdout.as_slice(), said.stderr.as_slice()].concat();
+    String::from_utf8_lossy(&all).into_owned()
+}
+
+pub fn expect(said: &Said, code: i32, words: &[&str]) -> Outcome {
+    let text = told(said);
+    let lost = words.iter().find(|word| !text.contains(**word));
+    match (said.status.code(), lost) {
+        (Some(found), None) if found == code => Ok(()),
+        (found, lost) => Err(format!("exit code {found:?}, without {lost:?}:\n{text}").into()),
+    }
+}
+
+fn judged(outputs: &[Output]) -> Result<Vec<judge::Refusal>, Failed> {
+    Ok(judge::judge(outputs, None, &|_, _| ())?)
+}
+
+/// Breaks an output: the power of a lamp is called otherwise in one line, or in SPIR-V a type is
+/// asked for that is not there. The number of the line, in texts.
+fn broken(output: &Output) -> Result<Option<u32>, Failed> {
+    let mut bytes = fs::read(&output.file)?;
+    if output.target == Target::SPIRV {
+        let last = bytes.len() - 12;
+        bytes[last..last + 4].copy_from_slice(&0x0002_00f8_u32.to_le_bytes());
+        fs::write(&output.file, bytes)?;
+        return Ok(None);
+    }
+    let text = String::from_utf8(bytes)?;
+    let at = text.find("twice = ").ok_or("the text has no `twice`")?;
+    let line = text[..at].matches('\n').count() as u32 + 1;
+    fs::write(&output.file, text.replacen("twice = ", "twice = unheard_of + ", 1))?;
+    Ok(Some(line))
+}
+
+/// All targets are judged, and what is wrong in a line is told of that line.
+fn every_judge_refuses() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    let outputs = package.outputs()?;
+    if let Some(refusal) = judged(&outputs)?.first() {
+        return Err(format!("refused as it is: {refusal:?}").into());
+    }
+    let mut lines = Vec::new();
+    for target in Target::ALL {
+        let output = outputs.iter().find(|output| output.target == *target);
+        let output = output.ok_or_else(|| format!("no output for {target}"))?;
+        lines.push((*target, broken(output)?));
+    }
+    let refusals = judged(&outputs)?;
+    let mut found: Vec<(Target, Option<u32>)> =
+        refusals.iter().map(|refusal| (refusal.output.target, refusal.line)).collect();
+    found.sort();
+    if found == lines {
+        return Ok(());
+    }
+    Err(format!("{found:?} instead of {lines:?}: {refusals:?}").into())
+}
+
+/// Batches hide nothing: of a hundred outputs that are nearly alike the one at fault is found, in
+/// each target, though nothing in it is new to those that are compiled one by one.
+fn one_of_many_is_found() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    let outputs = package.outputs()?;
+    let (mut many, mut wrong) = (Vec::new(), BTreeSet::new());
+    for target in Target::ALL.iter().filter(|target| **target != Target::SPIRV) {
+        let first = outputs.iter().find(|output| output.target == *target).ok_or("no output")?;
+        let text = fs::read_to_string(&first.file)?;
+        for copy in 0..100 {
+            // `pow` instead of `powered` is a pair of tokens that other texts have.
+            let text = match copy {
+                70 => text.replace("return twice *", "return level *").replace("level + level", ""),
+                _ => text.clone(),
+            };
+            let file = package.path(&format!("{target}{copy}"));
+            fs::write(&file, text)?;
+            many.push(Output { file: file.clone(), ..first.clone() });
+            if copy == 70 {
+                wrong.insert(file);
+            }
+        }
+    }
+    let refusals = judged(&many)?;
+    let found: BTreeSet<PathBuf> =
+        refusals.iter().map(|refusal| refusal.output.file.clone()).collect();
+    if found == wrong { Ok(()) } else { Err(format!("{refusals:?}").into()) }
+}
+
+/// GLSL ES is judged as 3.10 too, SPIR-V for Vulkan 1.0 too.
+fn later_versions() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    let outputs = package.outputs()?;
+    let find = |target| outputs.iter().find(|output| output.target == target).ok_or("no output");
+    // A name that is free in 3.00, and a keyword of 3.10.
+    let es = find(Target::ESSL300)?;
+    let text = fs::read_to_string(&es.file)?;
+    fs::write(&es.file, text.replace("twice", "buffer"))?;
+    let spirv = find(Target::SPIRV)?;
+    let mut bytes = fs::read(&spirv.file)?;
+    bytes[4..8].copy_from_slice(&0x0001_0300_u32.to_le_bytes());
+    fs::write(&spirv.file, bytes)?;
+    let refusals = judged(&[es.clone(), spirv.clone()])?;
+    match refusals.as_slice() {
+        [es, spirv] if es.words.contains("BUFFER") && spirv.words.contains("vulkan1.0") => Ok(()),
+        _ => Err(format!("{refusals:?}").into()),
+    }
+}
+
+const COUNTED: &str = "
+fn counted(value: u32) -> u32 {
+    let twice = value + value;
+    let ones = countOneBits(twice);
+    return ones;
+}
+@group(0) @binding(0) var<uniform> u: vec4u;
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    var sum = at.x;
+    @if(bits) { sum += f32(counted(u.x)); }
+    return vec4f(sum);
+}
+";
+
+const COUNTED_MANIFEST: &str = "[program.one]\nwesl = \"one.wesl\"\ntargets = [\"essl300\", \"hlsl\"]\naxis.bits = { values = [false, true] }\n";
+
+/// A judge's refusal is told in the author's line, with permutation and target; the older bundle
+/// stays as it was, in both forms.
+fn refusals_are_placed() -> Outcome {
+    let package = Package::new(COUNTED_MANIFEST, &COUNTED.replace("countOneBits", "abs"))?;
+    for out in ["bundle", "one.lamplight"] {
+        fs::write(package.path("one.wesl"), COUNTED.replace("countOneBits", "abs"))?;
+        let arguments = ["gen", "--validate", "--no-cache", "-o", out];
+        expect(&package.run(&arguments)?, 0, &["4 outputs judged, 0 known to pass"])?;
+        let before = Bundle::open(package.path(out))?.contents()?;
+        fs::write(package.path("one.wesl"), COUNTED)?;
+        let words = [
+            "error[output-refused]: glslangValidator refuses the output for `essl300`",
+            "one.wesl:4:5",
+            "bitCount",
+            "in permutation `bits` of one fs_main (wesl)",
+        ];
+        expect(&package.run(&arguments)?, 1, &words)?;
+        let bundle = Bundle::open(package.path(out))?;
+        bundle.verify()?;
+        if bundle.contents()? != before {
+            return Err(format!("{out} was replaced").into());
+        }
+    }
+    Ok(())
+}
+
+/// What a writer has no words for is told in the author's function, with permutation and target.
+fn writers_are_placed() -> Outcome {
+    let cubes = "
+@group(0) @binding(0) var cubes: texture_cube_array<f32>;
+@group(0) @binding(1) var smp: sampler;
+fn plain(x: f32) -> f32 { return x; }
+// Not in GLSL ES 3.00.
+fn looked(at: vec3f) -> vec4f { return textureSample(cubes, smp, at, 1); }
+@fragment fn fs_main(@location(0) at: vec3f) -> @location(0) vec4f {
+    var sum = vec4f(plain(at.x));
+    @if(bits) { sum += looked(at); }
+    return sum;
+}
+";
+    let package = Package::new(COUNTED_MANIFEST, cubes)?;
+    let words = ["error[emit-failed]: target `essl300`", "one.wesl:6:1", "in permutation `bits`"];
+    expect(&package.run(&["gen", "--no-cache"])?, 1, &words)
+}
+
+/// An output that passed is not judged again, and one that did not is.
+fn what_passed_is_known() -> Outcome {
+    let manifest = COUNTED_MANIFEST.replace("\"essl300\", ", "");
+    let package = Package::new(&manifest, COUNTED)?;
+    let arguments = ["gen", "--validate", "--cache", "cache"];
+    expect(&package.run(&arguments)?, 0, &["2 outputs judged, 0 known to pass"])?;
+    expect(&package.run(&arguments)?, 0, &["0 outputs judged, 2 known to pass", "up to date"])?;
+    fs::write(package.path("one.wesl"), COUNTED.replace("value + value", "value * 2u"))?;
+    expect(&package.run(&arguments)?, 0, &["1 outputs judged, 1 known to pass"])?;
+    fs::write(package.path("lamplight.toml"), COUNTED_MANIFEST)?;
+    for _ in 0..2 {
+        expect(&package.run(&arguments)?, 1, &["bitCount", "`essl300`"])?;
+    }
+    Ok(())
+}
+
+/// A judge that is not there is exit code 4 with the command that installs it, before anything is
+/// written.
+fn missing_programs_are_told() -> Outcome {
+    let nothing = tempfile::tempdir()?;
+    let lacking = [
+        ("spirv", "apt-get install spirv-tools"),
+        ("glsl450", "apt-get install glslang-tools"),
+        ("glsl330", "apt-get install glslang-tools"),
+        ("essl300", "apt-get install glslang-tools"),
+        ("hlsl", "apt-get install glslang-tools"),
+        ("msl", "apt-get install clang"),
+        ("wgsl", "apt-get install nodejs"),
+    ];
+    if lacking.iter().map(|(target, _)| *target).collect::<BTreeSet<_>>()
+        != Target::ALL.iter().map(|target| target.name()).collect()
+    {
+        return Err("a target is not tried".into());
+    }
+    let package = Package::new(MANIFEST, SHADER)?;
+    for (target, install) in lacking {
+        let mut command = package.command(&["gen", "--validate", "--target", target]);
+        expect(&command.env("PATH", nothing.path()).output()?, 4, &[install])?;
+    }
+    let arguments = ["gen", "--validate", "--target", "wgsl", "--cache", "cache/lamplight-cache"];
+    let words = ["npm install", "cache/lamplight-tint webgpu@"];
+    expect(&package.run(&arguments)?, 4, &words)?;
+    match package.path("bundle").exists() {
+        true => Err("something was written".into()),
+        false => Ok(()),
+    }
+}
+
+/// A package in the place of Dawn's: what it refuses is told, and a text that it does not answer
+/// for is no text that passed.
+fn tint() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    let folder = package.path("lamplight-tint/node_modules/webgpu");
+    fs::create_dir_all(&folder)?;
+    fs::write(
+        folder.join("package.json"),
+        r#"{ "name": "webgpu", "version": "0.6.2", "type": "module", "main": "index.js" }"#,
+    )?;
+    let dawn = |verdict: &str| {
+        format!(
+            "const message = {{ type: 'error', lineNum: 11, linePos: 5, message: 'not like this' }};
+const getCompilationInfo = async () => ({{ messages: [{{ type: 'warning' }}, ...({verdict})] }});
+let code;
+const device = {{
+  pushErrorScope() {{}},
+  popErrorScope: async () => null,
+  createShaderModule(found) {{ code = found.code; return {{ getCompilationInfo }}; }},
+}};
+export const create = () => ({{ requestAdapter: async () => ({{ requestDevice: async () => device }}) }});
+"
+        )
+    };
+    let arguments = ["gen", "--validate", "--target", "wgsl", "--cache", "lamplight-cache"];
+    let write = |verdict: &str| fs::write(folder.join("index.js"), dawn(verdict));
+    write("code.includes('sums[3]') ? [message] : []")?;
+    let words =
+        ["Tint refuses the output for `wgsl`", "11:5: error: not like this", "`number=two`"];
+    expect(&package.run(&arguments)?, 1, &words)?;
+    write("process.exit(0)")?;
+    expect(&package.run(&arguments)?, 4, &["Tint judged not all of 1 texts"])?;
+    write("[]")?;
+    expect(&package.run(&arguments)?, 0, &["1 outputs judged, 2 known to pass"])
+}
+
+/// Arrays of zeros, however deep, of whatever, where glslang takes no cast of a number.
+fn arrays_of_zeros() -> Outcome {
+    let shader = "
+struct Lamp { color: vec3f, weights: array<f32, 4> }
+var<private> kept: array<array<vec2f, 3>, 2>;
+fn fresh() -> array<Lamp, 3> { return array<Lamp, 3>(); }
+fn lamps(index: u32) -> f32 { var all: array<Lamp, 3>; all[1] = fresh()[index]; return all[index].weights[index]; }
+fn small(index: u32) -> f32 { var matrices: array<mat2x3f, 2>; var flags: array<bool, 5>; return select(matrices[index][0].x, 1.0, flags[index]); }
+fn given(values: array<i32, 2>) -> i32 { return values[0]; }
+var<private> wide: array<array<f32, 40>, 50>;
+fn many() -> array<array<vec3f, 40>, 50> { return array<array<vec3f, 40>, 50>(); }
+fn long(index: u32) -> f32 { var found: array<i32, 3000>; found[index] = 1; wide[index][1] = many()[2][index].x; return f32(found[0]) + wide[1][index]; }
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    let index = u32(at.x);
+    kept[1][2] = at;
+    return vec4f(lamps(index), small(index), kept[index][1].x, f32(given(array<i32, 2>())) + long(index));
+}
+";
+    // GLSL 3.30 and GLSL ES 3.00 have no arrays of arrays.
+    let targets = ["spirv", "glsl450", "msl", "hlsl", "wgsl"];
+    let manifest = format!("[program.one]\nwesl = \"one.wesl\"\ntargets = {targets:?}\n");
+    let package = Package::new(&manifest, shader)?;
+    let outputs = package.outputs()?;
+    match judged(&outputs)?.first() {
+        Some(refusal) => Err(format!("{refusal:?}\n{}", text(&refusal.output.file)).into()),
+        None if outputs.len() == targets.len() => Ok(()),
+        None => Err(format!("{} outputs", outputs.len()).into()),
+    }
+}
+
+fn text(file: &Path) -> String {
+    String::from_utf8_lossy(&fs::read(file).unwrap_or_default()).into_owned()
+}
