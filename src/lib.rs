@@ -114,6 +114,8 @@ pub mod bundle;
 #[doc(hidden)]
 pub mod input;
 #[doc(hidden)]
+pub mod limits;
+#[doc(hidden)]
 pub mod output;
 #[cfg(feature = "single-file")]
 #[path = "packing/zstd.rs"]

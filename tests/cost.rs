@@ -16,6 +16,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("cost::permutations_have_their_stages", permutations),
         Trial::test("cost::shaders_of_files", files),
         Trial::test("cost::a_rise_fails", a_rise_fails),
+        Trial::test("cost::functions_keep_their_budget", budget),
         Trial::test("cost::wrong_names", wrong_names),
         Trial::test("cost::without_a_driver", without_a_driver),
     ]
@@ -194,6 +195,24 @@ fn a_rise_fails() -> Outcome {
     match std::fs::read_to_string(&file)?.contains("somebody's") {
         true => Ok(()),
         false => Err("a file that is not ours was replaced".into()),
+    }
+}
+
+/// No function of the library got more expensive by more than 2 %. Recorded anew with
+/// `INSTA_UPDATE=always`. Another version of Mesa is told, and not compared.
+fn budget() -> Outcome {
+    let recorded = crate::snapshot::root().join("snapshots/costs/functions.json");
+    let path = recorded.to_string_lossy().into_owned();
+    let records = std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always");
+    let common = ["--gpu", "navi21,gfx1100", "--baseline", &path];
+    let output = lamplight(&[&common[..], if records { &["--record"] } else { &[] }].concat())?;
+    match output.status.code() {
+        Some(0) => Ok(()),
+        Some(4) if said(&output).contains("not comparable") => {
+            eprintln!("not compared: {}", said(&output));
+            Ok(())
+        }
+        code => Err(format!("{code:?}: {}", said(&output)).into()),
     }
 }
 

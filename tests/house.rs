@@ -145,7 +145,12 @@ const LEFTOVERS: [&str; 10] =
     [".new", ".orig", ".rej", ".bak", ".tmp", ".log", ".swp", ".profraw", ".spv", "~"];
 
 /// Files that are no text: pictures, and inputs that are wrong on purpose.
-const BINARIES: [&str; 2] = [".png", "tests/regressions/bundle/valid"];
+const BINARIES: [&str; 4] = [
+    ".png",
+    "tests/regressions/bundle/valid",
+    "tests/regressions/record/told",
+    "tests/regressions/record/valid",
+];
 
 /// Most characters of a path: Windows stops at 260, of which a folder above takes its part.
 const LONGEST: usize = 120;

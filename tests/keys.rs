@@ -261,7 +261,8 @@ const AWKWARD: &str = r#"
 [program.type]
 wesl = "a.wesl"
 [program.type.axis]
-key = { values = ["self", "Key", "a_b", "ab", "n1"], doc = "Ends */ here." }
+key = { values = ["self", "Key", "a_b", "ab", "n1"], doc = "Ends */ here.\rAnd \u2028here." }
+constructor = { values = ["x", "y"] }
 int = { values = [false, true], default = true }
 key_bytes = { values = [-1, 1, 9223372036854775807] }
 string = { values = ["i3", "none"] }

@@ -26,6 +26,7 @@ mod frames;
 mod generate;
 mod guide;
 mod harness;
+mod hostile;
 mod house;
 mod judges;
 mod keys;
@@ -74,6 +75,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     generate::trials,
     guide::trials,
     harness::trials,
+    hostile::trials,
     house::trials,
     judges::trials,
     keys::trials,

@@ -3,10 +3,16 @@
 //!
 //! `cargo xtask fuzz`, the tests of `tests/regressions/` and the targets of cargo-fuzz share this.
 
+#[path = "seal.rs"]
+mod seal;
+#[path = "stores.rs"]
+mod stores;
+
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::compose::{self, Keep, Options};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
+use lamplight::link::{self, Linker};
 use lamplight::permute::{Manifest, Quoted, Setting, Settings, Space, cover, key, lock, manifest};
 use lamplight::project;
 use lamplight::resolve::{self, Packages};
@@ -48,6 +54,24 @@ pub const KINDS: &[Kind] = &[
     Kind { name: "key", corpus: &[("tests/regressions/key", "")], words: KEY, run: key },
     Kind { name: "lock", corpus: &[("tests/regressions/lock", "")], words: LOCK, run: lock },
     Kind { name: "bundle", corpus: &[("tests/regressions/bundle", "")], words: "", run: bundle },
+    Kind {
+        name: "sealed",
+        corpus: &[("tests/regressions/bundle", "")],
+        words: "",
+        run: stores::sealed,
+    },
+    Kind {
+        name: "record",
+        corpus: &[("tests/regressions/record", "")],
+        words: RECORD,
+        run: stores::record,
+    },
+    Kind {
+        name: "compile",
+        corpus: &[("tests/emit", ".wgsl"), ("tests/emit", ".wesl"), ("examples", ".wesl")],
+        words: WESL,
+        run: compile,
+    },
 ];
 
 const WESL: &str = "@if( @elif( @else import package super self as :: { } ( ) [ ] < > ; , . = == != && || ! - -> \
@@ -65,6 +89,9 @@ const MANIFEST: &str = "[program.a] [program.a.axis.b] [[program.a.constraint]] 
     \"dynamic\" \"*\" == != => && || ! ( ) in >= < none vertex fragment # \n \\u00e9 \\ \u{feff} \u{0}";
 const KEY: &str = "shadow=pcf_3x3 , = two_sided max_lights=4 lights=none none true false * ; ! é \u{0} 99999999999999999999 -0";
 const LOCK: &str = "forward shadow max_lights two_sided + # \n none hard true false 0 1 4 10 -1 99999999999999999999 é \u{0}";
+
+const RECORD: &str = "{ } [ ] : , \" is_warning code message labels notes has_warnings reflection \
+    targets bytes extension native true false null 0 1 -1 4294967295 \u{1b} \u{0}";
 
 /// Several files in one input: lines `%% PATH` start all but the first, which is the root.
 fn files(root: &str, text: &str) -> Memory {
@@ -108,6 +135,41 @@ fn composed(bytes: &[u8], root: &str, language: Language) -> String {
             Err(problems) => told(&sources, &problems),
         };
     }
+    answer
+}
+
+/// Every entry point in every target, each as it would ship.
+fn compile(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let own = Package { name: "package".to_owned(), files: Box::new(files("main.wesl", &text)) };
+    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let packages = Packages { root: own, dependencies: vec![library] };
+    let mut sources = SourceSet::default();
+    let graph = match resolve::load(&mut sources, &packages, "main.wesl", Language::Wesl) {
+        Ok(graph) => graph,
+        Err(problems) => return told(&sources, &problems),
+    };
+    let settings = settings(&text);
+    let whole = compose::compose(&graph, &settings, &Options::default());
+    let whole = match whole.and_then(|composed| validate(&composed)) {
+        Ok(validated) => validated,
+        Err(problems) => return told(&sources, &problems),
+    };
+    let mut answer = String::new();
+    for point in whole.module.entry_points.iter().take(2) {
+        let keep = Keep::Items(vec![point.name.clone()]);
+        let composed = compose::compose(&graph, &settings, &Options { keep, ..Options::default() });
+        let made = composed.and_then(|composed| {
+            let lean = compose::lean(&composed);
+            let text = link::Text { composed: &composed, lean: &lean };
+            link::compile(&text, &point.name, Target::ALL, &Linker::new(Target::ALL))
+        });
+        answer += &match made {
+            Ok(made) => format!("{:?}", made.unit.hash()) + &told(&sources, &made.warnings),
+            Err(problems) => told(&sources, &problems),
+        };
+    }
+    assert!(!answer.contains("[naga-internal]"), "an internal error of naga");
     answer
 }
 

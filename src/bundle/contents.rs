@@ -39,6 +39,13 @@ pub struct Axis {
     pub mode: String,
 }
 
+impl Axis {
+    /// All of its names.
+    pub(super) fn names(&self) -> impl Iterator<Item = &String> {
+        [&self.name, &self.default, &self.mode].into_iter().chain(&self.values)
+    }
+}
+
 /// One entry point: many keys share a unit.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct EntryContents {
@@ -153,6 +160,19 @@ fn merge_entry(mine: &mut EntryContents, other: EntryContents) -> Result<(), Err
         }
     }
     Ok(())
+}
+
+/// Refuses names that would be more than a name where they are printed.
+pub(super) fn plain<'a>(
+    part: &str,
+    names: impl IntoIterator<Item = &'a String>,
+) -> Result<(), Error> {
+    match names.into_iter().find(|name| name.chars().any(char::is_control)) {
+        None => Ok(()),
+        Some(name) => {
+            Err(Error::corrupt(part, format!("{name:?} has control characters, and is no name")))
+        }
+    }
 }
 
 pub(super) fn json<T: Serialize>(value: &T) -> Result<Vec<u8>, Error> {

@@ -16,6 +16,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::directory::{BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, listed, read_manifest};
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
 use super::{Contents, Digest, Error, Unit};
+use crate::limits::GROUP_BYTES;
 use crate::output::{self, Foreign, Replace, Scratch};
 
 /// The blobs that only the bundle before this one has, one a line.
@@ -106,6 +107,13 @@ impl DirectoryWriter {
     /// Keeps the blobs of a unit for [`Self::finish`]; keys refer to it by the digest's hash.
     pub fn add(&self, unit: &Unit) -> Result<Digest, Error> {
         let digest = unit.digest()?;
+        if let Some((_, bytes)) =
+            digest.blobs.iter().find(|(_, bytes)| *bytes as usize > GROUP_BYTES)
+        {
+            return Err(Error::Io(format!(
+                "a blob of {bytes} bytes is larger than a bundle takes"
+            )));
+        }
         let mut part = Manifest::default();
         part.add_unit(&digest, unit)?;
         for (target, named) in part.units.values().flat_map(|unit| &unit.targets) {

@@ -1,5 +1,7 @@
 //! Reads the single file where it lies: only its header and META are parsed on opening.
 
+mod verify;
+
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -8,15 +10,17 @@ use std::sync::{Arc, Mutex, OnceLock};
 use memmap2::Mmap;
 use serde::de::DeserializeOwned;
 
-use super::contents::{Hash, checksum};
+use super::contents::{Hash, checksum, plain};
 use super::layout::*;
 use super::store::{Artifact, Program, Programs, Store, Unit};
-use super::{Error, Reflection, VERSION};
+use super::{Axis, Error, Reflection, VERSION};
 use crate::input;
 use crate::packing;
 
-/// Decompressed groups that are kept: what a level's worth of similar shaders needs.
+/// Decompressed groups that are kept, and their bytes: what a level's worth of similar shaders
+/// needs.
 const KEPT_GROUPS: usize = 16;
+const KEPT_BYTES: usize = 32 << 20;
 
 /// An open single-file bundle.
 pub struct Packed {
@@ -73,9 +77,15 @@ fn parse(bytes: Bytes) -> Result<Packed, Error> {
     }
     let meta: Meta =
         serde_json::from_slice(text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
+    meta.targets.iter().try_for_each(|target| plain("meta", [&target.name, &target.extension]))?;
     let mut programs = Programs::new();
     let mut entries = Vec::new();
     for (name, program) in &meta.programs {
+        plain(
+            "meta",
+            std::iter::once(name).chain(program.entries.iter().map(|entry| &entry.name)),
+        )?;
+        plain("meta", program.axes.iter().flat_map(Axis::names))?;
         let mut numbers = BTreeMap::new();
         for entry in &program.entries {
             numbers.insert((entry.language, entry.name.clone()), entries.len());
@@ -233,6 +243,11 @@ impl Packed {
         if let Ok(mut kept) = self.groups.lock() {
             kept.truncate(KEPT_GROUPS - 1);
             kept.insert(0, (group, bytes.clone()));
+            let mut sum = 0;
+            kept.retain(|(_, bytes)| {
+                sum += bytes.len();
+                sum <= KEPT_BYTES
+            });
         }
         Ok(bytes)
     }
@@ -270,51 +285,6 @@ impl Packed {
             hash_at(table, at + 16, "blobs")?,
         ))
     }
-
-    /// The groups fill DATA without a gap, so that their checksums cover it.
-    fn verify_groups(&self) -> Result<(), Error> {
-        let mut next = 0;
-        for group in 0..self.meta.groups {
-            let (offset, packed, ..) = self.group_record(group)?;
-            if offset != next {
-                return Err(Error::corrupt(
-                    format!("group {group}"),
-                    "it is not where the one before ends",
-                ));
-            }
-            next = offset.saturating_add(packed);
-            self.decompress(group)?;
-        }
-        if next == self.section(DATA)?.len() {
-            Ok(())
-        } else {
-            Err(Error::corrupt("data", "bytes follow the last group"))
-        }
-    }
-
-    /// Keys are sorted, found by their hashes, and have units.
-    fn verify_keys(&self) -> Result<(), Error> {
-        for (number, entry) in self.entries.iter().enumerate() {
-            let mut previous: Option<String> = None;
-            let mut outcome = Ok(());
-            self.each_key(number, &mut |key, unit| {
-                let is_sorted = previous.as_deref().is_none_or(|previous| previous < key);
-                if outcome.is_ok()
-                    && (!is_sorted
-                        || unit >= self.meta.units
-                        || self.find(number, key) != Ok(Some(unit)))
-                {
-                    outcome = Err(Error::corrupt(
-                        "keys",
-                        format!("`{key}` of `{}` is not where it belongs", entry.name),
-                    ));
-                }
-                previous = Some(key.to_owned());
-            })?;
-            outcome?;
-        }
-        Ok(())
-    }
 }
 
 impl Store for Packed {
@@ -334,7 +304,7 @@ impl Store for Packed {
             .0;
         let hash = hash(key.as_bytes());
         let mask = slots.len() - 1;
-        for step in 0..slots.len() {
+        for step in 0..slots.len().min(PROBES) {
             let slot = u128::from_le_bytes(slots[(hash as usize).wrapping_add(step) & mask]);
             if slot as u32 == 0 {
                 return Ok(None);
@@ -342,6 +312,9 @@ impl Store for Packed {
             if slot >> 32 == hash >> 32 {
                 return self.unit_of(keys, entry, slot as u32 as usize - 1).map(Some);
             }
+        }
+        if slots.len() > PROBES {
+            return Err(Error::corrupt("keys", "the slots are too full"));
         }
         Ok(None)
     }
@@ -404,22 +377,11 @@ impl Store for Packed {
         slice(&group, offset, length, "blobs").map(<[u8]>::to_vec)
     }
 
+    fn measure(&self) -> Result<(), Error> {
+        self.within_budget()
+    }
+
     fn verify(&self) -> Result<(), Error> {
-        (0..SECTIONS.len()).try_for_each(|section| self.section(section).map(|_| ()))?;
-        if self.sections[DATA].2 != [0; 16] {
-            return Err(Error::corrupt("header", "the data section has a checksum of its own"));
-        }
-        self.verify_groups()?;
-        self.verify_keys()?;
-        (0..self.meta.units).try_for_each(|unit| self.unit(unit).map(|_| ()))?;
-        let table = self.section(BLOBS)?;
-        for blob in 0..self.meta.blobs {
-            if checksum(&self.blob(blob)?)
-                != hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs")?
-            {
-                return Err(Error::corrupt(format!("blob {blob}"), "the checksum does not match"));
-            }
-        }
-        Ok(())
+        self.verify_all()
     }
 }

@@ -41,7 +41,11 @@ pub const BLOB_BYTES: usize = 28;
 pub const GROUP_BYTES: usize = 32;
 
 /// Most bytes of a group before compression: bounds what damaged lengths can allocate.
-pub const MOST_GROUP_BYTES: usize = 64 << 20;
+pub const MOST_GROUP_BYTES: usize = crate::limits::GROUP_BYTES;
+
+/// Most slots that a lookup passes by. Of keys that nobody chose for their hashes, some tens share
+/// a place in the worst of a million tables.
+pub const PROBES: usize = 4096;
 
 /// The META section.
 #[derive(Debug, Default, Serialize, Deserialize)]

@@ -119,8 +119,11 @@ impl Bundle {
         self.store.verify()
     }
 
-    /// Everything, in memory: to merge, compare, or write in the other form.
+    /// Everything, in memory: to merge, compare, or write in the other form. Each blob is there
+    /// once, however many units share it.
     pub fn contents(&self) -> Result<Contents, Error> {
+        self.store.measure()?;
+        let mut blobs = BTreeMap::new();
         let mut contents = Contents::default();
         for (name, program) in self.store.programs() {
             let mut copy =
@@ -129,14 +132,18 @@ impl Bundle {
                 copy.languages
                     .entry(*language)
                     .or_default()
-                    .insert(entry.clone(), self.entry_contents(*number)?);
+                    .insert(entry.clone(), self.entry_contents(*number, &mut blobs)?);
             }
             contents.programs.insert(name.clone(), copy);
         }
         Ok(contents)
     }
 
-    fn entry_contents(&self, entry: usize) -> Result<EntryContents, Error> {
+    fn entry_contents(
+        &self,
+        entry: usize,
+        blobs: &mut BTreeMap<u32, Arc<[u8]>>,
+    ) -> Result<EntryContents, Error> {
         let mut keys = Vec::new();
         self.store.each_key(entry, &mut |key, unit| keys.push((key.to_owned(), unit)))?;
         let mut contents = EntryContents::default();
@@ -144,7 +151,7 @@ impl Bundle {
         for (key, number) in keys {
             let hash = match hashes.get(&number) {
                 Some(hash) => *hash,
-                None => contents.add(self.unit(number)?)?,
+                None => contents.add(self.unit_with(number, blobs)?)?,
             };
             hashes.insert(number, hash);
             contents.keys.insert(key, hash);
@@ -153,9 +160,21 @@ impl Bundle {
     }
 
     pub(super) fn unit(&self, number: u32) -> Result<Unit, Error> {
+        self.unit_with(number, &mut BTreeMap::new())
+    }
+
+    /// A unit, with blobs that were read before as they are.
+    fn unit_with(&self, number: u32, blobs: &mut BTreeMap<u32, Arc<[u8]>>) -> Result<Unit, Error> {
         let unit = self.store.unit(number)?;
         let targets = unit.targets.into_iter().map(|(target, found)| {
-            let bytes = self.store.blob(found.blob)?.into();
+            let bytes = match blobs.get(&found.blob) {
+                Some(bytes) => bytes.clone(),
+                None => {
+                    let bytes: Arc<[u8]> = self.store.blob(found.blob)?.into();
+                    blobs.insert(found.blob, bytes.clone());
+                    bytes
+                }
+            };
             Ok((target, Artifact { bytes, extension: found.extension, native: found.native }))
         });
         Ok(Unit { reflection: unit.reflection, targets: targets.collect::<Result<_, Error>>()? })

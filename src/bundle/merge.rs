@@ -12,6 +12,7 @@ use super::{Bundle, Contents, EntryContents, Error, ProgramContents};
 /// # Errors
 /// [`Error::Conflict`] where two have a key or a program's axes and disagree.
 pub fn merge(bundles: &[Bundle]) -> Result<Contents, Error> {
+    bundles.iter().try_for_each(Bundle::verify)?;
     let mut all = Contents::default();
     bundles.iter().try_for_each(|bundle| all.merge(bundle.contents()?))?;
     Ok(all)
@@ -24,6 +25,7 @@ pub fn merge_directory(bundles: &[Bundle], path: impl AsRef<Path>) -> Result<(),
 
 /// [`merge_directory`] into a directory that is ready.
 pub fn merge_into(bundles: &[Bundle], writer: DirectoryWriter) -> Result<(), Error> {
+    bundles.iter().try_for_each(Bundle::verify)?;
     let mut all = Contents::default();
     for bundle in bundles {
         all.merge(copy(bundle, &writer)?)?;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::contents::{checksum, json};
 use super::layout::{
-    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, ProgramMeta, RECORD_BYTES,
-    SLOT_BYTES, TargetMeta, hash,
+    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, PROBES, ProgramMeta,
+    RECORD_BYTES, SLOT_BYTES, TargetMeta, hash,
 };
 use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
 use crate::output::{self, Replace};
@@ -21,7 +21,7 @@ const GROUP_BYTES: usize = 256 << 10;
 /// The single-file form. The same contents give the same bytes.
 ///
 /// # Errors
-/// [`Error::Io`] where a table outgrows 4 GiB or a blob 64 MiB.
+/// [`Error::Io`] where a table outgrows 4 GiB or a blob 16 MiB.
 pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
     let mut packer = Packer::default();
     packer.collect_blobs(contents)?;
@@ -241,8 +241,13 @@ fn slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
     for (index, key) in keys.iter().enumerate() {
         let hash = hash(key.as_bytes());
         let mut at = hash as usize & (count - 1);
+        let mut probes = 1;
         while slots[at] != 0 {
             at = (at + 1) & (count - 1);
+            probes += 1;
+            if probes > PROBES {
+                return Err(Error::Io(format!("too many keys have the hash of `{key}`")));
+            }
         }
         slots[at] = hash >> 32 << 32 | u128::from(number(index + 1)?);
     }

@@ -58,6 +58,9 @@ pub trait Store: Send + Sync {
     /// The bytes of a blob, verified.
     fn blob(&self, blob: u32) -> Result<Vec<u8>, Error>;
 
+    /// Refuses what would take memory or time out of proportion to its size.
+    fn measure(&self) -> Result<(), Error>;
+
     /// Checks every byte.
     fn verify(&self) -> Result<(), Error>;
 }

@@ -10,11 +10,13 @@ mod record;
 
 pub use folder::Folder;
 
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::bundle::{Clip, Hash, Target, Unit};
 use crate::compose::{Composed, Options};
 use crate::diagnostic::Diagnostics;
+use crate::source::SourceId;
 
 /// Changes with the sources of this crate, its dependencies' versions and the compiler's target.
 pub const BUILD: &str = env!("LAMPLIGHT_BUILD");
@@ -82,8 +84,11 @@ impl Cache {
     pub fn find(&self, job: Job<'_>) -> Option<Result<Made, Diagnostics>> {
         let key = unit_key(job);
         let told = |kind| {
+            let segments = job.composed.map.segments().iter();
+            let known: BTreeSet<SourceId> =
+                segments.filter_map(|segment| Some(segment.span?.source)).collect();
             self.get(kind, told_key(key, job.composed))
-                .and_then(|bytes| record::decode_diagnostics(&bytes))
+                .and_then(|bytes| record::decode_diagnostics(&bytes, |id| known.contains(&id)))
         };
         let found = match self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)) {
             Some((unit, false)) => Some(Ok(Made { unit, warnings: Vec::new() })),
@@ -125,7 +130,7 @@ impl Cache {
         let name = name(kind, key);
         for (index, storage) in self.storages.iter().enumerate() {
             let Some(record) = storage.get(&name) else { continue };
-            if let Some(payload) = record::open(&record) {
+            if let Some(payload) = record::open(&name, &record) {
                 self.storages[..index].iter().for_each(|nearer| nearer.put(&name, &record));
                 return Some(payload);
             }
@@ -134,8 +139,11 @@ impl Cache {
     }
 
     pub(crate) fn put(&self, kind: &str, key: Hash, payload: Option<Vec<u8>>) {
-        let Some(record) = payload.map(|payload| record::seal(&payload)) else { return };
-        self.storages.iter().for_each(|storage| storage.put(&name(kind, key), &record));
+        let name = name(kind, key);
+        let Some(record) = payload.and_then(|payload| record::seal(&name, &payload)) else {
+            return;
+        };
+        self.storages.iter().for_each(|storage| storage.put(&name, &record));
     }
 }
 

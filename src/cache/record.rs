@@ -7,35 +7,48 @@ use lz4_flex::block;
 use serde::{Deserialize, Serialize};
 
 use super::short;
-use crate::bundle::{Artifact, Native, Reflection, Unit};
+use crate::bundle::{Artifact, Hash, Native, Reflection, Unit};
 use crate::diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
+use crate::limits::CACHE_BYTES;
 use crate::source::{SourceId, Span};
 
-pub const MAGIC: &[u8; 4] = b"LLC2";
+pub const MAGIC: &[u8; 4] = b"LLC3";
 const SUM_BYTES: usize = 16;
 
-/// Bytes of a payload: bounds what damage can allocate.
-const MOST_BYTES: usize = 1 << 30;
-
 /// Bytes of a record.
-pub const MOST_RECORD_BYTES: u64 = MOST_BYTES as u64;
+pub const MOST_RECORD_BYTES: u64 = CACHE_BYTES as u64;
 
-/// A payload, packed, with its checksum.
-pub fn seal(payload: &[u8]) -> Vec<u8> {
-    let packed = block::compress_prepend_size(payload);
-    let sum = short(&blake3::hash(&packed));
-    [MAGIC.as_slice(), &sum, &packed].concat()
-}
+/// What a byte of LZ4 gives at most: a record that says more was not written by us.
+const MOST_RATIO: usize = 256;
 
-/// The payload of a record that is as it was written.
-pub fn open(record: &[u8]) -> Option<Vec<u8>> {
-    let (sum, packed) = record.strip_prefix(MAGIC)?.split_first_chunk::<SUM_BYTES>()?;
-    if short(&blake3::hash(packed)) != *sum {
+/// A payload, packed, with a checksum over it and over the name it is kept under; none where it
+/// is too large to be kept.
+pub fn seal(name: &str, payload: &[u8]) -> Option<Vec<u8>> {
+    if payload.len() > CACHE_BYTES {
         return None;
     }
-    let (size, packed) =
-        block::uncompressed_size(packed).ok().filter(|(size, _)| *size <= MOST_BYTES)?;
+    let packed = block::compress_prepend_size(payload);
+    Some([MAGIC.as_slice(), &sum(name, &packed), &packed].concat())
+}
+
+/// The payload of a record that is as it was written, and was written under that name.
+pub fn open(name: &str, record: &[u8]) -> Option<Vec<u8>> {
+    let (found, packed) = record.strip_prefix(MAGIC)?.split_first_chunk::<SUM_BYTES>()?;
+    if sum(name, packed) != *found {
+        return None;
+    }
+    let most = CACHE_BYTES.min(packed.len().saturating_mul(MOST_RATIO));
+    let (size, packed) = block::uncompressed_size(packed).ok().filter(|(size, _)| *size <= most)?;
     block::decompress(packed, size).ok()
+}
+
+/// The checksum of a record. A record under another name is another result.
+fn sum(name: &str, packed: &[u8]) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&(name.len() as u64).to_le_bytes());
+    hasher.update(name.as_bytes());
+    hasher.update(packed);
+    short(&hasher.finalize())
 }
 
 /// What stands before the bytes of a unit's targets.
@@ -119,8 +132,19 @@ pub fn encode_diagnostics(errors: &Diagnostics) -> Option<Vec<u8>> {
     serde_json::to_vec(&errors.collect::<Vec<_>>()).ok()
 }
 
-pub fn decode_diagnostics(payload: &[u8]) -> Option<Diagnostics> {
+/// The diagnostics of a record, if all their places are in texts that `is_known`.
+pub fn decode_diagnostics(
+    payload: &[u8],
+    is_known: impl Fn(SourceId) -> bool,
+) -> Option<Diagnostics> {
     let errors: Vec<Told> = serde_json::from_slice(payload).ok()?;
+    let is_placed = |told: &Told| {
+        let mut labels = told.labels.iter();
+        labels.all(|(source, start, end, _)| start <= end && is_known(SourceId(*source)))
+    };
+    if !errors.iter().all(is_placed) {
+        return None;
+    }
     errors.into_iter().map(decode_error).collect()
 }
 

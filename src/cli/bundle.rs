@@ -1,6 +1,6 @@
 //! `lamplight bundle`: a look inside.
 
-use std::io::{IsTerminal, Write, stdout};
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
@@ -9,7 +9,9 @@ use super::compile::target;
 use super::failure::Failure;
 use super::input::LanguageName;
 use super::overwrite::{Overwrite, unwritable};
+use super::terminal::{data, is_terminal, stdout};
 use crate::bundle::{self, Bundle, Error, Shader, Target};
+use crate::limits::MANIFEST_BYTES;
 use crate::{input, output};
 
 /// List, fetch, verify, pack or compare bundles.
@@ -99,7 +101,7 @@ fn open(path: &PathBuf) -> Result<Bundle, Failure> {
 /// are kept for one more run only.
 fn verify(path: &PathBuf) -> Result<(), Failure> {
     const MOST_LOOKS: u32 = 16;
-    let state = || input::read(&path.join("manifest.json"), u64::MAX).ok();
+    let state = || input::read(&path.join("manifest.json"), MANIFEST_BYTES).ok();
     for look in 1.. {
         let before = state();
         match open(path)?.verify() {
@@ -118,7 +120,7 @@ fn wrong(error: Error) -> Failure {
 }
 
 fn list(bundle: &Bundle, program: Option<&str>) -> Result<(), Failure> {
-    let mut out = std::io::BufWriter::new(stdout().lock());
+    let mut out = std::io::BufWriter::new(stdout());
     if let Some(name) = program {
         let program = bundle.program(name).map_err(wrong)?;
         let Some((language, entry)) = program.entries().next() else { return Ok(()) };
@@ -172,14 +174,15 @@ fn fetch(get: &Get) -> Result<(), Failure> {
             let replace = get.overwrite.replace();
             Ok(output::write_file(path, &found.bytes, |_| false, replace)?)
         }
-        None if get.target == Target::SPIRV && stdout().is_terminal() => {
+        None if get.target == Target::SPIRV && is_terminal() => {
             Err(Failure::usage("SPIR-V is binary: name a file with `-o`"))
         }
-        None => Ok(stdout().write_all(&found.bytes)?),
+        None => Ok(data(&found.bytes)?),
     }
 }
 
 fn compare(old: &Bundle, new: &Bundle, json: bool) -> Result<(), Failure> {
+    [old, new].into_iter().try_for_each(Bundle::verify).map_err(wrong)?;
     let difference = bundle::diff(&old.contents().map_err(wrong)?, &new.contents().map_err(wrong)?);
     if json {
         writeln!(stdout(), "{:#}", serde_json::json!(difference))?;

@@ -1,12 +1,13 @@
 //! `lamplight catalogue`: the library's documentation as Markdown with plots.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::Failure;
 use super::overwrite::Overwrite;
+use super::terminal::stdout;
 use crate::proof::catalogue::{self, Files};
 use crate::{input, output};
 

@@ -1,6 +1,6 @@
 //! `lamplight check`: numeric cases of the library or of the user's own modules.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
@@ -11,6 +11,7 @@ use super::failure::Failure;
 use super::features;
 use super::input::{self, LanguageName};
 use crate::bundle::Language;
+use crate::cli::terminal::stdout;
 use crate::diagnostic::Diagnostics;
 use crate::execute::on_thread;
 use crate::output::{self, Replace};

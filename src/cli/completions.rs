@@ -1,6 +1,6 @@
 //! `lamplight completions SHELL` and `lamplight man`: what shells and `man` read.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, Command};
@@ -9,6 +9,7 @@ use clap_mangen::Man;
 
 use super::failure::Failure;
 use super::overwrite::Overwrite;
+use crate::cli::terminal::stdout;
 use crate::diagnostic::nearest;
 use crate::output;
 

@@ -1,12 +1,12 @@
 //! `lamplight compose FILE`: the composed text.
 
-use std::io::{Write, stdout};
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
 use super::input::Input;
+use super::terminal::data;
 use crate::source::SourceSet;
 
 /// Print a root module with all it reaches as one text.
@@ -20,5 +20,5 @@ pub struct Arguments {
 
 pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let ready = arguments.input.compose(&arguments.file, SourceSet::default(), form)?;
-    Ok(stdout().write_all(ready.composed.text.as_bytes())?)
+    Ok(data(ready.composed.text.as_bytes())?)
 }

@@ -1,6 +1,6 @@
 //! `lamplight eval EXPR`: values of expressions over the library's functions.
 
-use std::io::{BufRead, Write, stdin, stdout};
+use std::io::{BufRead, Write, stdin};
 use std::sync::Mutex;
 
 use clap::Args;
@@ -9,6 +9,7 @@ use super::executor;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::input::LanguageName;
 use super::own::Own;
+use crate::cli::terminal::stdout;
 use crate::execute::{Session, on_thread};
 use crate::proof::expression::evaluate;
 use crate::proof::library::Library;

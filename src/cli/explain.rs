@@ -1,10 +1,11 @@
 //! `lamplight explain CODE`: a diagnostic explained.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 
 use clap::Args;
 
 use super::failure::Failure;
+use super::terminal::stdout;
 use crate::diagnostic::{codes, guide, nearest};
 
 /// Explain a diagnostic's code; without one, list them all.

@@ -1,11 +1,12 @@
 //! How a command fails, and how that is told.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::ValueEnum;
 
 use super::guide;
+use crate::cli::terminal::{coloured, escaped, is_person, stderr};
 use crate::diagnostic::render::{Form, render};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;
@@ -47,7 +48,7 @@ impl Failure {
                 if diagnostics.iter().any(|error| error.code == codes::BUNDLE_FAILED) =>
             {
                 warn(&sources, &diagnostics, form);
-                let _ = writeln!(io::stderr(), "error: cannot write the bundle");
+                let _ = writeln!(stderr(), "error: cannot write the bundle");
                 ExitCode::from(4)
             }
             Self::Input(sources, diagnostics) => {
@@ -56,18 +57,19 @@ impl Failure {
                 if let (Some(reading), DiagnosticForm::Human | DiagnosticForm::Coloured) =
                     (reading, form)
                 {
-                    let _ = io::stderr().write_all(reading.as_bytes());
+                    let _ = stderr().write_all(reading.as_bytes());
                 }
                 ExitCode::from(1)
             }
             Self::Message(code, message) => {
                 let _ = match form {
-                    DiagnosticForm::Json => writeln!(io::stderr(), "{}", message_as_json(&message)),
+                    DiagnosticForm::Json => writeln!(stderr(), "{}", message_as_json(&message)),
                     DiagnosticForm::Human | DiagnosticForm::Short => {
-                        writeln!(io::stderr(), "error: {message}")
+                        writeln!(stderr(), "error: {message}")
                     }
                     DiagnosticForm::Coloured => {
-                        writeln!(io::stderr(), "\x1b[1;31merror\x1b[0m: {message}")
+                        let message = escaped(&message);
+                        writeln!(coloured(), "\x1b[1;31merror\x1b[0m: {message}")
                     }
                 };
                 ExitCode::from(code)
@@ -93,7 +95,12 @@ impl From<io::Error> for Failure {
 
 /// Prints diagnostics that do not stop the command, or those that did.
 pub fn warn(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
-    let _ = io::stderr().write_all(render(sources, diagnostics, form.into()).as_bytes());
+    let text = render(sources, diagnostics, form.into());
+    let _ = match form {
+        // What is quoted in it has lost its control characters by now.
+        DiagnosticForm::Coloured => coloured().write_all(text.as_bytes()),
+        _ => stderr().write_all(text.as_bytes()),
+    };
 }
 
 /// [`Form`] as an option's value.
@@ -147,7 +154,7 @@ impl Colour {
         match self {
             Self::Always => true,
             Self::Never => false,
-            Self::Auto => io::stderr().is_terminal() && !is_set("NO_COLOR") && !is_dumb,
+            Self::Auto => is_person() && !is_set("NO_COLOR") && !is_dumb,
         }
     }
 }

@@ -1,12 +1,13 @@
 //! `lamplight gen`: the bundle of a manifest.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::time::Instant;
 
 use clap::Args;
 
 use super::compile::{Wanted, clip, wanted, wanted_one};
 use super::failure::{DiagnosticForm, Failure};
+use super::terminal::stdout;
 use super::work::{Places, Work};
 use crate::bundle::Clip;
 use crate::generate::{Request, Shard, Summary};

@@ -1,10 +1,10 @@
 //! Where the guide explains what a command is about: a line at the end of help and of errors.
 
 use std::collections::BTreeSet;
-use std::io::{IsTerminal, stderr};
 
 use clap::Command;
 
+use super::terminal::is_person;
 use crate::diagnostic::{Diagnostic, Severity, guide};
 
 /// What help adds to a command: the title of its page, and examples that work in a package that
@@ -128,7 +128,7 @@ fn with(command: Command, entry: &Entry) -> Command {
 
 /// What to read about the errors, for a person at a terminal; nothing for a program.
 pub fn after_errors(diagnostics: &[Diagnostic]) -> Option<String> {
-    stderr().is_terminal().then(|| reading(diagnostics)).flatten()
+    is_person().then(|| reading(diagnostics)).flatten()
 }
 
 fn reading(diagnostics: &[Diagnostic]) -> Option<String> {

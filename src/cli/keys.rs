@@ -1,12 +1,12 @@
 //! `lamplight keys`: a manifest's permutations as types of an engine's language.
 
-use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::overwrite::Overwrite;
+use super::terminal::data;
 use crate::input;
 use crate::keys::{self, LANGUAGES, Language};
 use crate::output::{self, Replace};
@@ -61,7 +61,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let text = keys::write(&manifest, language);
     match &arguments.out {
         Some(path) => put(path, &text, arguments.check, arguments.overwrite.replace()),
-        None => Ok(stdout().write_all(text.as_bytes())?),
+        None => Ok(data(text.as_bytes())?),
     }
 }
 

@@ -1,6 +1,6 @@
 //! `lamplight lint`: a whole package, reached or not.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -8,6 +8,7 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::features;
 use super::input::{self, feature};
+use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostics, Severity};
 use crate::lint::{self, EXTENSIONS, Request};
 use crate::permute::{Setting, Settings};

@@ -1,6 +1,6 @@
 //! `lamplight list [WHAT]`: tables of what there is.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::own::Own;
 use super::text;
 use crate::catalogue::{self, Kind, probe};
+use crate::cli::terminal::stdout;
 use crate::emit::targets;
 use crate::execute::executors;
 use crate::permute::{Manifest, Program, Setting};

@@ -1,13 +1,14 @@
 //! `lamplight merge`: one bundle of several.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::failure::Failure;
 use super::overwrite::{Overwrite, unwritable, waiting};
+use super::terminal::stdout;
 use super::work::is_file;
 use crate::bundle::{self, Bundle, DirectoryWriter, Error, Language};
 use crate::project;

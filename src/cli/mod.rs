@@ -33,11 +33,13 @@ mod progress;
 mod render;
 mod show;
 mod stream;
+mod terminal;
 mod text;
 mod variants;
 mod watch;
 mod work;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -130,8 +132,8 @@ fn asked_for_colour() -> clap::ColorChoice {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let matches = described().get_matches();
-    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let matches = described().try_get_matches().unwrap_or_else(wrong_usage);
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(wrong_usage);
     // While there is one thread.
     executors::prepare(&cli.command.executors());
     let gpus = cli.command.gpus();
@@ -140,6 +142,26 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(form),
     }
+}
+
+/// Says what is wrong with the arguments, which are quoted and may hold anything; help as it is.
+fn wrong_usage<T>(error: clap::Error) -> T {
+    if !error.use_stderr() {
+        error.exit();
+    }
+    let in_colour = match asked_for_colour() {
+        clap::ColorChoice::Always => true,
+        clap::ColorChoice::Never => false,
+        clap::ColorChoice::Auto => {
+            terminal::is_person() && std::env::var_os("NO_COLOR").is_none_or(|set| set.is_empty())
+        }
+    };
+    let text = error.render();
+    let _ = match in_colour {
+        true => write!(terminal::coloured(), "{}", text.ansi()),
+        false => write!(terminal::stderr(), "{text}"),
+    };
+    std::process::exit(error.exit_code())
 }
 
 fn dispatch(

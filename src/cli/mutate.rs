@@ -1,12 +1,13 @@
 //! `lamplight mutate`: how many mistakes put into a package's functions its numeric cases notice.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 use clap::Args;
 
 use super::failure::Failure;
+use super::terminal::stdout;
 use crate::proof::library::Library;
 use crate::proof::mutate::{coverage, mutate};
 use crate::source::{Disk, SourceSet};

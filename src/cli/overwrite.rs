@@ -1,11 +1,12 @@
 //! What commands that write files have in common.
 
-use std::io::{ErrorKind, Write, stderr};
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 use clap::Args;
 
 use super::failure::Failure;
+use super::terminal::stderr;
 use crate::bundle;
 use crate::output::{Error, Foreign, Replace};
 

@@ -1,6 +1,6 @@
 //! `lamplight variants`: what a manifest's axes multiply to.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::cost;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::progress::Bar;
+use super::terminal::stdout;
 use crate::cost::permutations::Change;
 use crate::diagnostic::{Diagnostics, nearest};
 use crate::generate::{self, Discard, Request, Tools};
@@ -165,7 +166,7 @@ fn keys(manifest: &Manifest, name: &str, json: bool) -> Result<(), Failure> {
     })?;
     let points = program.space.enumerate();
     let keys = points.iter().map(|point| program.space.key(point).to_string());
-    let mut out = std::io::BufWriter::new(stdout().lock());
+    let mut out = std::io::BufWriter::new(stdout());
     if json {
         writeln!(out, "{:#}", serde_json::json!(keys.collect::<Vec<_>>()))?;
     } else {

@@ -1,6 +1,6 @@
 //! `lamplight watch`: the bundle, kept up to date.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
+use super::terminal::stdout;
 use super::work::{Places, Work};
 use crate::generate::Request;
 use crate::input;
@@ -89,7 +90,7 @@ fn update(arguments: &Arguments, work: &mut Work, form: DiagnosticForm) -> Resul
 }
 
 fn say(line: &str) -> Result<(), Failure> {
-    let mut out = stdout().lock();
+    let mut out = stdout();
     writeln!(out, "{line}")?;
     Ok(out.flush()?)
 }

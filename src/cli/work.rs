@@ -1,6 +1,6 @@
 //! What `gen` and `watch` share: a package, its manifest, the cache, and a run over them.
 
-use std::io::{Write, stderr};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -10,6 +10,7 @@ use super::judged::{Inputs, Judges};
 use super::overwrite::{Overwrite, unwritable, waiting};
 use super::partial;
 use super::progress::Bar;
+use super::terminal::stderr;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
 use crate::cache::{Cache, Folder, Storage};
 use crate::generate::{

@@ -55,9 +55,20 @@ impl Baseline {
         }
     }
 
-    /// The text of a file.
+    /// The text of a file: a line for each cost, so that differences can be read.
     pub fn text(&self) -> String {
-        serde_json::to_string_pretty(self).map_or(String::new(), |text| text + "\n")
+        let written = |value: &str| serde_json::Value::from(value).to_string();
+        let line = |(key, figures): (&String, &Statistics)| {
+            let figures = serde_json::to_string(figures).unwrap_or_default();
+            format!("    {}: {figures}", written(key))
+        };
+        let costs: Vec<String> = self.costs.iter().map(line).collect();
+        format!(
+            "{{\n  \"format\": {},\n  \"driver\": {},\n  \"costs\": {{\n{}\n  }}\n}}\n",
+            written(&self.format),
+            written(&self.driver),
+            costs.join(",\n")
+        )
     }
 
     /// Whether a file that begins like this holds recorded costs.

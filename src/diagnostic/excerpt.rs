@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use codespan_reporting::files::{Error, Files};
 
+use super::obeyed::is_obeyed;
 use crate::source::{SourceId, SourceSet, Span};
 
 /// Bytes of a line from which on it is cut, before the label, and in all.
@@ -162,10 +163,8 @@ fn harmless(character: char) -> char {
     match character {
         '\t' => character,
         '\0'..'\x20' | '\x7f' => '?',
-        '\u{80}'..='\u{9f}' => '¿',
-        '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
-            char::REPLACEMENT_CHARACTER
-        }
+        '\u{80}'..='\u{9f}' | '\u{61c}' => '¿',
+        other if is_obeyed(other) => char::REPLACEMENT_CHARACTER,
         _ => character,
     }
 }

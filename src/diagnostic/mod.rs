@@ -6,8 +6,11 @@
 
 mod excerpt;
 pub mod guide;
+mod obeyed;
 mod read;
 pub mod render;
+
+pub use obeyed::is_obeyed;
 
 use crate::source::Span;
 

@@ -22,7 +22,7 @@ pub enum Form {
 }
 
 /// Diagnostics printed in one go: what comes after says no more.
-const SHOWN: usize = 100;
+const SHOWN: usize = crate::limits::DIAGNOSTICS;
 
 /// The diagnostics in one of the forms, ending in a newline.
 ///

@@ -5,6 +5,7 @@ use naga::proc::BoundsCheckPolicies;
 
 use super::reflect::place;
 use super::slots::{EXPLICIT_LIMIT, Numbering, assign, native};
+use super::text::Text;
 use super::{Emitted, Source};
 use crate::bundle::{Clip, Combined, Kind, Native};
 
@@ -23,8 +24,8 @@ pub fn write(
         entry_point: source.entry.to_owned(),
         multiview: None,
     };
-    let mut text = String::new();
-    let mut info = Writer::new(
+    let mut text = Text::default();
+    let written = Writer::new(
         &mut text,
         source.module,
         source.info,
@@ -32,10 +33,10 @@ pub fn write(
         &pipeline,
         BoundsCheckPolicies::default(),
     )
-    .and_then(|mut writer| writer.write())
-    .map_err(|error| error.to_string())?;
+    .and_then(|mut writer| writer.write());
+    let mut info = written.map_err(|error| text.explain(error))?;
     // naga forgets the prefix of this one extension's name, without which no driver knows it.
-    text = text.replacen("#extension ARB_", "#extension GL_ARB_", 1);
+    let mut text = text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1);
     name_blocks(source, &mut text, &mut info);
     let mut native = reflection(source, &info, numbering);
     let is_asked = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));

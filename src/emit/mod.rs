@@ -19,6 +19,7 @@ mod reflect;
 mod slots;
 mod specialise;
 pub mod spirv;
+mod text;
 mod zeros;
 
 pub use header::is_header_line;
@@ -30,6 +31,7 @@ pub use specialise::check;
 use naga::ShaderStage;
 
 use crate::bundle::{self, Clip, Native, Target};
+use crate::compose::{Composed, Part, PartKind};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::validate::{Validated, guard, on_large_stack};
 
@@ -209,6 +211,22 @@ fn written(
         clip,
     })
     .map_err(failed)
+}
+
+/// An error of a writer has no place of its own: it is put at the entry point.
+pub fn at_entry(error: Diagnostic, composed: &Composed, entry: &str) -> Diagnostic {
+    let is_entry = |part: &&Part| {
+        part.kind == PartKind::Function && part.names.iter().any(|name| name == entry)
+    };
+    let part = composed.parts.iter().find(is_entry).filter(|_| error.labels.is_empty());
+    let name = part.and_then(|part| {
+        let at = composed.text[part.range.clone()].find(&format!("fn {entry}"));
+        Some(part.range.start + at.map_or(0, |at| at + 3))
+    });
+    match name.and_then(|start| composed.map.lookup(start..start + entry.len())) {
+        Some(span) => error.at(span, "of this entry point"),
+        None => error,
+    }
 }
 
 /// Index of the entry point of that name.

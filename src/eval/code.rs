@@ -210,6 +210,20 @@ pub enum Instruction {
 }
 
 impl Instruction {
+    /// What it costs: copies cost more the longer they are.
+    #[inline(always)]
+    pub fn steps(&self) -> u64 {
+        match *self {
+            Self::Copy { n, .. }
+            | Self::Fill { n, .. }
+            | Self::Zero { n, .. }
+            | Self::Load { n, .. }
+            | Self::Store { n, .. }
+            | Self::Pick { size: n, .. } => 1 + u64::from(n >> 3),
+            _ => 1,
+        }
+    }
+
     /// Copies a value, each component into its own slot.
     pub fn spread(to: Slot, from: Operand, n: u32) -> Self {
         match from.stride {

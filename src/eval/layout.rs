@@ -4,7 +4,7 @@ use super::Error;
 use naga::{ArraySize, Binding, Handle, Scalar, ScalarKind, Type, TypeInner, UniqueArena};
 
 /// Most slots one program may take: 64 MiB of `f64` for four lanes of a quad.
-pub const MAX_SLOTS: u32 = 1 << 21;
+pub const MAX_SLOTS: u32 = crate::limits::EVAL_SLOTS;
 
 /// What one slot of an argument or result holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -51,7 +51,11 @@ impl Taken {
 
 /// Lines of a comment, one for each of the text's.
 pub fn comment(prefix: &str, text: &str) -> String {
+    // Each of these ends a comment of one line somewhere; a lone carriage return is an error in
+    // Rust's.
+    let text = text.replace("\r\n", "\n").replace(['\r', '\u{2028}', '\u{2029}'], "\n");
     text.lines()
+        .map(|line| line.replace(|c: char| c.is_control() && c != '\t', "?"))
         .map(|line| format!("{}\n", format!("{prefix} {}", line.replace("*/", "* /")).trim_end()))
         .collect()
 }

@@ -9,6 +9,17 @@ use crate::permute::{Axis, Kind, Manifest, Program, Setting};
 pub const LANGUAGE: Language =
     Language { name: "ts", about: "a TypeScript module of erasable types", write };
 
+/// What every object has: a field of that name would not be left out by leaving it out.
+const INHERITED: &[&str] = &[
+    "constructor",
+    "hasOwnProperty",
+    "isPrototypeOf",
+    "propertyIsEnumerable",
+    "toLocaleString",
+    "toString",
+    "valueOf",
+];
+
 const START: &str = "// Written by `lamplight keys --lang ts`; do not edit.
 
 type Value = string | number | bigint | boolean;
@@ -36,14 +47,16 @@ fn program(program: &Program, taken: &mut Taken) -> String {
         "\n/** One permutation of program `{}`; what is left out is at its default. */\nexport interface {ty} {{\n",
         program.name
     );
-    for axis in axes(program) {
+    let mut fields = Taken::new(INHERITED);
+    let fields: Vec<String> = axes(program).map(|axis| fields.give(axis.name.clone())).collect();
+    for (axis, field) in axes(program).zip(&fields) {
         text.push_str(
             &axis
                 .doc
                 .as_deref()
                 .map_or(String::new(), |doc| format!("  /**\n{}   */\n", comment("   *", doc))),
         );
-        let _ = writeln!(text, "  {}?: {};", axis.name, values(axis));
+        let _ = writeln!(text, "  {field}?: {};", values(axis));
     }
     text.push_str("}\n");
     let defaults: Vec<String> = axes(program)
@@ -56,11 +69,24 @@ fn program(program: &Program, taken: &mut Taken) -> String {
     );
     let _ = writeln!(
         text,
-        "  return keyText(key, [{}]);\n}}",
+        "  return keyText({}, [{}]);\n}}",
+        renamed(program, &fields),
         list.replace("\n  ", "\n    ").trim_end_matches(' ').to_owned()
             + if list.is_empty() { "" } else { "  " }
     );
     text
+}
+
+/// The key with the names of axes for fields that are called otherwise.
+fn renamed(program: &Program, fields: &[String]) -> String {
+    let differing = axes(program).zip(fields).filter(|(axis, field)| axis.name != **field);
+    let names: Vec<String> = differing
+        .map(|(axis, field)| format!("{}: key.{field} ?? {}", axis.name, literal(default(axis))))
+        .collect();
+    match names.is_empty() {
+        true => "key".to_owned(),
+        false => format!("{{ ...key, {} }}", names.join(", ")),
+    }
 }
 
 fn values(axis: &Axis) -> String {

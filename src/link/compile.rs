@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::{Linker, Reason};
 use crate::bundle::{Artifact, Clip, Target, Unit};
 use crate::compose::Composed;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::{self, targets};
+use crate::limits::GROUP_BYTES;
 use crate::validate::{self, Validated, validate};
 
 /// A text as its author reads it, for errors, and without comments and layout, to compile.
@@ -40,6 +41,7 @@ pub fn compile(
         Ok(linked) => linked,
         Err(reason) => {
             let (unit, warnings) = compile_whole(text, entry, targets, linker)?;
+            bounded(&unit).map_err(|error| vec![error])?;
             let whole = targets.iter().map(|target| (*target, reason)).collect();
             return Ok(Made { unit, warnings, whole });
         }
@@ -59,7 +61,23 @@ pub fn compile(
         unit.targets.extend(compile_whole(text, entry, &left, linker)?.0.targets);
     }
     let warnings = if linked.suspect { lint(text)? } else { Vec::new() };
+    bounded(&unit).map_err(|error| vec![error])?;
     Ok(Made { unit, warnings, whole })
+}
+
+/// Refuses an output that no bundle takes.
+fn bounded(unit: &Unit) -> Result<(), Diagnostic> {
+    match unit.targets.iter().find(|(_, artifact)| artifact.bytes.len() > GROUP_BYTES) {
+        None => Ok(()),
+        Some((target, artifact)) => {
+            let bytes = artifact.bytes.len();
+            let message = format!(
+                "the output for target `{target}` has {bytes} bytes, more than the {GROUP_BYTES} \
+                 that a bundle takes"
+            );
+            Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message))
+        }
+    }
 }
 
 fn lint(text: &Text<'_>) -> Result<Diagnostics, Diagnostics> {
@@ -77,7 +95,8 @@ fn compile_whole(
     // The lean text is quick to read; the whole one knows where its mistakes are.
     let validated = validate(text.lean).or_else(|_| whole())?;
     emit::check(text.lean, &validated).or_else(|_| emit::check(text.composed, &whole()?))?;
-    let unit = unit(text, &validated, entry, targets, linker).map_err(|error| vec![error])?;
+    let unit = unit(text, &validated, entry, targets, linker)
+        .map_err(|error| vec![emit::at_entry(error, text.composed, entry)])?;
     // The lean text has no places to tell of.
     let warnings = if validate::has_lints(&validated) { lint(text)? } else { Vec::new() };
     Ok((unit, warnings))

@@ -20,7 +20,7 @@ use crate::bundle::Language;
 use crate::bundle::{Clip, Native, Reflection, Target};
 use crate::compose::Composed;
 use crate::emit::{self, type_name};
-use crate::validate::{CAPABILITIES, Validated, check_limits, guard, on_large_stack};
+use crate::validate::{CAPABILITIES, Validated, check_limits, guard, is_bounded, on_large_stack};
 
 /// A unit in every target.
 pub struct Translated {
@@ -77,6 +77,9 @@ fn inner(
     clip: Clip,
 ) -> Result<Translated, Reason> {
     let mut module = parse(outline, &composed.text)?;
+    if !is_bounded(&module) {
+        return Err(Reason::Refused);
+    }
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)

@@ -5,7 +5,7 @@ use crate::source::Span;
 
 /// The most axes of a program, and the most values of an axis. A set of either fits into one
 /// machine word, so that large spaces are counted quickly.
-pub const MAX: usize = 128;
+pub const MAX: usize = crate::limits::AXES;
 
 /// What the values of an axis are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

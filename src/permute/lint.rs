@@ -4,12 +4,12 @@
 use super::axis::{Axis, ValueSet};
 use super::space::{Constraint, Slice, Space};
 use crate::diagnostic::{Diagnostic, codes};
+use crate::limits::SPACE_STEPS;
 use crate::source::Span;
 
 /// Warnings about a space; `what` and `place` name its program.
 pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
-    let mut warnings: Vec<Diagnostic> =
-        space.constraints().iter().filter_map(|constraint| trivial(space, constraint)).collect();
+    let mut warnings: Vec<Diagnostic> = trivial_constraints(space);
     if space.valid_count() == 0
         && warnings.iter().any(|warning| warning.code == codes::CONSTRAINT_ALWAYS_FALSE)
     {
@@ -42,10 +42,16 @@ pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnost
     })
 }
 
-/// Whether a condition always has one value. Spaces that are too complex to count were refused
-/// before, so a single condition can be counted.
-fn trivial(space: &Space, constraint: &Constraint) -> Option<Diagnostic> {
-    let satisfying = space.satisfying(&constraint.formula).ok()?;
+/// Conditions that always have one value. They share a bound on steps; conditions beyond it are not
+/// looked at.
+fn trivial_constraints(space: &Space) -> Vec<Diagnostic> {
+    let mut steps = SPACE_STEPS;
+    let constraints = space.constraints().iter();
+    constraints.filter_map(|constraint| trivial(space, constraint, &mut steps)).collect()
+}
+
+fn trivial(space: &Space, constraint: &Constraint, steps: &mut usize) -> Option<Diagnostic> {
+    let satisfying = space.satisfying(&constraint.formula, steps).ok()?;
     let (code, word) = match satisfying {
         0 => (codes::CONSTRAINT_ALWAYS_FALSE, "false"),
         all if all == space.full_count() => (codes::CONSTRAINT_ALWAYS_TRUE, "true"),

@@ -13,7 +13,7 @@ use crate::source::{
 
 const NAME: &str = "wesl.toml";
 /// Packages that one `wesl.toml` may list.
-const DEPENDENCIES: usize = 1000;
+const DEPENDENCIES: usize = crate::limits::PACKAGES;
 const DEFAULT_ROOT: &str = "shaders";
 
 /// The root that the `wesl.toml` of `folder` declares, if it has one.

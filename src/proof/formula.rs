@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, codes, nearest};
 use crate::execute::kernel::Shape;
+use crate::limits::{FORMULA_NESTING, FORMULA_PARTS};
 
 /// A formula with its names resolved to words of a row.
 #[derive(Debug, Clone)]
@@ -89,7 +90,7 @@ pub const FUNCTIONS: &[Function] = &[
 impl Formula {
     /// Parses a text over named parameters; ranges of the error are bytes of `text`.
     pub fn parse(text: &str, scope: &Scope<'_>) -> Result<Self, (Range<usize>, String)> {
-        let mut parser = Parser { text, at: 0, depth: 0, scope };
+        let mut parser = Parser { text, at: 0, depth: 0, parts: 0, scope };
         let formula = parser.binary(0)?;
         parser.skip();
         if parser.at < text.len() {
@@ -162,7 +163,10 @@ impl Scope<'_> {
 struct Parser<'a> {
     text: &'a str,
     at: usize,
-    depth: u32,
+    /// Parentheses and operands within each other.
+    depth: usize,
+    /// Operands and operators so far: as deep as the formula can become.
+    parts: usize,
     scope: &'a Scope<'a>,
 }
 
@@ -171,7 +175,7 @@ type Parsed = Result<Formula, (Range<usize>, String)>;
 impl Parser<'_> {
     fn binary(&mut self, weakest: u8) -> Parsed {
         self.depth += 1;
-        if self.depth > 100 {
+        if self.depth > FORMULA_NESTING {
             return Err((self.at..self.at, "the formula is nested too deeply".to_owned()));
         }
         let mut left = self.unary()?;
@@ -195,6 +199,11 @@ impl Parser<'_> {
 
     fn unary(&mut self) -> Parsed {
         self.skip();
+        self.parts += 1;
+        if self.parts > FORMULA_PARTS {
+            let message = format!("the formula has more than {FORMULA_PARTS} signs and operands");
+            return Err((self.at..self.at, message));
+        }
         match self.text[self.at..].chars().next() {
             Some('-') => {
                 self.at += 1;

@@ -7,6 +7,7 @@ mod json;
 mod junit;
 mod plot;
 
+use crate::diagnostic::is_obeyed;
 use crate::proof::check::Report;
 
 /// A form of a report.
@@ -33,7 +34,7 @@ fn escaped(text: &str) -> String {
             '>' => escaped += "&gt;",
             '"' => escaped += "&quot;",
             '\n' | '\t' => escaped.push(letter),
-            letter if letter.is_control() => {}
+            letter if is_obeyed(letter) || matches!(letter, '\u{fffe}' | '\u{ffff}') => {}
             letter => escaped.push(letter),
         }
     }

@@ -5,6 +5,7 @@ use image::ImageDecoder as _;
 use image::codecs::hdr::HdrDecoder;
 
 use super::sky::Equirect;
+use crate::limits::ENVIRONMENT_PIXELS;
 
 /// Radiance by unit direction.
 pub type Environment = fn(DVec3) -> DVec3;
@@ -63,9 +64,6 @@ fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Widest and highest image that is read: 8 K once around.
-const LARGEST: u32 = 8192;
-
 impl Equirect {
     /// The image of a Radiance file (`.hdr`).
     ///
@@ -75,19 +73,20 @@ impl Equirect {
         let decoder =
             HdrDecoder::new(std::io::Cursor::new(bytes)).map_err(|error| error.to_string())?;
         let (width, height) = decoder.dimensions();
-        if width > LARGEST || height > LARGEST {
-            return Err(format!("{width} x {height} pixels are more than {LARGEST} x {LARGEST}"));
+        // The header alone decides how much is allocated, whatever the file holds.
+        if u64::from(width) * u64::from(height) > ENVIRONMENT_PIXELS {
+            return Err(format!("{width} x {height} pixels are more than {ENVIRONMENT_PIXELS}"));
         }
         let mut read =
             vec![0; usize::try_from(decoder.total_bytes()).map_err(|error| error.to_string())?];
         decoder.read_image(&mut read).map_err(|error| error.to_string())?;
-        let numbers: Vec<f64> = read
-            .as_chunks::<4>()
-            .0
-            .iter()
-            .map(|bytes| f64::from(f32::from_ne_bytes(*bytes)))
-            .collect();
-        let pixels = numbers.as_chunks::<3>().0.iter().map(|rgb| DVec3::from_array(*rgb)).collect();
+        let number = |bytes: &[u8; 4]| f64::from(f32::from_ne_bytes(*bytes));
+        let pixels = read.as_chunks::<12>().0.iter().map(|rgb| {
+            let [red, green, blue] =
+                [0, 4, 8].map(|at| rgb[at..].first_chunk().map_or(0.0, number));
+            DVec3::new(red, green, blue)
+        });
+        let pixels = pixels.collect();
         Self::new(width as usize, height as usize, pixels)
             .ok_or_else(|| "the image is empty".to_owned())
     }

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use crate::input;
+use crate::limits;
 
 /// Bounds on what is read; each has its own error.
 #[derive(Debug, Clone, Copy)]
@@ -26,13 +27,13 @@ pub struct Limits {
 
 /// The limits every command uses.
 pub const LIMITS: Limits = Limits {
-    file_bytes: 4 << 20,
-    tokens: 1 << 20,
-    nesting: 256,
-    include_depth: 64,
-    expansion_bytes: 16 << 20,
-    files: 10_000,
-    permutations: 1_000_000,
+    file_bytes: limits::FILE_BYTES,
+    tokens: limits::FILE_TOKENS,
+    nesting: limits::NESTING,
+    include_depth: limits::INCLUDE_DEPTH,
+    expansion_bytes: limits::EXPANSION_BYTES,
+    files: limits::FILES,
+    permutations: limits::PERMUTATIONS,
 };
 
 /// Why a file of a package could not be read.

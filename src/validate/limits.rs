@@ -5,8 +5,10 @@
 //! may nest in one statement, brackets within brackets, and the length as a whole. The functions
 //! are counted too: naga's time grows with their square.
 
+use super::constants;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, codes};
+use crate::limits;
 
 /// Bounds on what naga is given.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +26,12 @@ pub struct Limits {
 /// The limits [`super::validate`] uses. Naga's stack overflowed at some 20,000 operators of a
 /// thread of 2 MiB; the whole shader library stays below 40 in one expression. It takes a quarter of a second over
 /// 5,000 functions that call each other, and a minute over 40,000.
-pub const LIMITS: Limits = Limits { bytes: 4 << 20, nesting: 256, operators: 4096, bodies: 4096 };
+pub const LIMITS: Limits = Limits {
+    bytes: limits::COMPILED_BYTES,
+    nesting: limits::COMPILED_NESTING,
+    operators: limits::OPERATORS,
+    bodies: limits::BODIES,
+};
 
 /// Refuses a text that might exhaust naga's stack.
 pub fn check(composed: &Composed) -> Result<(), Diagnostic> {
@@ -37,16 +44,14 @@ pub fn check(composed: &Composed) -> Result<(), Diagnostic> {
         );
         return Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message));
     }
-    match scan(text.as_bytes()) {
-        None => Ok(()),
-        Some(excess) => Err(report(composed, &excess)),
-    }
+    let excess = scan(text.as_bytes()).or_else(|| constants::scan(text, composed.language));
+    excess.map_or(Ok(()), |excess| Err(report(composed, &excess)))
 }
 
-struct Excess {
-    offset: usize,
-    what: &'static str,
-    limit: usize,
+pub(super) struct Excess {
+    pub offset: usize,
+    pub what: &'static str,
+    pub limit: usize,
 }
 
 fn report(composed: &Composed, excess: &Excess) -> Diagnostic {
@@ -80,6 +85,13 @@ struct Scan<'a> {
     after_block: bool,
     /// Braces opened at the level of the file.
     bodies: usize,
+    /// Declarations that end in a semicolon there, and those of them that are overrides.
+    declarations: usize,
+    overrides: usize,
+    /// Attributes of entry points.
+    entries: usize,
+    /// Statements and cases since the last brace at that level.
+    statements: usize,
 }
 
 fn scan(bytes: &[u8]) -> Option<Excess> {
@@ -90,32 +102,38 @@ fn scan(bytes: &[u8]) -> Option<Excess> {
         open: 0,
         after_block: false,
         bodies: 0,
+        declarations: 0,
+        overrides: 0,
+        entries: 0,
+        statements: 0,
     };
     while scan.at < bytes.len() {
         let offset = scan.at;
         scan.step();
-        if scan.levels.len() > LIMITS.nesting {
-            return Some(Excess {
-                offset,
-                what: "brackets within each other",
-                limit: LIMITS.nesting,
-            });
-        }
-        if scan.bodies > LIMITS.bodies {
-            return Some(Excess { offset, what: "functions and structures", limit: LIMITS.bodies });
-        }
-        if scan.open > LIMITS.operators {
-            return Some(Excess {
-                offset,
-                what: "operators in one expression",
-                limit: LIMITS.operators,
-            });
+        if let Some((what, limit)) = scan.excess() {
+            return Some(Excess { offset, what, limit });
         }
     }
     None
 }
 
 impl Scan<'_> {
+    /// What there is too much of so far.
+    #[inline]
+    fn excess(&self) -> Option<(&'static str, usize)> {
+        let counts = [
+            (self.levels.len(), "brackets within each other", LIMITS.nesting),
+            (self.open, "operators in one expression", LIMITS.operators),
+            (self.bodies, "functions and structures", LIMITS.bodies),
+            (self.declarations, "variables, constants and aliases", limits::DECLARATIONS),
+            (self.overrides, "overrides", limits::OVERRIDES),
+            (self.entries, "entry points", limits::ENTRY_POINTS),
+            (self.statements, "statements and cases in one function", limits::STATEMENTS),
+        ];
+        let found = counts.into_iter().find(|(count, _, limit)| count > limit);
+        found.map(|(_, what, limit)| (what, limit))
+    }
+
     fn step(&mut self) {
         let byte = self.bytes[self.at];
         self.at += 1;
@@ -128,7 +146,10 @@ impl Scan<'_> {
         }
         match byte {
             b'(' | b'[' | b'{' => {
-                self.bodies += usize::from(byte == b'{' && self.levels.len() == 1);
+                if byte == b'{' && self.levels.len() == 1 {
+                    self.bodies += 1;
+                    self.statements = 0;
+                }
                 self.levels.push(Level::default());
             }
             b')' | b']' => self.close(),
@@ -137,7 +158,12 @@ impl Scan<'_> {
                 self.after_block = true;
             }
             b',' => self.separate(),
-            b';' => self.reset(),
+            b';' => {
+                let is_outside = self.levels.len() == 1;
+                self.declarations += usize::from(is_outside);
+                self.statements += usize::from(!is_outside);
+                self.reset();
+            }
             b'.' if self.peek().is_none_or(|next| !next.is_ascii_alphabetic()) => {}
             b'+' | b'-' | b'*' | b'/' | b'%' | b'<' | b'>' | b'=' | b'!' | b'~' | b'&' | b'|'
             | b'^' | b'?' | b':' | b'.' => self.count(1),
@@ -160,6 +186,13 @@ impl Scan<'_> {
             self.after_block = false;
         }
         self.end_block();
+        if self.levels.len() == 1 {
+            let is_attribute = start > 0 && self.bytes[start - 1] == b'@';
+            self.entries +=
+                usize::from(is_attribute && matches!(word, b"vertex" | b"fragment" | b"compute"));
+            self.overrides += usize::from(word == b"override");
+        }
+        self.statements += usize::from(word == b"case");
         if matches!(word, b"if" | b"else" | b"for" | b"while" | b"do" | b"switch") {
             self.count(1);
         }

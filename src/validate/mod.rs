@@ -3,10 +3,12 @@
 //! naga recurses over what it reads and panics on some inputs, so that every call into it is
 //! bounded first ([`limits`]), runs on a large stack and has its panics caught ([`guard`]).
 
+mod constants;
 mod every;
 mod guard;
 mod limits;
 mod report;
+mod sizes;
 mod uniformity;
 
 pub use every::every;
@@ -79,11 +81,60 @@ fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     }
 }
 
+/// Whether no type or value of a module is too large for what is written of it.
+pub fn is_bounded(module: &naga::Module) -> bool {
+    sizes::check(module).is_none()
+}
+
 fn analyse(composed: &Composed, module: naga::Module) -> Result<Validated, Diagnostics> {
+    if let Some(large) = sizes::check(&module) {
+        let error = Diagnostic::error(codes::LIMIT_EXCEEDED, large.message);
+        let range = large.span.to_range().unwrap_or(0..0);
+        return Err(vec![match composed.map.lookup(range.clone()) {
+            Some(span) => error.at(span, "declared here"),
+            None => error,
+        }]);
+    }
+    if let Some(name) = compute_with_inputs(&module) {
+        return Err(vec![inputs_of_compute(composed, name)]);
+    }
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
         .validate(&module)
         .map_err(|error| vec![report::validation(composed, &error)])?;
     Ok(Validated { language: composed.language, module, info })
+}
+
+/// A compute shader that takes what only another stage could give: naga lets it pass, and its
+/// writers stop at it with an internal error.
+fn compute_with_inputs(module: &naga::Module) -> Option<&str> {
+    let is_location =
+        |binding: &Option<naga::Binding>| matches!(binding, Some(naga::Binding::Location { .. }));
+    let takes = |argument: &naga::FunctionArgument| match &module.types[argument.ty].inner {
+        naga::TypeInner::Struct { members, .. } => {
+            members.iter().any(|member| is_location(&member.binding))
+        }
+        _ => is_location(&argument.binding),
+    };
+    let mut points = module.entry_points.iter();
+    let found = points.find(|point| {
+        point.stage == naga::ShaderStage::Compute && point.function.arguments.iter().any(takes)
+    });
+    found.map(|point| point.name.as_str())
+}
+
+fn inputs_of_compute(composed: &Composed, name: &str) -> Diagnostic {
+    let code = match composed.language {
+        Language::Wesl => codes::WGSL_ERROR,
+        Language::Glsl => codes::GLSL_ERROR,
+    };
+    let message = format!("the compute shader `{name}` takes an input with `@location`");
+    let error = Diagnostic::error(code, message)
+        .note("a compute shader has built-in inputs only: no stage comes before it");
+    let start = composed.text.find(&format!("fn {name}")).map(|at| at + 3);
+    match start.and_then(|start| composed.map.lookup(start..start + name.len())) {
+        Some(span) => error.at(span, "this entry point"),
+        None => error,
+    }
 }
 
 fn naga_stage(stage: Stage) -> naga::ShaderStage {

@@ -188,45 +188,16 @@ fn lists() -> Result<(), Failed> {
     if missing.is_empty() { Ok(()) } else { Err(missing.join("\n").into()) }
 }
 
-/// The limits that are numbers of the crate's interface.
+/// The page of limits is the crate's own table, line by line.
 fn limits() -> Result<(), Failed> {
-    let (sources, texts) = (lamplight::source::LIMITS, lamplight::validate::LIMITS);
-    let rows = [
-        ("bytes of one file", mebibytes(sources.file_bytes)),
-        ("tokens of one file", thousands(sources.tokens)),
-        ("brackets, blocks and conditions within each other", thousands(sources.nesting)),
-        ("files of one composition", thousands(sources.files)),
-        ("files open at once by `#include`", thousands(sources.include_depth)),
-        ("bytes of one composed text", mebibytes(sources.expansion_bytes)),
-        ("bytes of a composed text that is compiled", mebibytes(texts.bytes)),
-        ("brackets in it", thousands(texts.nesting)),
-        ("operators of one expression in it", thousands(texts.operators)),
-        ("functions and structs in it", thousands(texts.bodies)),
-        ("axes of a program, values of an axis", thousands(lamplight::permute::axis::MAX)),
-        ("permutations of a program", thousands(sources.permutations) + ", or its `limit`"),
-        (
-            "rounds of all loops of one call, on `eval`",
-            thousands(lamplight::eval::LOOP_LIMIT as usize),
-        ),
-        ("scalars in memory, on `eval`", thousands(lamplight::eval::MAX_SLOTS as usize)),
-    ];
+    let rows = lamplight::limits::ALL.iter().map(|limit| {
+        let value = limit.written();
+        format!("| {} | {value} | {} | {} |", limit.what, limit.protects, limit.error)
+    });
+    let wanted: Vec<String> = rows.collect();
     let text = fs::read_to_string(folder().join("limits.md"))?;
-    let lacks = |(name, value): &&(&str, String)| !text.contains(&format!("| {name} | {value} |"));
-    let missing: Vec<String> =
-        rows.iter().filter(lacks).map(|(name, value)| format!("{name}: {value}")).collect();
-    if missing.is_empty() { Ok(()) } else { Err(missing.join("\n").into()) }
-}
-
-fn mebibytes(bytes: usize) -> String {
-    format!("{} MiB", bytes >> 20)
-}
-
-/// With a comma between groups of three digits.
-fn thousands(number: usize) -> String {
-    match number / 1000 {
-        0 => number.to_string(),
-        more => format!("{},{:03}", thousands(more), number % 1000),
-    }
+    let found: Vec<&str> = text.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
+    if wanted == found { Ok(()) } else { Err(wanted.join("\n").into()) }
 }
 
 const AXIS: &str = "[program.a]\nwesl = \"a.wesl\"\n[program.a.axis]\nb = { x = 1, values = [1] }";

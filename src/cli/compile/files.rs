@@ -2,12 +2,13 @@
 //! name.
 
 use std::collections::BTreeSet;
-use std::io::{IsTerminal, Write, stdout};
+use std::io::Write;
 use std::path::Path;
 
 use crate::bundle::Target;
 use crate::cli::failure::Failure;
 use crate::cli::stream;
+use crate::cli::terminal::{data, is_terminal, stdout};
 use crate::emit::targets;
 use crate::generate::Shader;
 use crate::output::{self, Replace};
@@ -105,14 +106,14 @@ pub fn write(files: &[File], folder: &Path, replace: Replace) -> Result<(), Fail
 
 /// Text goes to standard output, with file names where there are several; one binary alone may too.
 pub fn print(files: &[File]) -> Result<(), Failure> {
-    if files.iter().any(|file| file.binary) && (files.len() > 1 || stdout().is_terminal()) {
+    if files.iter().any(|file| file.binary) && (files.len() > 1 || is_terminal()) {
         return Err(Failure::usage("a binary target needs `-o DIR`"));
     }
     for file in files {
         if files.len() > 1 {
             writeln!(stdout(), "// ==== {}", file.name)?;
         }
-        stdout().write_all(&file.bytes)?;
+        data(&file.bytes)?;
     }
     Ok(())
 }

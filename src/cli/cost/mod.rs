@@ -5,7 +5,7 @@ mod subjects;
 
 pub use axes::{changes, changes_table};
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -17,6 +17,7 @@ use super::overwrite::Overwrite;
 use super::progress::Bar;
 use super::text;
 use crate::bundle::Stage;
+use crate::cli::terminal::stdout;
 use crate::cost::baseline::{Baseline, Rise};
 use crate::cost::device::Device;
 use crate::cost::gpu::{self, GPUS, Gpu};

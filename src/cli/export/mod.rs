@@ -4,13 +4,14 @@ mod cargo;
 mod npm;
 
 use std::collections::BTreeMap;
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
 use super::failure::Failure;
 use super::overwrite::Overwrite;
+use super::terminal::stdout;
 use crate::output;
 use crate::project::LIBRARY;
 use crate::source::{Embedded, Files as _};

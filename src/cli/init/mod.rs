@@ -1,11 +1,12 @@
 //! `lamplight init [DIR]`: a package to start from.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::Failure;
+use crate::cli::terminal::stdout;
 use crate::output::{self, Replace};
 
 /// Write a package with a shader, a manifest and a numeric case.

@@ -1,8 +1,9 @@
 //! `lamplight render --all`: every preset, and the pages that show them.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::time::Instant;
 
+use super::super::terminal::stdout;
 use super::{Failure, input, library};
 use crate::execute::Session;
 use crate::output::Folder;

@@ -2,7 +2,7 @@
 
 mod gallery;
 
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -13,21 +13,20 @@ use super::executor;
 use super::failure::{DiagnosticForm, Failure};
 use super::input::{LanguageName, axis_value};
 use super::overwrite::Overwrite;
+use super::terminal::stdout;
 use crate::bundle::Language;
 use crate::catalogue::preset::{self, Preset};
 use crate::catalogue::probe;
 use crate::diagnostic::{Diagnostics, nearest};
 use crate::execute::executors::Entry;
 use crate::execute::on_thread;
+use crate::limits::ENVIRONMENT_BYTES;
 use crate::output;
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, key};
 use crate::picture::frame::Programs;
 use crate::picture::{self, Plan, Shot, Surroundings, is_own_png};
 use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
-
-/// Bytes of a Radiance file: 8192 x 4096 without compression.
-const MOST_ENVIRONMENT_BYTES: u64 = 256 << 20;
 
 /// Draw a scene with one permutation.
 #[derive(Args)]
@@ -57,7 +56,8 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     samples: Option<u32>,
     /// Factor on all light, in powers of two.
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = stops,
+        allow_negative_numbers = true)]
     exposure: f64,
     /// Shadow maps of a directional light, each of a part of the viewer's depth.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
@@ -84,6 +84,12 @@ fn size(text: &str) -> Result<[u32; 2], String> {
         (Some(width), Some(height)) => Ok([width, height]),
         _ => Err(format!("expected two numbers from 1 to {LARGEST}")),
     }
+}
+
+/// A number of stops. That no number is meant by `nan` is said where it is asked for.
+fn stops(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| "expected a number".to_owned())
 }
 
 pub fn run(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure> {
@@ -249,7 +255,7 @@ fn surroundings(name: &str) -> Result<Surroundings, Failure> {
         return Ok(Surroundings::Formula(formula));
     }
     let known = ENVIRONMENTS.iter().map(|(name, _, _)| *name);
-    let bytes = match crate::input::read(Path::new(name), MOST_ENVIRONMENT_BYTES) {
+    let bytes = match crate::input::read(Path::new(name), ENVIRONMENT_BYTES) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
             return Err(unknown("environment or file", name, known));

@@ -8,7 +8,7 @@ mod search;
 pub use preset::{preset_json, probe_json};
 pub use program::axis_json;
 
-use std::io::{Write, stdout};
+use std::io::Write;
 
 use clap::Args;
 use serde_json::Value;
@@ -19,6 +19,7 @@ use super::own::Own;
 use crate::catalogue::preset::Preset;
 use crate::catalogue::probe::Probe;
 use crate::catalogue::{self, Item, Module};
+use crate::cli::terminal::stdout;
 use crate::diagnostic::nearest;
 use crate::permute::Manifest;
 use crate::project::{self, LIBRARY};

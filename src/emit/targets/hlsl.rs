@@ -15,6 +15,7 @@ use naga::back::hlsl::{
 use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
 use crate::emit::reflect::{inputs, kind};
 use crate::emit::slots::{Numbering, assign, native};
+use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judge, Source, clip, zeros};
 
 /// The target, for the table of all.
@@ -40,17 +41,16 @@ const HEAPS: [(&str, Kind); 2] =
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let options = options(source)?;
     let pipeline = PipelineOptions { entry_point: Some((source.stage, source.entry.to_owned())) };
-    let mut text = String::new();
-    let info = Writer::new(&mut text, &options, &pipeline)
-        .write(source.module, source.info, None)
-        .map_err(|error| error.to_string())?;
+    let mut text = Text::default();
+    let written = Writer::new(&mut text, &options, &pipeline).write(source.module, source.info, None);
+    let info = written.map_err(|error| text.explain(error))?;
     let name = info
         .entry_point_names
         .into_iter()
         .next()
         .ok_or("no entry point was written")?
         .map_err(|error| error.to_string())?;
-    let text = zeros::without_casts(&text);
+    let text = zeros::without_casts(&text.0);
     Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &name, &options) })
 }
 

@@ -6,11 +6,12 @@
 use std::collections::BTreeMap;
 
 use naga::back::msl::{
-    BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string,
+    BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, Writer,
 };
 
 use crate::bundle::{BufferSizes, Kind, Target};
 use crate::emit::slots::{Numbering, assign, native};
+use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
 /// The target, for the table of all.
@@ -40,8 +41,10 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         entry_point: Some((source.stage, source.entry.to_owned())),
         ..PipelineOptions::default()
     };
-    let (text, info) = write_string(source.module, source.info, &options, &pipeline)
-        .map_err(|error| error.to_string())?;
+    let mut text = Text::default();
+    let written = Writer::new(&mut text).write(source.module, source.info, &options, &pipeline);
+    let info = written.map_err(|error| text.explain(error))?;
+    let text = text.0;
     let name = info
         .entry_point_names
         .into_iter()

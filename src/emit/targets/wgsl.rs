@@ -2,10 +2,11 @@
 //!
 //! Group and binding are the author's; overrides stay overrides.
 
-use naga::back::wgsl::{WriterFlags, write_string};
+use naga::back::wgsl::{Writer, WriterFlags};
 
 use crate::bundle::{Choice, Target};
 use crate::emit::slots::{Numbering, native};
+use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
 /// The target, for the table of all.
@@ -20,8 +21,10 @@ pub const TARGET: Entry = Entry {
 };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
-    let text = write_string(source.module, source.info, WriterFlags::empty())
-        .map_err(|error| error.to_string())?;
+    let mut text = Text::default();
+    let written = Writer::new(&mut text, WriterFlags::empty()).write(source.module, source.info);
+    written.map_err(|error| text.explain(error))?;
+    let text = text.0;
     let mut native = native(source, source.entry, Numbering::Author);
     let overrides = source.module.overrides.iter().map(|(_, constant)| constant);
     native.choices = overrides

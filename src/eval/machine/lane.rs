@@ -9,6 +9,7 @@ use super::compute::compute;
 use super::texture;
 use super::watch::Watch;
 use crate::diagnostic::codes;
+use crate::limits::EVAL_STEPS;
 
 /// The state of one thread.
 #[derive(Debug, Clone, Default)]
@@ -18,6 +19,8 @@ pub(super) struct Lane<N> {
     /// Where calls go back to.
     pub calls: Vec<u32>,
     pub trips: u64,
+    /// Instructions of this call so far, copies by their length.
+    pub steps: u64,
     pub killed: bool,
 }
 
@@ -59,6 +62,10 @@ pub(super) fn run<N: Number>(
             return Err(lost(env.program, at));
         };
         lane.pc += 1;
+        lane.steps += instruction.steps();
+        if lane.steps > EVAL_STEPS {
+            return Err(overworked(env, at));
+        }
         match *instruction {
             Instruction::Jump { to } => lane.pc = to,
             Instruction::JumpUnless { condition, to } if lane.word(condition) == 0 => lane.pc = to,
@@ -124,6 +131,12 @@ fn target(program: &Program, table: u32, selector: u32) -> u32 {
 #[cold]
 fn endless(env: Env, pc: u32) -> Error {
     let message = format!("the loops of this call made more than {} trips", env.loop_limit);
+    Error::new(codes::EVAL_LOOP_LIMIT, message).or_at(env.span(pc))
+}
+
+#[cold]
+fn overworked(env: Env, pc: u32) -> Error {
+    let message = format!("this call takes more than {EVAL_STEPS} steps");
     Error::new(codes::EVAL_LOOP_LIMIT, message).or_at(env.span(pc))
 }
 

@@ -22,7 +22,7 @@ use watch::Watch;
 use std::collections::BTreeMap;
 
 /// Loop trips one call may make unless set otherwise, all loops together.
-pub const LOOP_LIMIT: u64 = 1_000_000;
+pub const LOOP_LIMIT: u64 = crate::limits::LOOP_TRIPS;
 
 /// A program with memory. Calls reuse it: none allocates.
 #[derive(Debug)]
@@ -209,6 +209,7 @@ impl<'p, N: Number> Machine<'p, N> {
     /// Runs code on the one lane to its end.
     fn run(&mut self, entry: u32) -> Result<(), Error> {
         (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
+        self.lane.steps = 0;
         self.lane.calls.clear();
         let env = lane::Env {
             program: self.program,

@@ -27,6 +27,7 @@ impl<N: Number> Machine<'_, N> {
             begin(program, lane);
             place(lane, function, arguments);
             (lane.pc, lane.trips, lane.killed) = (function.entry, 0, false);
+            lane.steps = 0;
             lane.calls.clear();
             entry = Some(function);
         }

@@ -10,7 +10,7 @@ use crate::permute::space::Formula;
 use crate::source::Span;
 
 /// Parentheses, negations and implications within each other. People write three.
-const NESTING: usize = 64;
+const NESTING: usize = crate::limits::CONSTRAINT_NESTING;
 
 /// The condition that the text states about the axes.
 pub fn parse(axes: &[Axis], text: &Quoted) -> Result<Formula, Diagnostic> {

@@ -81,11 +81,6 @@ impl Join {
     }
 }
 
-/// Steps before a set of conditions is called too complex. Counting the points that satisfy
-/// arbitrary conditions is #P-hard, so hostile input must meet a bound; real manifests take
-/// some thousands of steps.
-const STEPS: usize = 1 << 22;
-
 /// Interned conditions over axes with the given domains.
 pub struct Store {
     domains: Vec<ValueSet>,
@@ -98,18 +93,26 @@ pub struct Store {
 }
 
 impl Store {
-    pub fn new(domains: Vec<ValueSet>) -> Self {
+    /// With so many steps before its conditions are called too complex. Counting the points that
+    /// satisfy arbitrary conditions is #P-hard, so hostile input must meet a bound; real manifests
+    /// take some thousands of steps.
+    pub fn new(domains: Vec<ValueSet>, steps: usize) -> Self {
         let mut store = Self {
             domains,
             nodes: Vec::new(),
             support: Vec::new(),
             ids: HashMap::new(),
             restricted: HashMap::new(),
-            steps: STEPS,
+            steps,
         };
         store.intern(Node::Constant(false));
         store.intern(Node::Constant(true));
         store
+    }
+
+    /// Steps that are left.
+    pub fn steps(&self) -> usize {
+        self.steps
     }
 
     /// The condition in normal form.

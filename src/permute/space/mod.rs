@@ -8,6 +8,7 @@ pub use formula::Formula;
 use super::axis::{Axis, Kind, Mode, ValueSet};
 use super::key::{Assignment, Key};
 use super::{Setting, Settings};
+use crate::limits::SPACE_STEPS;
 use crate::source::Span;
 use diagram::Diagram;
 use formula::Store;
@@ -185,18 +186,17 @@ impl Space {
         self.valid.meets(&slice.values)
     }
 
-    /// How many points of the full product satisfy one condition.
-    pub fn satisfying(&self, formula: &Formula) -> Result<u128, TooComplex> {
+    /// How many points of the full product satisfy one condition, within the steps that are left.
+    pub fn satisfying(&self, formula: &Formula, steps: &mut usize) -> Result<u128, TooComplex> {
         let domains = domains(&self.axes);
-        let mut store = Store::new(domains.clone());
+        // Each of the levels is made, whatever the condition is.
+        *steps = steps.checked_sub(domains.len()).ok_or(TooComplex)?;
+        let mut store = Store::new(domains.clone(), *steps);
         let condition = store.add(formula)?;
-        Ok(Diagram::new(
-            &mut store,
-            condition,
-            &domains,
-            order(self.axes.len(), &self.constraints),
-        )?
-        .count())
+        let order = (0..self.axes.len()).collect();
+        let diagram = Diagram::new(&mut store, condition, &domains, order)?;
+        *steps = store.steps();
+        Ok(diagram.count())
     }
 
     /// Every axis at its default.
@@ -246,7 +246,7 @@ fn diagram(
     order: Vec<usize>,
 ) -> Result<Diagram, TooComplex> {
     let domains = domains(axes);
-    let mut store = Store::new(domains.clone());
+    let mut store = Store::new(domains.clone(), SPACE_STEPS);
     let lists = lists.formula();
     let formulas = constraints.iter().map(|constraint| &constraint.formula).chain([&lists]);
     let parts = formulas.map(|formula| store.add(formula)).collect::<Result<_, _>>()?;
@@ -266,8 +266,10 @@ fn order(count: usize, constraints: &[Constraint]) -> Vec<usize> {
         constraints.iter().map(|constraint| mentioned(count, &constraint.formula)).collect();
     let mut order: Vec<usize> = Vec::new();
     let mut near = vec![0usize; count];
+    let involved: Vec<usize> =
+        (0..count).map(|axis| mentions.iter().filter(|axes| axes[axis]).count()).collect();
     while order.len() < count {
-        let involved = |axis: usize| mentions.iter().filter(|axes| axes[axis]).count();
+        let involved = |axis: usize| involved[axis];
         let rest = (0..count).filter(|axis| !order.contains(axis));
         let Some(next) =
             rest.max_by_key(|axis| (near[*axis], involved(*axis), std::cmp::Reverse(*axis)))

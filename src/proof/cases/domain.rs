@@ -4,10 +4,11 @@ use super::random::Random;
 use super::reader::{Node, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::execute::kernel::Shape;
+use crate::limits::CASE_ROWS;
 use naga::ScalarKind;
 
 /// Most values of one domain.
-const MOST: u32 = 1 << 20;
+const MOST: u32 = CASE_ROWS as u32;
 
 /// One kind of domain in a case file: its key, the other keys that go with it, how it is read.
 struct Kind {
@@ -214,6 +215,52 @@ impl Domain {
         }
     }
 
+    /// How many values the domain has for a parameter of the shape, none of them made.
+    ///
+    /// # Errors
+    /// Why it has none: it is empty, or its values have another number of components.
+    /// `other` gives the shape of a needed parameter.
+    pub fn count(
+        &self,
+        shape: &Shape,
+        other: &dyn Fn(&str) -> Option<Shape>,
+    ) -> Result<usize, String> {
+        let size = shape.words() as usize;
+        let fits = |given: usize| match given == 1 || given == size {
+            true => Ok(()),
+            false => Err(format!("expected {size} values, found {given}")),
+        };
+        let count = match self {
+            Self::Values(values) => {
+                values.iter().try_for_each(|value| fits(value.len()))?;
+                values.len()
+            }
+            Self::Grid { count, .. } | Self::Log { count, .. } => {
+                (0..size).fold(1, |all: usize, _| all.saturating_mul(*count as usize))
+            }
+            Self::Random { count, .. } | Self::Unit { count, .. } => *count as usize,
+            Self::About { of, count, .. } => {
+                let given = other(of).map_or(0, |shape| shape.words() as usize);
+                if given != size {
+                    return Err(format!("has {size} values, and `{of}` has {given}"));
+                }
+                *count as usize
+            }
+            Self::Around { value, ulps } => {
+                fits(value.len())?;
+                2 * *ulps as usize + 1
+            }
+            Self::Special(special) => {
+                special_values(*special).len() * (1 + size * usize::from(size > 1))
+            }
+            Self::Union(parts) => {
+                let counts = parts.iter().map(|part| part.count(shape, other));
+                counts.sum::<Result<usize, String>>()?
+            }
+        };
+        if count == 0 { Err("the domain has no values".to_owned()) } else { Ok(count) }
+    }
+
     /// The values as words of the shape. `other` gives the value of a needed parameter, `salt`
     /// keeps rows apart.
     pub fn words(
@@ -281,9 +328,6 @@ fn steps(count: u32, f: impl Fn(f64) -> f64) -> Vec<f64> {
 /// Every combination of the values in `size` components.
 fn grid(size: usize, values: &[f64]) -> Vec<Vec<f64>> {
     (0..size).fold(vec![Vec::new()], |rows, _| {
-        if rows.len() > MOST as usize {
-            return rows;
-        }
         rows.iter()
             .flat_map(|row| values.iter().map(move |value| [row.as_slice(), &[*value]].concat()))
             .collect()
@@ -341,7 +385,7 @@ fn around(value: &[f64], ulps: u32) -> Vec<Vec<f64>> {
     (-ulps..=ulps).map(|by| value.iter().map(|x| shift(*x, by)).collect()).collect()
 }
 
-fn specials(special: Special, size: usize) -> Vec<Vec<f64>> {
+fn special_values(special: Special) -> Vec<f64> {
     let one = f64::from(1f32.next_down());
     let plain = [0.0, -0.0, 1.0, -1.0, one, f64::from(1f32.next_up()), 0.5, 2.0];
     let small = [1e-45, -1e-45, 1e-39, f64::from(f32::MIN_POSITIVE), 1e-18, -1e-18];
@@ -353,6 +397,11 @@ fn specials(special: Special, size: usize) -> Vec<Vec<f64>> {
     if special == Special::All {
         values.extend(large);
     }
+    values
+}
+
+fn specials(special: Special, size: usize) -> Vec<Vec<f64>> {
+    let values = special_values(special);
     if size == 1 {
         return values.iter().map(|value| vec![*value]).collect();
     }

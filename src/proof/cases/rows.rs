@@ -5,11 +5,9 @@ use super::{Case, Oracle, TableRow};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::Shape;
 use crate::execute::kernel::number;
+use crate::limits::{CASE_ROWS, CASE_WORDS};
 use crate::proof::formula::Scope;
 use naga::ScalarKind;
-
-/// Most rows of one case: more is a mistake in its domains.
-const MOST_ROWS: usize = 1 << 20;
 
 /// The inputs of a case, one row an invocation.
 #[derive(Debug)]
@@ -30,6 +28,8 @@ struct Column<'a> {
     first: usize,
     shape: Shape,
     domain: &'a Domain,
+    /// How many values the domain has: the same for every row.
+    count: usize,
 }
 
 impl Rows {
@@ -99,19 +99,38 @@ fn generated(
     stride: usize,
 ) -> Result<Generated, Diagnostic> {
     let columns = columns(case, scope)?;
-    let mut rows = vec![vec![0u32; stride]];
+    bounded(case, &columns, stride)?;
+    let grid = Grid { kinds, scope, stride };
+    let mut rows = vec![0u32; stride];
     for (index, column) in columns.iter().enumerate() {
         rows = if case.zip && index > 0 {
-            zipped(rows, column, kinds, scope)
+            grid.zipped(&rows, column)
         } else {
-            product(rows, column, kinds, scope, case)?
+            grid.product(&rows, column)
         };
     }
     let units = columns
         .iter()
         .filter(|column| column.domain.is_unit())
         .map(|column| column.first..column.first + column.shape.words() as usize);
-    Ok((rows.concat(), units.collect()))
+    Ok((rows, units.collect()))
+}
+
+/// Refuses a case whose rows would be too many, before any of them is made.
+fn bounded(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<(), Diagnostic> {
+    let counts = columns.iter().map(|column| column.count);
+    let rows = match case.zip {
+        true => counts.max().unwrap_or(1),
+        false => counts.fold(1, usize::saturating_mul),
+    };
+    let most = CASE_ROWS.min(CASE_WORDS / stride.max(1));
+    if rows <= most {
+        return Ok(());
+    }
+    let message = format!("the domains of `{}` multiply to more than {most} rows", case.function);
+    Err(Diagnostic::error(codes::CASE_INVALID, message)
+        .at(case.span, "of this function")
+        .note("`mode = \"zip\"` takes the domains side by side"))
 }
 
 /// Columns in an order in which each comes after those it needs.
@@ -132,10 +151,15 @@ fn columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Dia
             return Err(Diagnostic::error(codes::CASE_INVALID, message).at(*span, "needed here"));
         };
         let (path, domain, span) = left.remove(ready);
-        let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
         let (first, shape) =
-            scope.find(&parts).ok_or_else(|| scope.unknown(path).at(*span, "given here"))?;
-        columns.push(Column { first, shape: shape.clone(), domain });
+            scope.find(&parts(path)).ok_or_else(|| scope.unknown(path).at(*span, "given here"))?;
+        let count = domain
+            .count(shape, &|other| scope.find(&parts(other)).map(|(_, shape)| shape.clone()))
+            .map_err(|message| {
+                Diagnostic::error(codes::CASE_INVALID, format!("`{path}`: {message}"))
+                    .at(*span, "given here")
+            })?;
+        columns.push(Column { first, shape: shape.clone(), domain, count });
         done.push(path);
     }
     for (name, _) in &scope.0 {
@@ -153,78 +177,71 @@ fn columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Dia
     Ok(columns)
 }
 
-fn product(
-    rows: Vec<Vec<u32>>,
-    column: &Column<'_>,
-    kinds: &[ScalarKind],
-    scope: &Scope<'_>,
-    case: &Case,
-) -> Result<Vec<Vec<u32>>, Diagnostic> {
-    let fixed = column.domain.needs().is_empty().then(|| values(&rows[0], column, kinds, scope, 0));
-    let mut grown = Vec::new();
-    for (salt, row) in rows.iter().enumerate() {
-        let own;
-        let values = match &fixed {
-            Some(values) => values,
-            None => {
-                own = values(row, column, kinds, scope, salt as u64);
-                &own
+/// How rows are laid out while columns are added to them.
+struct Grid<'g, 's> {
+    kinds: &'g [ScalarKind],
+    scope: &'g Scope<'s>,
+    stride: usize,
+}
+
+impl Grid<'_, '_> {
+    /// Every row with every value of the column.
+    fn product(&self, rows: &[u32], column: &Column<'_>) -> Vec<u32> {
+        let mut grown = Vec::with_capacity(rows.len().saturating_mul(column.count));
+        let mut values = Vec::new();
+        for (salt, row) in rows.chunks(self.stride).enumerate() {
+            if salt == 0 || !column.domain.needs().is_empty() {
+                values = self.values(row, column, salt as u64);
             }
-        };
-        grown.extend(values.iter().map(|value| placed(row, column.first, value)));
-        if grown.len() > MOST_ROWS {
-            let message = format!(
-                "the domains of `{}` multiply to more than {MOST_ROWS} rows",
-                case.function
-            );
-            return Err(Diagnostic::error(codes::CASE_INVALID, message)
-                .at(case.span, "of this function")
-                .note("`mode = \"zip\"` takes the domains side by side"));
+            for value in &values {
+                push(&mut grown, row, column.first, value);
+            }
         }
+        grown
     }
-    Ok(grown)
-}
 
-fn zipped(
-    rows: Vec<Vec<u32>>,
-    column: &Column<'_>,
-    kinds: &[ScalarKind],
-    scope: &Scope<'_>,
-) -> Vec<Vec<u32>> {
-    if !column.domain.needs().is_empty() {
-        let pick = |index: usize, row: &Vec<u32>| {
-            let values = values(row, column, kinds, scope, index as u64);
-            placed(row, column.first, &values[index % values.len().max(1)])
+    /// Rows and values side by side; the shorter begins anew.
+    fn zipped(&self, rows: &[u32], column: &Column<'_>) -> Vec<u32> {
+        let rows: Vec<&[u32]> = rows.chunks(self.stride).collect();
+        let Some(first) = rows.first() else { return Vec::new() };
+        let mut grown = Vec::new();
+        if column.domain.needs().is_empty() {
+            let values = self.values(first, column, 0);
+            for index in 0..rows.len().max(values.len()) {
+                let value = &values[index % values.len()];
+                push(&mut grown, rows[index % rows.len()], column.first, value);
+            }
+            return grown;
+        }
+        for (index, row) in rows.iter().enumerate() {
+            let values = self.values(row, column, index as u64);
+            push(&mut grown, row, column.first, &values[index % values.len()]);
+        }
+        grown
+    }
+
+    fn values(&self, row: &[u32], column: &Column<'_>, salt: u64) -> Vec<Vec<u32>> {
+        let other = |path: &str| {
+            let (first, count) = self
+                .scope
+                .find(&parts(path))
+                .map_or((0, 0), |(first, shape)| (first, shape.words() as usize));
+            numbers(&row[first..first + count], &self.kinds[first..first + count])
         };
-        return rows.iter().enumerate().map(|(index, row)| pick(index, row)).collect();
+        column.domain.words(&column.shape, &other, salt)
     }
-    let values = values(&rows[0], column, kinds, scope, 0);
-    let count = rows.len().max(values.len());
-    (0..count)
-        .map(|index| placed(&rows[index % rows.len()], column.first, &values[index % values.len()]))
-        .collect()
 }
 
-fn values(
-    row: &[u32],
-    column: &Column<'_>,
-    kinds: &[ScalarKind],
-    scope: &Scope<'_>,
-    salt: u64,
-) -> Vec<Vec<u32>> {
-    let other = |path: &str| {
-        let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
-        let (first, count) =
-            scope.find(&parts).map_or((0, 0), |(first, shape)| (first, shape.words() as usize));
-        numbers(&row[first..first + count], &kinds[first..first + count])
-    };
-    column.domain.words(&column.shape, &other, salt)
+/// A row with a value in its place.
+fn push(rows: &mut Vec<u32>, row: &[u32], first: usize, value: &[u32]) {
+    let start = rows.len() + first;
+    rows.extend_from_slice(row);
+    rows[start..start + value.len()].copy_from_slice(value);
 }
 
-fn placed(row: &[u32], first: usize, value: &[u32]) -> Vec<u32> {
-    let mut row = row.to_vec();
-    row[first..first + value.len()].copy_from_slice(value);
-    row
+/// The names of a path.
+fn parts(path: &str) -> Vec<String> {
+    path.split('.').map(str::to_owned).collect()
 }
 
 fn table_words(
@@ -232,13 +249,17 @@ fn table_words(
     scope: &Scope<'_>,
     stride: usize,
 ) -> Result<Vec<u32>, Diagnostic> {
+    let most = CASE_WORDS / stride.max(1);
+    if let Some(row) = table.get(most) {
+        let message = format!("the table has more than {most} rows");
+        return Err(Diagnostic::error(codes::CASE_INVALID, message).at(row.span, "in this row"));
+    }
     let mut words = Vec::new();
     for row in table {
         let mut filled = vec![0; stride];
         for (path, value) in &row.values {
-            let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
             let (first, shape) = scope
-                .find(&parts)
+                .find(&parts(path))
                 .ok_or_else(|| scope.unknown(path).at(row.span, "in this row"))?;
             let kinds = shape.kinds();
             if value.len() != kinds.len() {

@@ -109,9 +109,10 @@ fn candidates(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
             found.push(candidate);
         }
     }
-    for (index, word) in row.iter().enumerate() {
+    // A function without parameters has a row of one word, and that word has no kind.
+    for (index, (word, kind)) in row.iter().zip(&job.rows.kinds).enumerate() {
         if !job.rows.units.iter().any(|range| range.contains(&index)) {
-            found.extend(simpler(*word, job.rows.kinds[index]).into_iter().map(|value| {
+            found.extend(simpler(*word, *kind).into_iter().map(|value| {
                 let mut candidate = row.to_vec();
                 candidate[index] = value;
                 candidate

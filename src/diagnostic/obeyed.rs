@@ -1,0 +1,12 @@
+//! Characters that a reader's program acts on instead of showing them.
+
+/// Whether a character does something instead of being seen: controls but line ends and tabs, and
+/// marks of writing direction. All of them have 16 bits.
+pub fn is_obeyed(character: char) -> bool {
+    match character {
+        '\n' | '\t' => false,
+        '\u{61c}' | '\u{200e}' | '\u{200f}' => true,
+        '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => true,
+        other => other.is_control(),
+    }
+}

@@ -1,0 +1,186 @@
+//! What constants grow to.
+//!
+//! naga puts a copy of a constant's whole value wherever it is named, so that a chain of constants
+//! each of which names the one before twice is as large as two to its length. Here only the words
+//! of each are counted, and the counts added up through the names.
+
+use std::collections::HashMap;
+
+use super::limits::Excess;
+use crate::bundle::Language;
+use crate::limits::{CONSTANT_PARTS, CONSTANT_USES};
+
+/// A constant: its name, the names it uses, and the words it has itself.
+struct Constant<'a> {
+    name: &'a str,
+    uses: Vec<&'a str>,
+    own: u64,
+    offset: usize,
+    /// Whether it stands outside of functions, where order does not matter.
+    is_global: bool,
+}
+
+/// The first place where constants grow too large.
+pub fn scan(text: &str, language: Language) -> Option<Excess> {
+    let constants = constants(text, language);
+    // One name alone cannot multiply.
+    if constants.len() < 2 {
+        return None;
+    }
+    let costs = match costs(&constants) {
+        Ok(costs) => costs,
+        Err(offset) => return Some(too_large(offset)),
+    };
+    let mut uses = 0u64;
+    for (offset, word) in words(text) {
+        let cost = costs.get(word).copied().unwrap_or(0);
+        uses = uses.saturating_add(if cost > 1 { cost } else { 0 });
+        if uses > CONSTANT_USES {
+            return Some(Excess {
+                offset,
+                what: "parts of constants, wherever they are named",
+                limit: CONSTANT_USES as usize,
+            });
+        }
+    }
+    None
+}
+
+fn too_large(offset: usize) -> Excess {
+    Excess { offset, what: "parts in one constant", limit: CONSTANT_PARTS as usize }
+}
+
+/// The parts of every constant by name; the place of one that has too many.
+fn costs<'a>(constants: &[Constant<'a>]) -> Result<HashMap<&'a str, u64>, usize> {
+    let mut costs: HashMap<&str, u64> = HashMap::new();
+    let globals: HashMap<&str, usize> = (0..constants.len())
+        .filter(|index| constants[*index].is_global)
+        .map(|index| (constants[index].name, index))
+        .collect();
+    for index in order(constants, &globals) {
+        add(&constants[index], &mut costs)?;
+    }
+    for constant in constants.iter().filter(|constant| !constant.is_global) {
+        add(constant, &mut costs)?;
+    }
+    Ok(costs)
+}
+
+/// The name of a local constant may be that of another: the larger one counts.
+fn add<'a>(constant: &Constant<'a>, costs: &mut HashMap<&'a str, u64>) -> Result<(), usize> {
+    let used = constant.uses.iter().map(|name| costs.get(name).copied().unwrap_or(0));
+    let cost = used.fold(constant.own, u64::saturating_add);
+    if cost > CONSTANT_PARTS {
+        return Err(constant.offset);
+    }
+    let known = costs.entry(constant.name).or_default();
+    *known = cost.max(*known);
+    Ok(())
+}
+
+/// The global constants, each after those that it names. Circles are naga's to refuse.
+fn order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<usize> {
+    let mut state = vec![0usize; constants.len()];
+    let mut order = Vec::new();
+    for root in (0..constants.len()).filter(|index| constants[*index].is_global) {
+        let mut open = vec![root];
+        while let Some(&index) = open.last() {
+            // The state is one more than the names that were looked at.
+            let at = state[index];
+            match constants[index].uses.get(at) {
+                Some(name) => {
+                    state[index] += 1;
+                    let next = globals.get(name).copied();
+                    open.extend(next.filter(|next| state[*next] == 0 && *next != index));
+                }
+                None => {
+                    open.pop();
+                    if at < usize::MAX {
+                        state[index] = usize::MAX;
+                        order.push(index);
+                    }
+                }
+            }
+        }
+    }
+    order
+}
+
+/// Every constant of a text. Its name is the last word before `=` that is in no brackets, which
+/// holds in both languages.
+fn constants(text: &str, language: Language) -> Vec<Constant<'_>> {
+    let mut found: Vec<Constant<'_>> = Vec::new();
+    let (mut depth, mut open, mut start) = (0usize, None::<Constant<'_>>, 0usize);
+    let mut in_value = false;
+    for (offset, word) in tokens(text) {
+        let here = depth.saturating_sub(start);
+        match (word, &mut open) {
+            ("const", None) => {
+                open = Some(Constant {
+                    name: "",
+                    uses: Vec::new(),
+                    own: 1,
+                    offset,
+                    is_global: depth == 0,
+                });
+                (in_value, start) = (false, depth);
+            }
+            ("=", Some(_)) if here == 0 => in_value = true,
+            (";", Some(_)) if here == 0 => found.extend(open.take()),
+            (",", Some(constant)) if here == 0 && language == Language::Glsl && in_value => {
+                let (offset, is_global) = (constant.offset, constant.is_global);
+                let next = Constant { name: "", uses: Vec::new(), own: 1, offset, is_global };
+                found.extend(open.replace(next));
+                in_value = false;
+            }
+            // A parameter that is `const`, as GLSL has it, ends with its list.
+            (")" | "}", Some(_)) if here == 0 => open = None,
+            ("," | "{", Some(_)) if here == 0 && !in_value => open = None,
+            (word, Some(constant)) if is_word(word) => {
+                if in_value {
+                    constant.own += 1;
+                    constant.uses.push(word);
+                } else if here == 0 {
+                    constant.name = word;
+                }
+            }
+            (",", Some(constant)) => constant.own += 1,
+            _ => {}
+        }
+        match word {
+            "(" | "[" | "{" => depth += 1,
+            ")" | "]" | "}" => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    found.retain(|constant| !constant.name.is_empty());
+    found
+}
+
+fn is_word(token: &str) -> bool {
+    token.starts_with(|letter: char| letter.is_alphanumeric() || letter == '_')
+}
+
+fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    tokens(text).filter(|(_, token)| is_word(token))
+}
+
+/// Words, numbers and single other characters with their places; comments are words too, which
+/// at most counts too much.
+fn tokens(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let rest = text.get(at..)?;
+        let skipped = rest.len() - rest.trim_start().len();
+        let rest = &rest[skipped..];
+        let first = rest.chars().next()?;
+        let length = match first.is_alphanumeric() || first == '_' {
+            true => rest.find(|letter: char| !(letter.is_alphanumeric() || letter == '_')),
+            false => Some(first.len_utf8()),
+        };
+        let length = length.unwrap_or(rest.len());
+        let offset = at + skipped;
+        at = offset + length;
+        Some((offset, &rest[..length]))
+    })
+}

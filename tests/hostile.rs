@@ -1,0 +1,69 @@
+//! Input that is small and asks for much: memory, time, the stack. Each gets an error with a place
+//! and the exit code of wrong input, in a process that may use little memory.
+
+mod bundles;
+mod cases;
+mod printed;
+mod shaders;
+
+use std::fs;
+use std::process::{Command, Output, Stdio};
+
+use libtest_mimic::{Failed, Trial};
+use tempfile::TempDir;
+
+pub type Outcome = Result<(), Failed>;
+
+/// Address space of a command, in KiB. Large stacks of idle threads count too.
+const MEMORY_KIB: u64 = 4 << 20;
+
+pub fn trials() -> Vec<Trial> {
+    let tables = [cases::CASES, shaders::CASES];
+    let rows = tables
+        .into_iter()
+        .flatten()
+        .map(|case| Trial::test(format!("hostile::{}", case.name), move || case.check()));
+    rows.chain(bundles::trials()).chain(printed::trials()).collect()
+}
+
+/// Files, a command over them, and what it says.
+pub struct Hostile {
+    pub name: &'static str,
+    pub files: fn() -> Vec<(&'static str, String)>,
+    pub arguments: &'static str,
+    pub code: i32,
+    pub words: &'static str,
+}
+
+impl Hostile {
+    fn check(&self) -> Outcome {
+        let folder = tempfile::tempdir()?;
+        for (name, text) in (self.files)() {
+            fs::write(folder.path().join(name), text)?;
+        }
+        let arguments: Vec<&str> = self.arguments.split(' ').collect();
+        fails(&run(&folder, &arguments)?, self.code, self.words)
+    }
+}
+
+/// Runs the command line in a folder with little memory.
+pub fn run(folder: &TempDir, arguments: &[&str]) -> Result<Output, Failed> {
+    let limited = format!("ulimit -v {MEMORY_KIB}; exec \"$@\"");
+    Ok(Command::new("sh")
+        .args(["-c", &limited, "sh", env!("CARGO_BIN_EXE_lamplight")])
+        .args(arguments)
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .output()?)
+}
+
+/// Ends with the code, and says the words on either stream.
+pub fn fails(output: &Output, code: i32, words: &str) -> Outcome {
+    let told = String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
+    let is_calm = !told.contains("panicked") && !told.contains("internal error");
+    if output.status.code() == Some(code) && told.contains(words) && is_calm {
+        return Ok(());
+    }
+    let start: String = told.chars().take(2000).collect();
+    Err(format!("expected {code} and `{words}`, got {:?}: {start}", output.status).into())
+}

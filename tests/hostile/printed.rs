@@ -1,0 +1,63 @@
+//! Names and messages from elsewhere, on their way to a terminal.
+
+use std::fs;
+
+use libtest_mimic::Trial;
+
+use super::{Outcome, run};
+
+/// Clears the screen, in seven and in eight bits, and turns writing around.
+const EVIL: &str = "a\u{1b}[2J\u{9b}2J\u{202e}b";
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [(&str, fn() -> Outcome); 3] =
+        [("arguments", arguments), ("messages", messages), ("composed", composed)];
+    let trial = |(name, case): (&str, fn() -> Outcome)| {
+        Trial::test(format!("hostile::printed_{name}"), case)
+    };
+    cases.into_iter().map(trial).collect()
+}
+
+/// Neither stream has anything that a terminal obeys.
+fn harmless(arguments: &[&str], file: &str) -> Outcome {
+    for form in ["human", "short", "json"] {
+        let folder = tempfile::tempdir()?;
+        fs::write(folder.path().join("m.wesl"), file)?;
+        let output = run(&folder, &[arguments, &["--diagnostics", form]].concat())?;
+        for stream in [output.stdout, output.stderr] {
+            let text = String::from_utf8(stream)?;
+            let is_obeyed = |c: char| c != '\n' && c.is_control() || c == '\u{202e}';
+            if let Some(found) = text.chars().find(|c| is_obeyed(*c)) {
+                return Err(format!("{arguments:?} as {form} prints {found:?}: {text}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn arguments() -> Outcome {
+    harmless(&["show", EVIL], "")?;
+    harmless(&["explain", EVIL], "")?;
+    harmless(&["compile", "m.wesl", "--target", EVIL], "")?;
+    harmless(&["render", EVIL], "")?;
+    harmless(&[EVIL], "")?;
+    harmless(&["bundle", "list", EVIL], "")?;
+    harmless(&["check", EVIL], "")
+}
+
+fn messages() -> Outcome {
+    harmless(&["compose", "m.wesl"], &format!("import package::{EVIL};\n"))?;
+    harmless(
+        &["compile", "m.wesl", "--target", "wgsl"],
+        &format!("fn f() {{ return \"{EVIL}\"; }}"),
+    )
+}
+
+/// A pipe gets the bytes as they are.
+fn composed() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    fs::write(folder.path().join("m.wesl"), format!("// {EVIL}\nfn f() {{}}\n"))?;
+    let output = run(&folder, &["compose", "m.wesl"])?;
+    let text = String::from_utf8(output.stdout)?;
+    if text.contains(EVIL) { Ok(()) } else { Err(text.into()) }
+}
