@@ -20,17 +20,24 @@
 #define ShadowUv lamplight_ShadowUv
 #define SplitSum lamplight_SplitSum
 #define accumulate(p0, p1, p2, p3, p4, p5, p6, p7) lamplight_accumulate(p0, p1, p2, p3, p4, p5, p6, p7)
+#define aces_hill(p0) lamplight_aces_hill(p0)
+#define agx(p0) lamplight_agx(p0)
+#define agx_curve(p0) lamplight_agx_curve(p0)
 #define alpha_aniso(p0, p1) lamplight_alpha_aniso(p0, p1)
 #define any_tangent(p0) lamplight_any_tangent(p0)
 #define area_alpha(p0, p1, p2) lamplight_area_alpha(p0, p1, p2)
 #define area_energy(p0, p1) lamplight_area_energy(p0, p1)
 #define bent_reflection(p0, p1, p2, p3, p4) lamplight_bent_reflection(p0, p1, p2, p3, p4)
+#define blend_rnm(p0, p1) lamplight_blend_rnm(p0, p1)
+#define blend_udn(p0, p1) lamplight_blend_udn(p0, p1)
+#define blend_whiteout(p0, p1) lamplight_blend_whiteout(p0, p1)
 #define blinn_phong(p0, p1, p2, p3) lamplight_blinn_phong(p0, p1, p2, p3)
 #define blinn_phong_half(p0, p1, p2, p3) lamplight_blinn_phong_half(p0, p1, p2, p3)
 #define blinn_phong_hpg(p0, p1, p2, p3) lamplight_blinn_phong_hpg(p0, p1, p2, p3)
 #define blinn_phong_normalized(p0, p1, p2, p3) lamplight_blinn_phong_normalized(p0, p1, p2, p3)
 #define blur21(p0, p1, p2) lamplight_blur21(p0, p1, p2)
 #define bounding_sphere(p0, p1, p2) lamplight_bounding_sphere(p0, p1, p2)
+#define box_project(p0, p1, p2, p3, p4) lamplight_box_project(p0, p1, p2, p3, p4)
 #define btdf_thin(p0, p1, p2, p3) lamplight_btdf_thin(p0, p1, p2, p3)
 #define burley(p0, p1, p2, p3) lamplight_burley(p0, p1, p2, p3)
 #define burley_albedo(p0, p1) lamplight_burley_albedo(p0, p1)
@@ -55,6 +62,7 @@
 #define constant_bias(p0, p1) lamplight_constant_bias(p0, p1)
 #define contact_hit(p0, p1, p2, p3) lamplight_contact_hit(p0, p1, p2, p3)
 #define cookie_uv(p0, p1) lamplight_cookie_uv(p0, p1)
+#define cornette_shanks(p0, p1) lamplight_cornette_shanks(p0, p1)
 #define cube_bias(p0, p1, p2) lamplight_cube_bias(p0, p1, p2)
 #define cube_compare(p0, p1, p2) lamplight_cube_compare(p0, p1, p2)
 #define cube_depth(p0, p1, p2) lamplight_cube_depth(p0, p1, p2)
@@ -62,6 +70,10 @@
 #define d_charlie(p0, p1) lamplight_d_charlie(p0, p1)
 #define d_ggx(p0, p1, p2) lamplight_d_ggx(p0, p1, p2)
 #define d_ggx_aniso(p0, p1, p2, p3, p4) lamplight_d_ggx_aniso(p0, p1, p2, p3, p4)
+#define ddgi_chebyshev(p0, p1, p2, p3) lamplight_ddgi_chebyshev(p0, p1, p2, p3)
+#define ddgi_crushed(p0, p1, p2, p3) lamplight_ddgi_crushed(p0, p1, p2, p3)
+#define ddgi_weight(p0, p1, p2, p3, p4, p5) lamplight_ddgi_weight(p0, p1, p2, p3, p4, p5)
+#define ddgi_weight_rtxgi(p0, p1, p2, p3, p4, p5) lamplight_ddgi_weight_rtxgi(p0, p1, p2, p3, p4, p5)
 #define decay_cutoff(p0, p1, p2) lamplight_decay_cutoff(p0, p1, p2)
 #define depth_view_igl(p0) lamplight_depth_view_igl(p0)
 #define dfg_approx(p0, p1) lamplight_dfg_approx(p0, p1)
@@ -71,6 +83,7 @@
 #define diffusion_s(p0) lamplight_diffusion_s(p0)
 #define disk_irradiance(p0, p1, p2) lamplight_disk_irradiance(p0, p1, p2)
 #define dispersion_ior(p0, p1) lamplight_dispersion_ior(p0, p1)
+#define draine(p0, p1, p2) lamplight_draine(p0, p1, p2)
 #define edge_fade(p0, p1) lamplight_edge_fade(p0, p1)
 #define energy_compensation(p0, p1) lamplight_energy_compensation(p0, p1)
 #define eon(p0, p1, p2, p3, p4) lamplight_eon(p0, p1, p2, p3, p4)
@@ -96,10 +109,17 @@
 #define face_normal_area(p0, p1, p2) lamplight_face_normal_area(p0, p1, p2)
 #define film_sensitivity(p0, p1) lamplight_film_sensitivity(p0, p1)
 #define flip_if_back(p0, p1) lamplight_flip_if_back(p0, p1)
+#define fog_droplet(p0, p1) lamplight_fog_droplet(p0, p1)
 #define fog_exp(p0, p1) lamplight_fog_exp(p0, p1)
 #define fog_exp2(p0, p1) lamplight_fog_exp2(p0, p1)
+#define fog_height(p0, p1, p2, p3, p4, p5) lamplight_fog_height(p0, p1, p2, p3, p4, p5)
 #define fog_linear(p0, p1, p2) lamplight_fog_linear(p0, p1, p2)
+#define fog_transmittance(p0) lamplight_fog_transmittance(p0)
 #define gaussian21(p0) lamplight_gaussian21(p0)
+#define geomerics_channel(p0, p1, p2) lamplight_geomerics_channel(p0, p1, p2)
+#define gtao_arc(p0, p1) lamplight_gtao_arc(p0, p1)
+#define hable(p0) lamplight_hable(p0)
+#define hable_channel(p0) lamplight_hable_channel(p0)
 #define half_lambert(p0, p1) lamplight_half_lambert(p0, p1)
 #define hard(p0, p1) lamplight_hard(p0, p1)
 #define hash_pcg(p0) lamplight_hash_pcg(p0)
@@ -107,6 +127,9 @@
 #define hemisphere_oglpg(p0, p1, p2, p3, p4) lamplight_hemisphere_oglpg(p0, p1, p2, p3, p4)
 #define hemisphere_weight(p0, p1) lamplight_hemisphere_weight(p0, p1)
 #define hemisphere_weight_sine(p0, p1) lamplight_hemisphere_weight_sine(p0, p1)
+#define hg(p0, p1) lamplight_hg(p0, p1)
+#define hlg_from_linear(p0) lamplight_hlg_from_linear(p0)
+#define horizon_occlusion(p0, p1, p2) lamplight_horizon_occlusion(p0, p1, p2)
 #define ibl_mix(p0, p1, p2, p3, p4) lamplight_ibl_mix(p0, p1, p2, p3, p4)
 #define ies_u(p0) lamplight_ies_u(p0)
 #define ies_uv(p0, p1, p2) lamplight_ies_uv(p0, p1, p2)
@@ -121,6 +144,7 @@
 #define is_nan_bits(p0) lamplight_is_nan_bits(p0)
 #define is_on_map(p0) lamplight_is_on_map(p0)
 #define lambert(p0, p1) lamplight_lambert(p0, p1)
+#define linear_from_hlg(p0) lamplight_linear_from_hlg(p0)
 #define linear_from_srgb(p0) lamplight_linear_from_srgb(p0)
 #define linear_from_srgb_channel(p0) lamplight_linear_from_srgb_channel(p0)
 #define linear_radius(p0, p1) lamplight_linear_radius(p0, p1)
@@ -138,10 +162,16 @@
 #define msm_moments(p0) lamplight_msm_moments(p0)
 #define msm_quantise(p0) lamplight_msm_quantise(p0)
 #define msm_visibility(p0, p1, p2) lamplight_msm_visibility(p0, p1, p2)
+#define multibounce(p0, p1) lamplight_multibounce(p0, p1)
 #define nearest_sphere(p0, p1, p2) lamplight_nearest_sphere(p0, p1, p2)
 #define nearest_tube(p0, p1, p2, p3) lamplight_nearest_tube(p0, p1, p2, p3)
+#define neutral(p0) lamplight_neutral(p0)
+#define neutral_inverse(p0) lamplight_neutral_inverse(p0)
+#define nits_from_pq(p0) lamplight_nits_from_pq(p0)
 #define normal_matrix(p0) lamplight_normal_matrix(p0)
 #define normal_offset(p0, p1, p2, p3, p4) lamplight_normal_offset(p0, p1, p2, p3, p4)
+#define octahedral_decode(p0) lamplight_octahedral_decode(p0)
+#define octahedral_encode(p0) lamplight_octahedral_encode(p0)
 #define oren_nayar(p0, p1, p2, p3) lamplight_oren_nayar(p0, p1, p2, p3)
 #define pcf_3x3(p0, p1) lamplight_pcf_3x3(p0, p1)
 #define pcf_5x5(p0, p1) lamplight_pcf_5x5(p0, p1)
@@ -160,6 +190,8 @@
 #define phong_oglpg_7_21(p0, p1, p2, p3) lamplight_phong_oglpg_7_21(p0, p1, p2, p3)
 #define pixel_seed(p0) lamplight_pixel_seed(p0)
 #define polynomial(p0, p1) lamplight_polynomial(p0, p1)
+#define pq_from_nits(p0) lamplight_pq_from_nits(p0)
+#define prefilter_lod(p0, p1) lamplight_prefilter_lod(p0, p1)
 #define probe_breezeway() lamplight_probe_breezeway()
 #define probe_campus_sunset() lamplight_probe_campus_sunset()
 #define probe_eucalyptus_grove() lamplight_probe_eucalyptus_grove()
@@ -173,11 +205,14 @@
 #define probe_vine_street_kitchen() lamplight_probe_vine_street_kitchen()
 #define project(p0, p1) lamplight_project(p0, p1)
 #define project_gl(p0, p1) lamplight_project_gl(p0, p1)
+#define r2_sequence(p0) lamplight_r2_sequence(p0)
 #define random_hpg(p0) lamplight_random_hpg(p0)
 #define range_gltf(p0, p1) lamplight_range_gltf(p0, p1)
+#define rayleigh_phase(p0) lamplight_rayleigh_phase(p0)
 #define receiver_plane(p0, p1, p2) lamplight_receiver_plane(p0, p1, p2)
 #define reflect_world(p0, p1, p2) lamplight_reflect_world(p0, p1, p2)
 #define refract_exit(p0, p1, p2, p3) lamplight_refract_exit(p0, p1, p2, p3)
+#define reinhard_extended(p0, p1) lamplight_reinhard_extended(p0, p1)
 #define resolve(p0, p1, p2) lamplight_resolve(p0, p1, p2)
 #define safe_normalize(p0, p1) lamplight_safe_normalize(p0, p1)
 #define safe_pow(p0, p1) lamplight_safe_pow(p0, p1)
@@ -189,9 +224,12 @@
 #define sdf_soft_smooth(p0) lamplight_sdf_soft_smooth(p0)
 #define sdf_soft_step(p0, p1, p2, p3, p4) lamplight_sdf_soft_step(p0, p1, p2, p3, p4)
 #define sh4_irradiance(p0, p1) lamplight_sh4_irradiance(p0, p1)
+#define sh4_irradiance_geomerics(p0, p1) lamplight_sh4_irradiance_geomerics(p0, p1)
+#define sh4_irradiance_zh3(p0, p1) lamplight_sh4_irradiance_zh3(p0, p1)
 #define sh9_basis(p0) lamplight_sh9_basis(p0)
 #define sh9_irradiance(p0, p1) lamplight_sh9_irradiance(p0, p1)
 #define sh9_irradiance_clamped(p0, p1) lamplight_sh9_irradiance_clamped(p0, p1)
+#define sh_window(p0, p1) lamplight_sh_window(p0, p1)
 #define shade_ncl(p0, p1, p2, p3, p4, p5) lamplight_shade_ncl(p0, p1, p2, p3, p4, p5)
 #define shade_oglpg_7_21(p0, p1, p2, p3, p4, p5, p6, p7) lamplight_shade_oglpg_7_21(p0, p1, p2, p3, p4, p5, p6, p7)
 #define shadow_coord(p0, p1) lamplight_shadow_coord(p0, p1)
@@ -202,14 +240,18 @@
 #define slope_bias(p0, p1, p2) lamplight_slope_bias(p0, p1, p2)
 #define specular_aa(p0, p1, p2, p3, p4) lamplight_specular_aa(p0, p1, p2, p3, p4)
 #define specular_f0(p0, p1, p2) lamplight_specular_f0(p0, p1, p2)
+#define specular_occlusion(p0, p1, p2) lamplight_specular_occlusion(p0, p1, p2)
 #define sphere_irradiance(p0, p1) lamplight_sphere_irradiance(p0, p1)
 #define split_sum(p0, p1, p2) lamplight_split_sum(p0, p1, p2)
 #define split_sum_multi(p0, p1, p2) lamplight_split_sum_multi(p0, p1, p2)
 #define srgb_from_linear(p0) lamplight_srgb_from_linear(p0)
 #define srgb_from_linear_channel(p0) lamplight_srgb_from_linear_channel(p0)
+#define ssao_kernel(p0, p1) lamplight_ssao_kernel(p0, p1)
 #define tonemap_aces(p0) lamplight_tonemap_aces(p0)
 #define tonemap_reinhard(p0) lamplight_tonemap_reinhard(p0)
 #define transmission_roughness(p0, p1) lamplight_transmission_roughness(p0, p1)
+#define uchimura(p0) lamplight_uchimura(p0)
+#define uchimura_channel(p0) lamplight_uchimura_channel(p0)
 #define unit_float(p0) lamplight_unit_float(p0)
 #define v_charlie(p0, p1, p2) lamplight_v_charlie(p0, p1, p2)
 #define v_neubelt(p0, p1) lamplight_v_neubelt(p0, p1)
@@ -240,17 +282,24 @@
 #undef ShadowUv
 #undef SplitSum
 #undef accumulate
+#undef aces_hill
+#undef agx
+#undef agx_curve
 #undef alpha_aniso
 #undef any_tangent
 #undef area_alpha
 #undef area_energy
 #undef bent_reflection
+#undef blend_rnm
+#undef blend_udn
+#undef blend_whiteout
 #undef blinn_phong
 #undef blinn_phong_half
 #undef blinn_phong_hpg
 #undef blinn_phong_normalized
 #undef blur21
 #undef bounding_sphere
+#undef box_project
 #undef btdf_thin
 #undef burley
 #undef burley_albedo
@@ -275,6 +324,7 @@
 #undef constant_bias
 #undef contact_hit
 #undef cookie_uv
+#undef cornette_shanks
 #undef cube_bias
 #undef cube_compare
 #undef cube_depth
@@ -282,6 +332,10 @@
 #undef d_charlie
 #undef d_ggx
 #undef d_ggx_aniso
+#undef ddgi_chebyshev
+#undef ddgi_crushed
+#undef ddgi_weight
+#undef ddgi_weight_rtxgi
 #undef decay_cutoff
 #undef depth_view_igl
 #undef dfg_approx
@@ -291,6 +345,7 @@
 #undef diffusion_s
 #undef disk_irradiance
 #undef dispersion_ior
+#undef draine
 #undef edge_fade
 #undef energy_compensation
 #undef eon
@@ -316,10 +371,17 @@
 #undef face_normal_area
 #undef film_sensitivity
 #undef flip_if_back
+#undef fog_droplet
 #undef fog_exp
 #undef fog_exp2
+#undef fog_height
 #undef fog_linear
+#undef fog_transmittance
 #undef gaussian21
+#undef geomerics_channel
+#undef gtao_arc
+#undef hable
+#undef hable_channel
 #undef half_lambert
 #undef hard
 #undef hash_pcg
@@ -327,6 +389,9 @@
 #undef hemisphere_oglpg
 #undef hemisphere_weight
 #undef hemisphere_weight_sine
+#undef hg
+#undef hlg_from_linear
+#undef horizon_occlusion
 #undef ibl_mix
 #undef ies_u
 #undef ies_uv
@@ -341,6 +406,7 @@
 #undef is_nan_bits
 #undef is_on_map
 #undef lambert
+#undef linear_from_hlg
 #undef linear_from_srgb
 #undef linear_from_srgb_channel
 #undef linear_radius
@@ -358,10 +424,16 @@
 #undef msm_moments
 #undef msm_quantise
 #undef msm_visibility
+#undef multibounce
 #undef nearest_sphere
 #undef nearest_tube
+#undef neutral
+#undef neutral_inverse
+#undef nits_from_pq
 #undef normal_matrix
 #undef normal_offset
+#undef octahedral_decode
+#undef octahedral_encode
 #undef oren_nayar
 #undef pcf_3x3
 #undef pcf_5x5
@@ -380,6 +452,8 @@
 #undef phong_oglpg_7_21
 #undef pixel_seed
 #undef polynomial
+#undef pq_from_nits
+#undef prefilter_lod
 #undef probe_breezeway
 #undef probe_campus_sunset
 #undef probe_eucalyptus_grove
@@ -393,11 +467,14 @@
 #undef probe_vine_street_kitchen
 #undef project
 #undef project_gl
+#undef r2_sequence
 #undef random_hpg
 #undef range_gltf
+#undef rayleigh_phase
 #undef receiver_plane
 #undef reflect_world
 #undef refract_exit
+#undef reinhard_extended
 #undef resolve
 #undef safe_normalize
 #undef safe_pow
@@ -409,9 +486,12 @@
 #undef sdf_soft_smooth
 #undef sdf_soft_step
 #undef sh4_irradiance
+#undef sh4_irradiance_geomerics
+#undef sh4_irradiance_zh3
 #undef sh9_basis
 #undef sh9_irradiance
 #undef sh9_irradiance_clamped
+#undef sh_window
 #undef shade_ncl
 #undef shade_oglpg_7_21
 #undef shadow_coord
@@ -422,14 +502,18 @@
 #undef slope_bias
 #undef specular_aa
 #undef specular_f0
+#undef specular_occlusion
 #undef sphere_irradiance
 #undef split_sum
 #undef split_sum_multi
 #undef srgb_from_linear
 #undef srgb_from_linear_channel
+#undef ssao_kernel
 #undef tonemap_aces
 #undef tonemap_reinhard
 #undef transmission_roughness
+#undef uchimura
+#undef uchimura_channel
 #undef unit_float
 #undef v_charlie
 #undef v_neubelt

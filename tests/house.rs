@@ -23,6 +23,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("house::leftovers", nothing_is_left_behind),
         Trial::test("house::leftovers_are_seen", leftovers_are_seen),
         Trial::test("house::paths", paths_are_short),
+        Trial::test("house::one_way_to_the_terminal", one_way_to_the_terminal),
         Trial::test("house::needs_of_executors", needs_are_installed),
         Trial::test("house::described", entries_are_described),
     ]
@@ -125,7 +126,7 @@ fn cycles_are_found() -> Result<(), Failed> {
 }
 
 /// What stands in the root of the repository, and nothing else.
-const ROOT_FILES: [&str; 12] = [
+const ROOT_FILES: [&str; 13] = [
     ".gitignore",
     "ARCHITECTURE.md",
     "CHANGELOG.md",
@@ -135,6 +136,7 @@ const ROOT_FILES: [&str; 12] = [
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "README.md",
+    "SECURITY.md",
     "build.rs",
     "clippy.toml",
     "rustfmt.toml",
@@ -145,15 +147,38 @@ const LEFTOVERS: [&str; 10] =
     [".new", ".orig", ".rej", ".bak", ".tmp", ".log", ".swp", ".profraw", ".spv", "~"];
 
 /// Files that are no text: pictures, and inputs that are wrong on purpose.
-const BINARIES: [&str; 4] = [
+const BINARIES: [&str; 5] = [
     ".png",
     "tests/regressions/bundle/valid",
+    "tests/regressions/picture/valid",
     "tests/regressions/record/told",
     "tests/regressions/record/valid",
 ];
 
 /// Most characters of a path: Windows stops at 260, of which a folder above takes its part.
 const LONGEST: usize = 120;
+
+/// Commands print through `src/cli/terminal.rs`, which escapes what a terminal would obey.
+fn one_way_to_the_terminal() -> Result<(), Failed> {
+    let mut files = Vec::new();
+    rust_files(&Path::new(ROOT).join("src/cli"), &mut files)?;
+    let names_a_stream = |line: &str| {
+        let imports = line.starts_with("use std::io")
+            && ["stdout", "stderr"].iter().any(|stream| line.contains(stream));
+        imports || line.contains("io::stdout(") || line.contains("io::stderr(")
+    };
+    let mut found = Vec::new();
+    for file in files.iter().filter(|file| !file.ends_with("terminal.rs")) {
+        let text = std::fs::read_to_string(file)?;
+        if let Some(line) = text.lines().find(|line| names_a_stream(line)) {
+            found.push(format!("{}: {line}", file.display()));
+        }
+    }
+    match found.is_empty() {
+        true => Ok(()),
+        false => Err(format!("use `cli::terminal` instead:\n{}", found.join("\n")).into()),
+    }
+}
 
 /// The repository holds nothing that a run left behind.
 fn nothing_is_left_behind() -> Result<(), Failed> {

@@ -57,7 +57,7 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "sealed",
         corpus: &[("tests/regressions/bundle", "")],
-        words: "",
+        words: "{ } [ ] , : 0 1 4294967295 \u{0}",
         run: stores::sealed,
     },
     Kind {

@@ -43,6 +43,39 @@ vec3 split_sum(vec3 f0, vec2 dfg, vec3 prefiltered) {
     return prefiltered * (f0 * dfg.x + dfg.y);
 }
 
+/// The direction in which a local environment map shows what a mirror in a box shows.
+///
+/// Parameters: `r` mirrored direction, world space, any length; `p` the mirroring point; `lo`, `hi` corners of the box; `c` where the map was taken; all world space, scene units.
+/// Returns: from `c` to where the ray from `p` leaves the box, world space, scene units.
+/// Source: Lagarde, Zanuttini, "Local Image-Based Lighting with Parallax-Corrected Cubemaps", 2012.
+/// Edges: for a point beyond the box in the ray's direction the ray ends at the point; `p - c` for a zero direction.
+/// Error model: absolute 2^-20*(|hi| + |lo| + |p| + |c|) over the largest component of the unit direction.
+vec3 box_project(vec3 r, vec3 p, vec3 lo, vec3 hi, vec3 c) {
+    float largest = max(max(abs(r.x), abs(r.y)), abs(r.z));
+    if (!(largest > 1e-30)) {
+        return p - c;
+    }
+    vec3 d = r / largest;
+    float x = (d.x > 0.0 ? hi.x - p.x : lo.x - p.x) / (d.x > 0.0 ? 1.0 : -1.0);
+    float y = (d.y > 0.0 ? hi.y - p.y : lo.y - p.y) / (d.y > 0.0 ? 1.0 : -1.0);
+    float z = (d.z > 0.0 ? hi.z - p.z : lo.z - p.z) / (d.z > 0.0 ? 1.0 : -1.0);
+    // The wall that is reached first; one along the ray never is.
+    vec3 reached = max(vec3(x, y, z), vec3(0.0)) / max(abs(d), vec3(1e-6));
+    vec3 away = mix(reached, vec3(1e30), lessThan(abs(d), vec3(1e-6)));
+    return p + d * min(min(away.x, away.y), away.z) - c;
+}
+
+/// The mip level of a prefiltered environment for a roughness.
+///
+/// Parameters: `roughness` perceptual, [0, 1]; `mips` number of levels, at least 1.
+/// Returns: `roughness*(mips - 1)`, [0, mips - 1].
+/// Source: Karis, "Real Shading in Unreal Engine 4", 2013: levels even in perceptual roughness.
+/// Edges: a roughness outside [0, 1] is clamped; 0 for fewer than one level.
+/// Error model: 1 ULP.
+float prefilter_lod(float roughness, float mips) {
+    return clamp(roughness, 0.0, 1.0) * max(mips - 1.0, 0.0);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -6,6 +6,8 @@
 #ifndef LAMPLIGHT_AMBIENT_SH_GLSL
 #define LAMPLIGHT_AMBIENT_SH_GLSL
 
+#include "../math/safe.glsl"
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif
@@ -65,6 +67,78 @@ float[9] sh9_basis(vec3 n) {
         1.092548 * n.x * n.z,
         0.546274 * (n.x * n.x - n.y * n.y)
     );
+}
+
+/// One channel of `sh4_irradiance_geomerics`.
+///
+/// Parameters: `n` unit normal; `constant` coefficient L00 of the channel; `axis` its coefficients L11, L1m1, L10: along x, y, z.
+/// Returns: irradiance of the channel, linear, at least 0.
+/// Source: Hazel, "Reconstructing Diffuse Lighting from Spherical Harmonic Data", Geomerics, 2015.
+/// Edges: as for `sh4_irradiance_geomerics`.
+/// Error model: relative 2^-18.
+float geomerics_channel(vec3 n, float constant, vec3 axis) {
+    float mean = 0.886227 * max(constant, 0.0);
+    // Half of the irradiance's linear band over its mean: 1 for light from one direction.
+    float band = 0.511664 * length(axis);
+    float ratio = 1.0;
+    if (band < mean) {
+        ratio = band / mean;
+    }
+    float base = (1.0 - ratio) / (1.0 + ratio);
+    float power = 1.0 + 2.0 * ratio;
+    float q = 0.5 + 0.5 * dot(n, safe_normalize(axis, vec3(0.0)));
+    return mean * (base + (1.0 - base) * (power + 1.0) * safe_pow(q, power));
+}
+
+/// Irradiance from four coefficients without negative light: a lobe in place of a plane.
+///
+/// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients of the radiance: L00, L1m1, L10, L11.
+/// Returns: irradiance, linear, at least 0; its mean over all directions is `0.886227*L00`, its largest value four times that.
+/// Source: Hazel, "Reconstructing Diffuse Lighting from Spherical Harmonic Data", Geomerics, 2015: `R0*(a + (1 - a)*(p + 1)*q^p)`, each channel about its own axis.
+/// Edges: the constant term where a channel has no direction; 0 where its constant is 0 or less; the linear band counts as no longer than light from one direction has it.
+/// Error model: relative 2^-18.
+vec3 sh4_irradiance_geomerics(vec3 n, vec3 sh[4]) {
+    vec3 axis_r = vec3(sh[3].x, sh[1].x, sh[2].x);
+    vec3 axis_g = vec3(sh[3].y, sh[1].y, sh[2].y);
+    vec3 axis_b = vec3(sh[3].z, sh[1].z, sh[2].z);
+    return vec3(geomerics_channel(n, sh[0].x, axis_r), geomerics_channel(n, sh[0].y, axis_g), geomerics_channel(n, sh[0].z, axis_b));
+}
+
+/// Irradiance from four coefficients and a guess of the next band from them.
+///
+/// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients of the radiance: L00, L1m1, L10, L11.
+/// Returns: irradiance, linear; may be below 0 opposite a strong light.
+/// Source: Roughton, Sloan, Silvennoinen, Iwanicki, Shirley, "ZH3: Quadratic Zonal Harmonics", 2024: band 2 is `L00*(0.08*r + 0.6*r^2)` about the axis of the luminance, with r the linear band along it over L00.
+/// Edges: `sh4_irradiance` where the luminance has no direction, and for channels whose constant is 0 or less.
+/// Error model: absolute 2^-20 of the sum of the terms' magnitudes.
+vec3 sh4_irradiance_zh3(vec3 n, vec3 sh[4]) {
+    vec3 luma = vec3(0.2126, 0.7152, 0.0722);
+    vec3 linear = vec3(dot(sh[3], luma), dot(sh[1], luma), dot(sh[2], luma));
+    vec3 axis = safe_normalize(linear, vec3(0.0));
+    vec3 along = abs(sh[3] * axis.x + sh[1] * axis.y + sh[2] * axis.z);
+    vec3 constant = max(sh[0], vec3(0.0));
+    // L00*(0.08*r + 0.6*r^2), with r no more than light from one direction has.
+    vec3 ratio = min(along / max(constant, vec3(1e-30)), vec3(1.7320508));
+    vec3 band = constant * (ratio * (0.08 + 0.6 * ratio));
+    float mu = dot(n, axis);
+    return sh4_irradiance(n, sh) + band * (0.247708 * (3.0 * mu * mu - 1.0));
+}
+
+/// The share of a band that a window leaves, against ringing.
+///
+/// Parameters: `band` 0 for the constant, 1 for the linear one, and so on; `width` of the window, bands, above 0: smaller ones blur more.
+/// Returns: `(1 + cos(pi*band/width))/2`, [0, 1]: a factor of the band's coefficients.
+/// Source: Sloan, "Stupid Spherical Harmonics (SH) Tricks", 2008, "Windowing": the Hanning window.
+/// Edges: 0 from `width` on; 1 for band 0, whatever the width.
+/// Error model: absolute 2^-12, of which the bound of WGSL for sines is all but 2^-20.
+float sh_window(float band, float width) {
+    if (!(band > 0.0)) {
+        return 1.0;
+    }
+    if (!(band < width)) {
+        return 0.0;
+    }
+    return 0.5 + 0.5 * cos(3.1415927 * (band / width));
 }
 
 #ifdef LAMPLIGHT_PREFIX

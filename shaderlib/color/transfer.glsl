@@ -121,6 +121,60 @@ float fog_exp2(float d, float density) {
     return exp(-x * x);
 }
 
+/// A luminance as the perceptual quantiser codes it.
+///
+/// Parameters: `nits` luminance of the display, candelas per square metre, [0, 10000].
+/// Returns: code value, [0, 1]; 0.508 for 100.
+/// Source: SMPTE ST 2084:2014, equation 5.2; ITU-R BT.2100-2, table 4.
+/// Edges: luminances outside [0, 10000] are clamped to it; black is 7e-7.
+/// Error model: absolute 2^-15: the outer power has the exponent 78.8.
+float pq_from_nits(float nits) {
+    float y = safe_pow(min(nits, 10000.0) * 1e-4, 0.15930176);
+    // The quotient is 1 but for the last bits near white, so it is 1 less a rest.
+    float rest = 0.1640625 * (1.0 - y) / (1.0 + 18.6875 * y);
+    return exp2(78.84375 * log2(1.0 - rest));
+}
+
+/// The luminance that a code value of the perceptual quantiser stands for.
+///
+/// Parameters: `code` value, [0, 1].
+/// Returns: luminance of the display, candelas per square metre, [0, 10000].
+/// Source: SMPTE ST 2084:2014, equation 4.1; ITU-R BT.2100-2, table 4.
+/// Edges: codes outside [0, 1] are clamped; 0 up to the code of black.
+/// Error model: relative 2^-11 + 2^-22*10000/nits, absolute 1e-6.
+float nits_from_pq(float code) {
+    float x = safe_pow(min(code, 1.0), 0.012683313);
+    float y = (x - 0.8359375) / (18.851562 - 18.6875 * x);
+    return 10000.0 * safe_pow(y, 6.277395);
+}
+
+/// Linear light of the scene as hybrid log-gamma codes it.
+///
+/// Parameters: `e` linear light, [0, 1].
+/// Returns: code value, [0, 1]: a square root up to 0.5, a logarithm above.
+/// Source: ITU-R BT.2100-2, table 5, for light in [0, 1]; some texts have it in [0, 12].
+/// Edges: light outside [0, 1] is clamped.
+/// Error model: absolute 2^-20.
+float hlg_from_linear(float e) {
+    float x = clamp(e, 0.0, 1.0);
+    if (x <= 0.083333336) {
+        return sqrt(3.0 * x);
+    }
+    return 0.17883277 * log(12.0 * x - 0.28466892) + 0.55991073;
+}
+
+/// Linear light of the scene from a code value of hybrid log-gamma.
+///
+/// Parameters: `code` value, [0, 1].
+/// Returns: linear light, [0, 1].
+/// Source: ITU-R BT.2100-2, table 5: the inverse of the transfer function.
+/// Edges: codes outside [0, 1] are clamped.
+/// Error model: absolute 2^-19.
+float linear_from_hlg(float code) {
+    float x = clamp(code, 0.0, 1.0);
+    return (x <= 0.5 ? x * x / 3.0 : (exp((x - 0.55991073) / 0.17883277) + 0.28466892) / 12.0);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

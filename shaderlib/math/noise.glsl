@@ -80,6 +80,17 @@ vec2 vogel_disk(int i, int count, float phi) {
     return vec2(-cos(angle), -sin(angle)) * r;
 }
 
+/// A point of a sequence that fills the unit square evenly, however many points are taken of it.
+///
+/// Parameters: `i` index of the point.
+/// Returns: two multiples of 2^-24 in [0, 1).
+/// Source: Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018: 1/2 + i/p and 1/2 + i/p^2 modulo 1, with p^3 = p + 1, in integers modulo 2^32.
+/// Edges: (0.5, 0.5) for 0.
+/// Error model: exact.
+vec2 r2_sequence(uint i) {
+    return vec2(unit_float(2147483648u + i * 3242174889u), unit_float(2147483648u + i * 2447445414u));
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -61,6 +61,44 @@ vec3 flip_if_back(vec3 n, bool front) {
     return front ? n : -n;
 }
 
+/// A detail normal laid onto a base normal, by the rotation that takes z to the base.
+///
+/// Parameters: `base`, `detail` unit normals in tangent space, z out of the surface, `base.z` above -1.
+/// Returns: unit normal in tangent space.
+/// Source: Hill, "Blending in Detail", 2012: reoriented normal mapping.
+/// Edges: `detail` for a base of z, `base` for a detail of z; `base` where it looks straight down, and for zero vectors.
+/// Error model: absolute 8*2^-23/(1 + base.z).
+vec3 blend_rnm(vec3 base, vec3 detail) {
+    vec3 t = vec3(base.xy, base.z + 1.0);
+    if (!(t.z > 1e-6)) {
+        return base;
+    }
+    vec3 u = vec3(-detail.xy, detail.z);
+    return safe_normalize(t * (dot(t, u) / t.z) - u, base);
+}
+
+/// A detail normal laid onto a base normal by the sum of their slopes' directions, cheaply.
+///
+/// Parameters: `base`, `detail` unit normals in tangent space, z out of the surface.
+/// Returns: unit normal along `(base.xy + detail.xy, base.z)`, tangent space.
+/// Source: Hill, "Blending in Detail", 2012, after Epic Games' Unreal Developer Network: UDN blending.
+/// Edges: `base` where the sum is zero.
+/// Error model: absolute 8*2^-23 over the length of the sum.
+vec3 blend_udn(vec3 base, vec3 detail) {
+    return safe_normalize(vec3(base.xy + detail.xy, base.z), base);
+}
+
+/// A detail normal laid onto a base normal with both of their slopes.
+///
+/// Parameters: `base`, `detail` unit normals in tangent space, z out of the surface.
+/// Returns: unit normal along `(base.xy + detail.xy, base.z*detail.z)`, tangent space.
+/// Source: Oat, Tatarchuk, Isidoro, "Layered Car Paint Shader", ShaderX 2, 2003; Hill, "Blending in Detail", 2012: whiteout blending.
+/// Edges: `base` where the sum is zero.
+/// Error model: absolute 8*2^-23 over the length of the sum.
+vec3 blend_whiteout(vec3 base, vec3 detail) {
+    return safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z), base);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -3,6 +3,7 @@
 //! A worker process mutates and judges; this one watches it, so that an abort or an endless loop
 //! is a finding too. Findings are made small and kept in `tests/regressions/KIND/`.
 
+mod commands;
 mod judge;
 #[path = "../../fuzz/src/kinds.rs"]
 mod kinds;
@@ -32,6 +33,7 @@ struct Request {
     seconds: u64,
     seed: u64,
     kinds: Vec<&'static Kind>,
+    surfaces: Vec<&'static commands::Surface>,
 }
 
 /// Fuzzes every kind for its share of the time; a finding is exit code 3.
@@ -48,7 +50,7 @@ pub fn run(arguments: &[String]) -> Outcome {
 fn request(arguments: &[String]) -> Result<Request, Failure> {
     let now =
         SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let mut request = Request { seconds: 60, seed: now, kinds: Vec::new() };
+    let mut request = Request { seconds: 60, seed: now, kinds: Vec::new(), surfaces: Vec::new() };
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {
@@ -56,11 +58,15 @@ fn request(arguments: &[String]) -> Result<Request, Failure> {
                 request.seconds = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?
             }
             "--seed" => request.seed = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?,
-            kind => request.kinds.push(find(kind)?),
+            name => match commands::SURFACES.iter().find(|surface| surface.name == name) {
+                Some(surface) => request.surfaces.push(surface),
+                None => request.kinds.push(find(name)?),
+            },
         }
     }
-    if request.kinds.is_empty() {
+    if request.kinds.is_empty() && request.surfaces.is_empty() {
         request.kinds = KINDS.iter().collect();
+        request.surfaces = commands::SURFACES.iter().collect();
     }
     Ok(request)
 }
@@ -70,17 +76,23 @@ fn number(text: &str) -> Result<u64, Failure> {
 }
 
 fn find(name: &str) -> Result<&'static Kind, Failure> {
-    let names: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+    let names = KINDS.iter().map(|kind| kind.name);
+    let names: Vec<&str> =
+        names.chain(commands::SURFACES.iter().map(|surface| surface.name)).collect();
     let found = KINDS.iter().find(|kind| kind.name == name);
     found.ok_or_else(|| Failure::usage(format!("{USAGE}\nkinds: {}", names.join(", "))))
 }
 
 fn watch(request: &Request) -> Outcome {
     println!("seed {}", request.seed);
-    let share = (request.seconds / request.kinds.len() as u64).max(1);
+    let all = request.kinds.len() + request.surfaces.len();
+    let share = (request.seconds / all as u64).max(1);
     let mut findings = 0;
     for kind in &request.kinds {
         findings += fuzz(kind, request.seed, share)?;
+    }
+    for surface in &request.surfaces {
+        findings += commands::fuzz(surface, request.seed, share)?;
     }
     if findings == 0 {
         Ok(())

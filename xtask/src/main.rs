@@ -6,6 +6,7 @@ mod bench;
 mod ci;
 mod create;
 mod docs;
+mod faults;
 mod fuzz;
 mod generate;
 mod machine;
@@ -73,6 +74,11 @@ const COMMANDS: &[Command] = &[
         "bench",
         "measure, beside peers where there are any: compose, eval, gen, load or scale",
         bench::run,
+    ),
+    (
+        "faults",
+        "make calls of the system fail, or end runs at them: the bundle stays whole",
+        faults::run,
     ),
     ("fuzz", "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...", fuzz::run),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),

@@ -4,7 +4,7 @@
 //! `glGetUniformBlockIndex` and `glGetUniformLocation`. Coordinates: see [`crate::emit`].
 
 use naga::back::glsl::Version;
-use naga::{ImageDimension, TypeInner};
+use naga::{Handle, ImageDimension, Type, TypeInner};
 
 use crate::bundle::Target;
 use crate::emit::glsl;
@@ -24,10 +24,10 @@ pub const TARGET: Entry = Entry {
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     // naga writes `sampler1D` here, which no driver of this version knows.
-    let is_line = |inner: &TypeInner| {
-        matches!(inner, TypeInner::Image { dim: ImageDimension::D1, .. })
+    let is_line = |ty: Handle<Type>| {
+        matches!(source.module.types[ty].inner, TypeInner::Image { dim: ImageDimension::D1, .. })
     };
-    if source.module.types.iter().any(|(_, ty)| is_line(&ty.inner)) {
+    if source.module.global_variables.iter().any(|(_, variable)| is_line(variable.ty)) {
         return Err("the language has no textures of one dimension".to_owned());
     }
     glsl::write(source, Version::new_gles(300), Numbering::Named)

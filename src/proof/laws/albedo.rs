@@ -2,9 +2,9 @@
 //! direction, for functions of cosines as for functions of directions.
 //!
 //! The factors' parameters are found by name. Those of the geometry (`nl nv nh lh vh lv th bh tl bl
-//! tv bv n_cross_h2 mu`, or the directions `n l v h`) come from the rule, the others from the case's
+//! tv bv n_cross_h2 mu cos_theta`, or the directions `n l v h`) come from the rule, the others from the case's
 //! row, or as formulas from `with`. `n` is z, the tangent x, the bitangent y; `view` names the case's parameter
-//! that is the cosine n.v, `azimuth` turns the viewer about the normal. `mu` is v.h.
+//! that is the cosine n.v, `azimuth` turns the viewer about the normal. `mu` is v.h, `cos_theta` -l.v.
 //!
 //! | `over` | the integral is |
 //! |---|---|
@@ -83,6 +83,7 @@ const COSINES: &[Cosine] = &[
     ("vh", |g| dot(g.v, g.h)),
     ("mu", |g| dot(g.v, g.h)),
     ("lv", |g| dot(g.l, g.v)),
+    ("cos_theta", |g| -dot(g.l, g.v)),
     ("th", |g| g.h[0]),
     ("bh", |g| g.h[1]),
     ("tl", |g| g.l[0]),

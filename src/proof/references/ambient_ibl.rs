@@ -1,10 +1,18 @@
-//! Sources: OpenGL Programming Guide, example 7.13; Karis, "Real Shading in Unreal Engine 4", 2013.
+//! Sources: OpenGL Programming Guide, example 7.13; Karis, "Real Shading in Unreal Engine 4", 2013;
+//! Lagarde and Zanuttini, 2012.
 
 use super::{Arguments, Entry, Expected};
+use glam::DVec3;
 
 pub const REFERENCES: Entry = Entry {
     module: "ambient::ibl",
-    functions: &[("ibl_mix", ibl_mix), ("reflect_world", reflect_world), ("split_sum", split_sum)],
+    functions: &[
+        ("ibl_mix", ibl_mix),
+        ("reflect_world", reflect_world),
+        ("split_sum", split_sum),
+        ("box_project", box_project),
+        ("prefilter_lod", |a| (a.f64().clamp(0.0, 1.0) * (a.f64() - 1.0).max(0.0)).into()),
+    ],
 };
 
 /// c = mix(B, D*B, dp), then mix(c, S + c, sp).
@@ -23,4 +31,20 @@ fn reflect_world(a: &mut Arguments<'_>) -> Expected {
 fn split_sum(a: &mut Arguments<'_>) -> Expected {
     let (f0, dfg, prefiltered) = (a.vec3(), a.vec2(), a.vec3());
     (prefiltered * (f0 * dfg.x + dfg.y)).into()
+}
+
+/// Where the ray meets the first of the planes that it comes to; not behind the point.
+fn box_project(a: &mut Arguments<'_>) -> Expected {
+    let (r, p, lo, hi, c) = (a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.vec3());
+    if r == DVec3::ZERO {
+        return (p - c).into();
+    }
+    let axis = |r: f64, p: f64, lo: f64, hi: f64| {
+        let plane = if r > 0.0 { hi } else { lo };
+        if r == 0.0 { f64::INFINITY } else { ((plane - p) / r).max(0.0) }
+    };
+    let x = axis(r.x, p.x, lo.x, hi.x);
+    let y = axis(r.y, p.y, lo.y, hi.y);
+    let z = axis(r.z, p.z, lo.z, hi.z);
+    (p + r * x.min(y).min(z) - c).into()
 }

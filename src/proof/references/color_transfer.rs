@@ -1,5 +1,5 @@
 //! Sources: IEC 61966-2-1:1999; Reinhard et al., 2002, equation 3; Narkowicz, 2016; OpenGL 2.1
-//! specification, section 3.10 (fog).
+//! specification, section 3.10 (fog); SMPTE ST 2084:2014; ITU-R BT.2100-2.
 
 use super::{Entry, Expected};
 use glam::DVec3;
@@ -13,6 +13,10 @@ pub const REFERENCES: Entry = Entry {
         ("linear_from_srgb", |a| each(a.vec3(), decode)),
         ("tonemap_reinhard", |a| each(a.vec3(), |x| (x.max(0.0) / (1.0 + x.max(0.0))).into())),
         ("tonemap_aces", |a| each(a.vec3(), aces)),
+        ("pq_from_nits", |a| pq(a.f64()).into()),
+        ("nits_from_pq", |a| nits(a.f64()).into()),
+        ("hlg_from_linear", |a| hlg(a.f64()).into()),
+        ("linear_from_hlg", |a| from_hlg(a.f64()).into()),
         ("fog_linear", |a| fog_linear(a.f64(), a.f64(), a.f64()).into()),
         ("fog_exp", |a| (-(a.f64() * a.f64()).max(0.0)).exp().into()),
         ("fog_exp2", |a| (-(a.f64() * a.f64()).powi(2)).exp().into()),
@@ -45,4 +49,43 @@ fn fog_linear(d: f64, start: f64, end: f64) -> f64 {
         true => ((end - d) / (end - start)).clamp(0.0, 1.0),
         false => f64::from(u8::from(d <= end)),
     }
+}
+
+/// Exponents m1, m2 and coefficients c1, c2, c3 of the perceptual quantiser.
+const PQ: [f64; 5] = [
+    2610.0 / 16384.0,
+    2523.0 / 4096.0 * 128.0,
+    3424.0 / 4096.0,
+    2413.0 / 4096.0 * 32.0,
+    2392.0 / 4096.0 * 32.0,
+];
+
+/// ((c1 + c2*Y^m1)/(1 + c3*Y^m1))^m2.
+fn pq(nits: f64) -> f64 {
+    let [m1, m2, c1, c2, c3] = PQ;
+    let y = (nits / 10000.0).clamp(0.0, 1.0).powf(m1);
+    ((c1 + c2 * y) / (1.0 + c3 * y)).powf(m2)
+}
+
+/// (max(N^(1/m2) - c1, 0)/(c2 - c3*N^(1/m2)))^(1/m1).
+fn nits(code: f64) -> f64 {
+    let [m1, m2, c1, c2, c3] = PQ;
+    let x = code.clamp(0.0, 1.0).powf(1.0 / m2);
+    10000.0 * ((x - c1).max(0.0) / (c2 - c3 * x)).powf(1.0 / m1)
+}
+
+/// The constants a, b = 1 - 4*a and c = 1/2 - a*ln(4*a).
+fn log_gamma() -> [f64; 3] {
+    let a = 0.17883277;
+    [a, 1.0 - 4.0 * a, 0.5 - a * (4.0 * a).ln()]
+}
+
+fn hlg(e: f64) -> f64 {
+    let ([a, b, c], e) = (log_gamma(), e.clamp(0.0, 1.0));
+    if e <= 1.0 / 12.0 { (3.0 * e).sqrt() } else { a * (12.0 * e - b).ln() + c }
+}
+
+fn from_hlg(code: f64) -> f64 {
+    let ([a, b, c], x) = (log_gamma(), code.clamp(0.0, 1.0));
+    if x <= 0.5 { x * x / 3.0 } else { (((x - c) / a).exp() + b) / 12.0 }
 }

@@ -1,6 +1,6 @@
 //! Sources: Jimenez, 2014 (interleaved gradient noise); Jarzynski and Olano, "Hash Functions for
 //! GPU Rendering", 2020 (one step of PCG); OpenGL: Build High Performance Graphics, recipe 6 (the
-//! sine); Vogel, 1979 (the golden angle).
+//! sine); Vogel, 1979 (the golden angle); Roberts, 2018 (the sequence R2).
 
 use super::{Arguments, Entry, Expected};
 use glam::{DVec2, DVec4};
@@ -13,6 +13,7 @@ pub const REFERENCES: Entry = Entry {
         ("hash_pcg", |a| f64::from(hash(a.f64() as u32)).into()),
         ("pixel_seed", |a| f64::from(pixel_seed(a.vec2())).into()),
         ("unit_float", |a| unit(a.f64() as u32).into()),
+        ("r2_sequence", |a| r2(a.f64()).into()),
         ("random_hpg", |a| random_hpg(a.vec4()).into()),
         ("vogel_disk", |a| vogel_disk(a.f64(), a.f64(), a.f64()).into()),
     ],
@@ -57,4 +58,11 @@ pub fn random_hpg(seed: DVec4) -> f64 {
 pub fn vogel_disk(i: f64, count: f64, phi: f64) -> DVec2 {
     let angle = (i * PI * (3.0 - 5f64.sqrt()) + phi).rem_euclid(TAU);
     ((i + 0.5) / count.max(1.0)).sqrt() * DVec2::from_angle(angle)
+}
+
+/// 1/2 + i*a modulo 1, with a cut to 32 bits and the result to 24.
+fn r2(i: f64) -> DVec2 {
+    let whole = 1u64 << 32;
+    let part = |a: u64| ((whole / 2 + i as u64 * a) % whole / 256) as f64 / 16777216.0;
+    DVec2::new(part(3242174889), part(2447445414))
 }

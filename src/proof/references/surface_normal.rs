@@ -1,8 +1,8 @@
 //! Sources: Newcastle University, tutorial 11 (face normals); Blinn, 1978, and glTF 2.0 (normal
-//! maps with the bitangent's sign).
+//! maps with the bitangent's sign); Hill, 2012 (blending).
 
 use super::{Arguments, Entry, Expected};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 pub const REFERENCES: Entry = Entry {
     module: "surface::normal",
@@ -12,6 +12,9 @@ pub const REFERENCES: Entry = Entry {
             area(a.vec3(), a.vec3(), a.vec3()).try_normalize().unwrap_or(DVec3::Z).into()
         }),
         ("perturb_normal", perturb),
+        ("blend_rnm", blend_rnm),
+        ("blend_udn", |a| slopes(a, |_| 1.0)),
+        ("blend_whiteout", |a| slopes(a, |detail| detail.z)),
     ],
 };
 
@@ -27,4 +30,21 @@ fn perturb(a: &mut Arguments<'_>) -> Expected {
     let bent = 2.0 * texel - 1.0;
     let sum = t * bent.x + n.cross(t) * sign * bent.y + n * bent.z;
     sum.try_normalize().unwrap_or(n).into()
+}
+
+/// The detail turned by the rotation that takes z to the base.
+fn blend_rnm(a: &mut Arguments<'_>) -> Expected {
+    let (base, detail) = (a.vec3(), a.vec3());
+    if base == DVec3::ZERO || base.z + 1.0 <= 1e-6 {
+        return base.into();
+    }
+    let turned = DQuat::from_rotation_arc(DVec3::Z, base.normalize()) * detail;
+    turned.try_normalize().unwrap_or(base).into()
+}
+
+/// The sum of both in x and y; in z the base, times what is made of the detail.
+fn slopes(a: &mut Arguments<'_>, height: fn(DVec3) -> f64) -> Expected {
+    let (base, detail) = (a.vec3(), a.vec3());
+    let sum = DVec3::new(base.x + detail.x, base.y + detail.y, base.z * height(detail));
+    sum.try_normalize().unwrap_or(base).into()
 }

@@ -1,0 +1,50 @@
+//! Directions as points of a square: the octahedron unfolded, for probes and for normals in two numbers.
+
+#ifndef LAMPLIGHT_AMBIENT_OCTAHEDRAL_GLSL
+#define LAMPLIGHT_AMBIENT_OCTAHEDRAL_GLSL
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
+/// The point of the square that stands for a direction.
+///
+/// Parameters: `n` direction, any length.
+/// Returns: the point, each coordinate in [-1, 1]: the upper half is the inner diamond.
+/// Source: Cigolle, Donow, Evangelakos, Mara, McGuire, Meyer, "A Survey of Efficient Representations for Independent Unit Vectors", 2014, section 3.1.
+/// Edges: the sign of 0 counts as positive; (0, 0) for a zero vector.
+/// Error model: absolute 4*2^-23.
+vec2 octahedral_encode(vec3 n) {
+    float largest = max(max(abs(n.x), abs(n.y)), abs(n.z));
+    if (!(largest > 1e-30)) {
+        return vec2(0.0);
+    }
+    vec3 m = n / largest;
+    vec2 e = m.xy / (abs(m.x) + abs(m.y) + abs(m.z));
+    if (m.z >= 0.0) {
+        return e;
+    }
+    vec2 side = vec2((e.x >= 0.0 ? 1.0 : -1.0), (e.y >= 0.0 ? 1.0 : -1.0));
+    return (vec2(1.0) - abs(e.yx)) * side;
+}
+
+/// The direction that a point of the square stands for.
+///
+/// Parameters: `e` point, each coordinate in [-1, 1].
+/// Returns: unit vector.
+/// Source: Cigolle, Donow, Evangelakos, Mara, McGuire, Meyer, "A Survey of Efficient Representations for Independent Unit Vectors", 2014, section 3.1.
+/// Edges: points beyond the square are clamped to it; the sign of 0 counts as positive.
+/// Error model: absolute 4*2^-23.
+vec3 octahedral_decode(vec2 e) {
+    vec2 at = clamp(e, vec2(-1.0), vec2(1.0));
+    float height = 1.0 - abs(at.x) - abs(at.y);
+    vec2 side = vec2((at.x >= 0.0 ? 1.0 : -1.0), (at.y >= 0.0 ? 1.0 : -1.0));
+    vec2 folded = at - side * max(-height, 0.0);
+    return normalize(vec3(folded, height));
+}
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
+#endif

@@ -1,0 +1,197 @@
+//! Tone curves: what a display of limited range shows of linear light.
+//!
+//! All take and give linear Rec. 709 colours; the transfer function of the display comes after them.
+
+#ifndef LAMPLIGHT_COLOR_TONEMAP_GLSL
+#define LAMPLIGHT_COLOR_TONEMAP_GLSL
+
+#include "../math/safe.glsl"
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
+/// The tone curve of AgX: a line through middle grey with a toe and a shoulder.
+///
+/// Parameters: `x` logarithm of the light, scaled to [0, 1] over 16.5 stops; 20/33 is middle grey.
+/// Returns: from 0 to 1 but for rounding: 0.5 for middle grey, where its slope is 2.
+/// Source: Sobotka, AgX, 2022: sigmoids of the powers 3 and 3.25 that reach the corners; in closed form, of which others carry polynomials that are off by 0.006 and 0.018.
+/// Edges: `x` outside [0, 1] is clamped.
+/// Error model: absolute 2^-19.
+float agx_curve(float x) {
+    float d = clamp(x, 0.0, 1.0) - 0.60606061;
+    // The distance over the scale that takes each branch to its corner.
+    if (d < 0.0) {
+        float u = -3.9041349 * d;
+        return 0.5 - 0.51227738 * u / pow(1.0 + u * u * u, 0.33333333);
+    }
+    float w = 3.6936886 * d;
+    return 0.5 + 0.54146416 * w / pow(1.0 + safe_pow(w, 3.25), 0.30769231);
+}
+
+/// The AgX picture: contrasts of the film, colours that go to white as they grow bright.
+///
+/// Parameters: `c` linear colour, Rec. 709, at least 0; 0.18 is middle grey.
+/// Returns: linear colour, Rec. 709, [0, 1].
+/// Source: Sobotka, AgX, 2022, with the matrices of Blender 4 over Rec. 2020 as three.js and Filament carry them, and the curve in closed form.
+/// Edges: channels below 0 count as 0; light is black 12.5 stops below middle grey's 0.18 and white 6.5 above.
+/// Error model: absolute 2^-16.
+vec3 agx(vec3 c) {
+    vec3 wide = mat3(
+        vec3(0.6274039, 0.069097288, 0.016391439),
+        vec3(0.32928303, 0.9195404, 0.08801331),
+        vec3(0.043313067, 0.011362316, 0.89559525)
+    ) * max(c, vec3(0.0));
+    vec3 inset = mat3(
+        vec3(0.85662715, 0.13731897, 0.11189821),
+        vec3(0.09512124, 0.76124199, 0.0767994),
+        vec3(0.048251606, 0.10143904, 0.81130237)
+    ) * wide;
+    vec3 stops = (log2(max(inset, vec3(1e-10))) + 12.47393) / 16.499999;
+    vec3 toned = vec3(agx_curve(stops.x), agx_curve(stops.y), agx_curve(stops.z));
+    vec3 outset = mat3(
+        vec3(1.1271006, -0.14132976, -0.14132976),
+        vec3(-0.11060664, 1.1578237, -0.11060664),
+        vec3(-0.01649394, -0.01649394, 1.2519364)
+    ) * toned;
+    vec3 shown = vec3(safe_pow(outset.x, 2.2), safe_pow(outset.y, 2.2), safe_pow(outset.z, 2.2));
+    vec3 narrow = mat3(
+        vec3(1.660491, -0.12455047, -0.018150763),
+        vec3(-0.58764114, 1.1328999, -0.1005789),
+        vec3(-0.072849864, -0.0083494221, 1.1187297)
+    ) * shown;
+    return clamp(narrow, vec3(0.0), vec3(1.0));
+}
+
+/// The tone curve that leaves the colours of products alone: it bends highlights only.
+///
+/// Parameters: `c` linear colour, at least 0.
+/// Returns: linear colour, from 0 to 1 but for rounding.
+/// Source: Khronos Group, PBR Neutral Tone Mapper, 2024.
+/// Edges: channels below 0 count as 0, above 1e10 as that.
+/// Error model: absolute 2^-20.
+vec3 neutral(vec3 c) {
+    vec3 positive = clamp(c, vec3(0.0), vec3(1e10));
+    float least = min(min(positive.x, positive.y), positive.z);
+    // What a dielectric reflects at normal incidence is taken away.
+    float offset = (least < 0.08 ? least - 6.25 * least * least : 0.04);
+    vec3 base = positive - offset;
+    float peak = max(max(base.x, base.y), base.z);
+    if (!(peak >= 0.76)) {
+        return base;
+    }
+    float bent = 1.0 - 0.0576 / (peak - 0.52);
+    float white = 1.0 - 1.0 / (0.15 * (peak - bent) + 1.0);
+    return mix(base * (bent / peak), vec3(bent), white);
+}
+
+/// The light that `neutral` shows as a colour.
+///
+/// Parameters: `c` linear colour, [0, 1].
+/// Returns: linear colour, at least 0.
+/// Source: Khronos Group, PBR Neutral Tone Mapper, 2024, its inverse.
+/// Edges: channels are clamped to [0, 1]; the largest counts as at most 0.9999, for which the light is 576.
+/// Error model: relative 2^-18/(1 - m)^2, with m the largest channel, above 0.76; absolute 2^-12 near black.
+vec3 neutral_inverse(vec3 c) {
+    vec3 base = clamp(c, vec3(0.0), vec3(0.9999));
+    float peak = max(max(base.x, base.y), base.z);
+    if (peak > 0.76) {
+        float old = 0.0576 / (1.0 - peak) + 0.52;
+        float less = 0.15 * (old - peak) + 1.0;
+        // Undoes the mix with white, then the bend.
+        base = max((base + (1.0 / less - 1.0) * peak) * less, vec3(0.0)) * (old / peak);
+    }
+    float least = min(min(base.x, base.y), base.z);
+    float offset = (least < 0.04 ? sqrt(least * 0.16) - least : 0.04);
+    return base + offset;
+}
+
+/// The ACES picture by a fit of its reference transforms with their colours.
+///
+/// Parameters: `c` linear colour, Rec. 709, at least 0; often divided by 0.6 before, for the exposure of other curves.
+/// Returns: linear colour, Rec. 709, [0, 1].
+/// Source: Hill, "BakingLab", 2016: the reference rendering and output transforms fitted between two matrices.
+/// Edges: channels below 0 count as 0, above 1e6 as that; black, which the fit makes -0.0004, is 0.
+/// Error model: absolute 2^-20.
+vec3 aces_hill(vec3 c) {
+    vec3 v = mat3(
+        vec3(0.59719, 0.076, 0.0284),
+        vec3(0.35458, 0.90834, 0.13383),
+        vec3(0.04823, 0.01566, 0.83777)
+    ) * clamp(c, vec3(0.0), vec3(1e6));
+    vec3 fitted = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081);
+    vec3 shown = mat3(
+        vec3(1.60475, -0.10208, -0.00327),
+        vec3(-0.53108, 1.10813, -0.07276),
+        vec3(-0.07367, -0.00605, 1.07602)
+    ) * fitted;
+    return clamp(shown, vec3(0.0), vec3(1.0));
+}
+
+/// One channel of a filmic curve with a toe and a shoulder, before it is scaled to white.
+///
+/// Parameters: `x` linear light, at least 0.
+/// Returns: a number that rises from 0 towards 0.93.
+/// Source: Hable, "Uncharted 2: HDR Lighting", Game Developers Conference, 2010.
+/// Edges: light below 0 counts as 0, above 1e6 as that.
+/// Error model: absolute 2^-22.
+float hable_channel(float x) {
+    float v = clamp(x, 0.0, 1e6);
+    return (v * (0.15 * v + 0.05) + 0.004) / (v * (0.15 * v + 0.5) + 0.06) - 0.066666667;
+}
+
+/// A filmic curve with a toe and a shoulder, by channel.
+///
+/// Parameters: `c` linear colour, at least 0.
+/// Returns: linear colour, [0, 1]: white for light of 5.6.
+/// Source: Hable, "Uncharted 2: HDR Lighting", Game Developers Conference, 2010: exposure 2, white 11.2.
+/// Edges: channels below 0 count as 0.
+/// Error model: absolute 2^-21.
+vec3 hable(vec3 c) {
+    vec3 curve = vec3(hable_channel(2.0 * c.x), hable_channel(2.0 * c.y), hable_channel(2.0 * c.z));
+    return clamp(curve * 1.3790642, vec3(0.0), vec3(1.0));
+}
+
+/// Reinhard's curve with a light that is shown as white.
+///
+/// Parameters: `c` linear colour, at least 0; `white` least light that is white, above 0.
+/// Returns: `c*(1 + c/white^2)/(1 + c)`, by channel, linear, from 0 to 1 but for rounding.
+/// Source: Reinhard, Stark, Shirley, Ferwerda, "Photographic Tone Reproduction for Digital Images", 2002, equation 4.
+/// Edges: channels below 0 count as 0; a white below 0.001 counts as that.
+/// Error model: 5 ULP.
+vec3 reinhard_extended(vec3 c, float white) {
+    float least = max(white, 0.001);
+    vec3 x = clamp(c, vec3(0.0), vec3(least));
+    return x * (1.0 + x / (least * least)) / (1.0 + x);
+}
+
+/// A curve of a toe, a line and a shoulder, one channel.
+///
+/// Parameters: `x` linear light, at least 0.
+/// Returns: [0, 1]: a line of slope 1 from 0.22 on, over 0.312.
+/// Source: Uchimura, "HDR Theory and Practice", CEDEC, 2017: P 1, a 1, m 0.22, l 0.4, c 1.33, b 0.
+/// Edges: light below 0 counts as 0.
+/// Error model: absolute 2^-20.
+float uchimura_channel(float x) {
+    float toe = 0.22 * safe_pow(x / 0.22, 1.33);
+    float shoulder = 1.0 - 0.468 * exp(-2.1367521 * (x - 0.532));
+    float from_toe = smoothstep(0.0, 0.22, x);
+    return (x >= 0.532 ? shoulder : mix(toe, x, from_toe));
+}
+
+/// A curve of a toe, a line and a shoulder.
+///
+/// Parameters: `c` linear colour, at least 0.
+/// Returns: linear colour, [0, 1].
+/// Source: Uchimura, "HDR Theory and Practice", CEDEC, 2017, by channel.
+/// Edges: channels below 0 count as 0.
+/// Error model: absolute 2^-20.
+vec3 uchimura(vec3 c) {
+    return vec3(uchimura_channel(c.x), uchimura_channel(c.y), uchimura_channel(c.z));
+}
+
+#ifdef LAMPLIGHT_PREFIX
+#include "../prefix.glsl"
+#endif
+
+#endif

@@ -1,0 +1,145 @@
+//! Sources: Sobotka, AgX, 2022, with the matrices of Blender 4; Khronos Group, PBR Neutral, 2024;
+//! Hill, 2016; Hable, 2010; Reinhard et al., 2002, equation 4; Uchimura, 2017.
+
+use super::{Arguments, Entry, Expected};
+use glam::{DMat3, DVec2, DVec3};
+
+pub const REFERENCES: Entry = Entry {
+    module: "color::tonemap",
+    functions: &[
+        ("agx_curve", |a| agx_curve(a.f64()).into()),
+        ("agx", |a| agx(a.vec3()).into()),
+        ("neutral", |a| neutral(a.vec3()).into()),
+        ("neutral_inverse", |a| neutral_inverse(a.vec3()).into()),
+        ("aces_hill", |a| aces_hill(a.vec3()).into()),
+        ("hable_channel", |a| hable(a.f64()).into()),
+        ("hable", |a| a.vec3().map(|x| (hable(2.0 * x) / hable(11.2)).clamp(0.0, 1.0)).into()),
+        ("reinhard_extended", reinhard_extended),
+        ("uchimura_channel", |a| uchimura(a.f64()).into()),
+        ("uchimura", |a| a.vec3().map(uchimura).into()),
+    ],
+};
+
+/// A sigmoid of a power through (20/33, 1/2) with the slope 2, scaled so that it reaches a corner.
+fn agx_curve(x: f64) -> f64 {
+    let (pivot, middle, slope) = (20.0 / 33.0, 0.5, 2.0);
+    let d = x.clamp(0.0, 1.0) - pivot;
+    let (sign, span, power): (f64, f64, f64) =
+        if d < 0.0 { (-1.0, pivot, 3.0) } else { (1.0, 1.0 - pivot, 3.25) };
+    let corner = (slope * span).powf(-power) * ((slope * span / middle).powf(power) - 1.0);
+    let scale = corner.powf(-1.0 / power);
+    let u = slope * d.abs() / scale;
+    middle + sign * scale * u / (1.0 + u.powf(power)).powf(1.0 / power)
+}
+
+/// From a colour space's primaries and white to XYZ.
+fn to_xyz(primaries: [DVec2; 3]) -> DMat3 {
+    let xyz = |c: DVec2| DVec3::new(c.x / c.y, 1.0, (1.0 - c.x - c.y) / c.y);
+    let columns = DMat3::from_cols(xyz(primaries[0]), xyz(primaries[1]), xyz(primaries[2]));
+    let white = columns.inverse() * xyz(DVec2::new(0.3127, 0.3290));
+    columns * DMat3::from_diagonal(white)
+}
+
+/// Linear Rec. 709 as linear Rec. 2020, from the primaries of both.
+fn rec2020() -> DMat3 {
+    let from = [DVec2::new(0.64, 0.33), DVec2::new(0.3, 0.6), DVec2::new(0.15, 0.06)];
+    let to = [DVec2::new(0.708, 0.292), DVec2::new(0.17, 0.797), DVec2::new(0.131, 0.046)];
+    to_xyz(to).inverse() * to_xyz(from)
+}
+
+/// Colours drawn together, the curve over logarithms, and drawn apart again.
+fn agx(c: DVec3) -> DVec3 {
+    let inset = DMat3::from_cols_array(&[
+        0.856627153315983, 0.137318972929847, 0.11189821299995,
+        0.0951212405381588, 0.761241990602591, 0.0767994186031903,
+        0.0482516061458583, 0.101439036467562, 0.811302368396859,
+    ]);
+    let outset = DMat3::from_cols_array(&[
+        0.899796955911611, 0.11142098895748, 0.11142098895748,
+        0.0871996192028351, 0.875575586156966, 0.0871996192028349,
+        0.013003424885555, 0.0130034248855548, 0.801379391839686,
+    ]);
+    let light = inset * (rec2020() * c.clamp(DVec3::ZERO, DVec3::splat(1e10)));
+    let (low, high) = ((0.18f64).log2() - 10.0, (0.18f64).log2() + 6.5);
+    let toned = light.map(|x| agx_curve((x.max(1e-10).log2() - low) / (high - low)));
+    let shown = (outset.inverse() * toned).map(|x| x.max(0.0).powf(2.2));
+    (rec2020().inverse() * shown).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+const START: f64 = 0.8 - 0.04;
+const DESATURATION: f64 = 0.15;
+
+/// As it is specified: an offset, a compressed peak, and white mixed in.
+fn neutral(c: DVec3) -> DVec3 {
+    let c = c.clamp(DVec3::ZERO, DVec3::splat(1e10));
+    let least = c.min_element();
+    let c = c - if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
+    let peak = c.max_element();
+    if peak < START {
+        return c;
+    }
+    let d = 1.0 - START;
+    let bent = 1.0 - d * d / (peak + d - START);
+    let white = 1.0 - 1.0 / (DESATURATION * (peak - bent) + 1.0);
+    (c * bent / peak).lerp(DVec3::splat(bent), white)
+}
+
+/// Solved backwards, step by step.
+fn neutral_inverse(c: DVec3) -> DVec3 {
+    let mut c = c.clamp(DVec3::ZERO, DVec3::splat(f64::from(0.9999f32)));
+    let bent = c.max_element();
+    if bent > START {
+        let d = 1.0 - START;
+        let peak = d * d / (1.0 - bent) - d + START;
+        let kept = 1.0 / (DESATURATION * (peak - bent) + 1.0);
+        c = ((c - bent * (1.0 - kept)) / kept).max(DVec3::ZERO) * peak / bent;
+    }
+    let least = c.min_element();
+    // least = 6.25*x^2 for x below 0.08.
+    c + if least < 0.04 { (least / 6.25).sqrt() - least } else { 0.04 }
+}
+
+/// The matrices row by row, the rational curve between them.
+fn aces_hill(c: DVec3) -> DVec3 {
+    let enter = DMat3::from_cols_array(&[
+        0.59719, 0.35458, 0.04823, 0.07600, 0.90834, 0.01566, 0.02840, 0.13383, 0.83777,
+    ]);
+    let leave = DMat3::from_cols_array(&[
+        1.60475, -0.53108, -0.07367, -0.10208, 1.10813, -0.00605, -0.00327, -0.07276, 1.07602,
+    ]);
+    let v = enter.transpose() * c.clamp(DVec3::ZERO, DVec3::splat(1e6));
+    let fitted =
+        v.map(|v| (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081));
+    (leave.transpose() * fitted).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+/// ((x*(A*x + C*B) + D*E)/(x*(A*x + B) + D*F)) - E/F.
+fn hable(x: f64) -> f64 {
+    let [a, b, c, d, e, f] = [0.15, 0.50, 0.10, 0.20, 0.02, 0.30];
+    let x = x.clamp(0.0, 1e6);
+    (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f
+}
+
+fn reinhard_extended(a: &mut Arguments<'_>) -> Expected {
+    let (c, white) = (a.vec3(), a.f64().max(f64::from(0.001f32)));
+    c.map(|x| {
+        let x = x.max(0.0);
+        if x >= white { 1.0 } else { x * (1.0 + x / white.powi(2)) / (1.0 + x) }
+    })
+    .into()
+}
+
+/// The published form, with its weights of the toe, the line and the shoulder.
+fn uchimura(x: f64) -> f64 {
+    let (p, a, m, l, c) = (1.0, 1.0, 0.22, 0.4, 1.33);
+    let x = x.max(0.0);
+    let l0 = (p - m) * l / a;
+    let (s0, s1) = (m + l0, m + a * l0);
+    let c2 = a * p / (p - s1);
+    let t = (x / m).clamp(0.0, 1.0);
+    let w0 = 1.0 - t * t * (3.0 - 2.0 * t);
+    let w2 = f64::from(u8::from(x >= m + l0));
+    let toe = m * (x / m).powf(c);
+    let shoulder = p - (p - s1) * (-c2 * (x - s0) / p).exp();
+    (toe * w0 + (m + a * (x - m)) * (1.0 - w0 - w2) + shoulder * w2).clamp(0.0, 1.0)
+}

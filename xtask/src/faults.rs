@@ -1,0 +1,156 @@
+//! `cargo xtask faults`: calls of the system that fail, and runs that are killed at them.
+//!
+//! A small bundle is generated over an older one, once for each call and each of its occurrences,
+//! with that occurrence failing or ending the run (`strace` injects it). Whatever happens, the
+//! folder holds a whole bundle afterwards: the older or the newer one. Panics are findings too.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use crate::generate::root;
+use crate::{Failure, Outcome};
+
+/// Calls that name a file, or that write to one.
+const CALLS: &[&str] =
+    &["openat", "write", "rename", "mkdir", "unlink", "rmdir", "statx", "fsync", "flock"];
+
+/// What is done at a call: a name, and `strace`'s words for it.
+const FAULTS: &[(&str, &str)] = &[
+    ("disk full", "error=ENOSPC"),
+    ("input or output error", "error=EIO"),
+    ("not permitted", "error=EACCES"),
+    ("killed", "signal=KILL"),
+];
+
+/// Faults of one kind at one call: later occurrences are alike.
+const MOST: usize = 40;
+
+const MANIFEST: &str = "[program.small]\nwesl = \"small.wesl\"\ntargets = [\"wgsl\"]\n\
+    [program.small.axis]\ncount = { values = [1, 2, 3] }\n";
+
+/// Injects every fault; a bundle that is not whole afterwards is exit code 3.
+pub fn run(arguments: &[String]) -> Outcome {
+    if !arguments.is_empty() {
+        return Err(Failure::usage("usage: cargo xtask faults"));
+    }
+    let package = Package::new()?;
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut findings = Vec::new();
+    for call in CALLS {
+        for (fault, words) in FAULTS {
+            for occurrence in 1..=MOST {
+                let inject = format!("inject={call}:{words}:when={occurrence}");
+                match package.injected(call, &inject, occurrence)? {
+                    Injected::No => break,
+                    Injected::Whole => *counts.entry(fault).or_default() += 1,
+                    Injected::Wrong(reason) => {
+                        *counts.entry(fault).or_default() += 1;
+                        println!("{fault} at {call} {occurrence}: {reason}");
+                        findings.push(reason);
+                    }
+                }
+            }
+        }
+    }
+    for (fault, count) in &counts {
+        println!("{fault:22} {count:6}");
+    }
+    println!("{:22} {:6}, {} findings", "all", counts.values().sum::<usize>(), findings.len());
+    match findings.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::check(format!("{} findings", findings.len()))),
+    }
+}
+
+/// What came of a run with a fault.
+enum Injected {
+    /// It made fewer such calls.
+    No,
+    Whole,
+    Wrong(String),
+}
+
+/// A package with a bundle.
+struct Package {
+    folder: PathBuf,
+    program: PathBuf,
+}
+
+impl Package {
+    fn new() -> Result<Self, Failure> {
+        let program = root().join("target/debug/lamplight");
+        if !program.is_file() {
+            return Err(Failure::environment("build it first: cargo build"));
+        }
+        let folder = root().join("target/faults");
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).map_err(environment)?;
+        fs::write(folder.join("lamplight.toml"), MANIFEST).map_err(environment)?;
+        let package = Self { folder, program };
+        package.change(0)?;
+        let made = package.command().output().map_err(environment)?;
+        match made.status.success() {
+            true => Ok(package),
+            false => Err(Failure::environment(String::from_utf8_lossy(&made.stderr).into_owned())),
+        }
+    }
+
+    fn change(&self, number: usize) -> Outcome {
+        let text = format!(
+            "@fragment fn fs_main() -> @location(0) vec4f {{
+                return vec4f(f32(constants::count), {number}.0, 0.0, 1.0);
+            }}"
+        );
+        fs::write(self.folder.join("small.wesl"), text).map_err(environment)
+    }
+
+    fn command(&self) -> Command {
+        let mut command = Command::new(&self.program);
+        command.args(["gen", "--cache", "cache", "-o", "bundle"]);
+        self.prepared(command)
+    }
+
+    fn prepared(&self, mut command: Command) -> Command {
+        command.current_dir(&self.folder).env("RAYON_NUM_THREADS", "1").stdin(Stdio::null());
+        command
+    }
+
+    /// Runs with a fault, and looks at the bundle.
+    fn injected(&self, call: &str, inject: &str, number: usize) -> Result<Injected, Failure> {
+        self.change(number + 1)?;
+        let trace = self.folder.join("trace");
+        let mut command = Command::new("strace");
+        command.args(["-f", "-qq", "-o"]).arg(&trace).args(["-e", &format!("trace={call}")]);
+        command.args(["-e", inject]).arg(&self.program);
+        command.args(["gen", "--cache", "cache", "-o", "bundle"]);
+        let output = self.prepared(command).output().map_err(environment)?;
+        let is_killed = output.status.code().is_none_or(|code| code > 128);
+        if !is_killed && !was_injected(&trace) {
+            return Ok(Injected::No);
+        }
+        Ok(self.judged(&output).map_or(Injected::Whole, Injected::Wrong))
+    }
+
+    /// What is wrong after a run.
+    fn judged(&self, output: &Output) -> Option<String> {
+        let said = String::from_utf8_lossy(&output.stderr);
+        if said.contains("panicked") || said.contains("internal error") {
+            return Some(format!("the run panics: {said}"));
+        }
+        let mut command = Command::new(&self.program);
+        command.args(["bundle", "verify", "bundle"]);
+        let looked = self.prepared(command).output().ok()?;
+        let reason = String::from_utf8_lossy(&looked.stderr).into_owned();
+        (!looked.status.success()).then_some(reason)
+    }
+}
+
+fn was_injected(trace: &Path) -> bool {
+    fs::read_to_string(trace).is_ok_and(|text| text.contains("(INJECTED)"))
+}
+
+fn environment(error: std::io::Error) -> Failure {
+    Failure::environment(error.to_string())
+}

@@ -1,0 +1,152 @@
+//! Surfaces that are fuzzed from outside: what a command does with a file, in a process of its own
+//! that may use little memory and time.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use super::mutate::{self, Random};
+use crate::generate::root;
+use crate::{Failure, Outcome};
+
+/// A command over a file.
+pub struct Surface {
+    pub name: &'static str,
+    file: &'static str,
+    arguments: &'static [&'static str],
+    /// Files beside it.
+    beside: &'static [(&'static str, &'static str)],
+    /// Folder of the repository with valid files, and how they end.
+    corpus: (&'static str, &'static str),
+    words: &'static str,
+}
+
+const MODULE: &str = "fn one(x: f32) -> f32 { return x; }\n\
+    fn four(v: vec4f) -> f32 { return v.x; }\nfn nothing() -> f32 { return 1.0; }\n";
+
+/// Every surface.
+pub const SURFACES: &[Surface] = &[
+    Surface {
+        name: "cases",
+        file: "m.toml",
+        arguments: &["check", "m.toml"],
+        beside: &[("m.wesl", MODULE)],
+        corpus: ("tests/regressions/cases", ""),
+        words: "[[case]] function inputs values grid log random unit hemisphere grazing same around \
+            special count ulps seed formula rows expect oracle laws range rising where near margin \
+            mode \"zip\" \"x\" \"v\" { } [ ] = , 0 1 -1 1e30 nan inf 1000 1048576 4294967295",
+    },
+    Surface {
+        name: "picture",
+        file: "e.hdr",
+        arguments: &[
+            "render",
+            "hpg_4_spot",
+            "--executor",
+            "eval",
+            "--size",
+            "4x4",
+            "--environment",
+            "e.hdr",
+            "--force",
+            "-o",
+            "out.png",
+        ],
+        beside: &[],
+        corpus: ("tests/regressions/picture", ""),
+        words: "#?RADIANCE FORMAT=32-bit_rle_rgbe -Y +X 0 1 8 4294967295 \n EXPOSURE=",
+    },
+    Surface {
+        name: "package",
+        file: "wesl.toml",
+        arguments: &["compose", "m.wesl"],
+        beside: &[("m.wesl", MODULE)],
+        corpus: ("tests/regressions/package", ""),
+        words: "[package] name root edition [dependencies] path = \"..\" \"/etc\" \".\" \"m\" { }",
+    },
+];
+
+/// Address space of a command in KiB: 1 GiB, and the stacks that it reserves.
+const MEMORY_KIB: u64 = 2 << 20;
+/// A command must not take longer.
+const LONGEST: Duration = Duration::from_secs(5);
+
+/// Fuzzes a surface for its share of the time; the number of findings.
+pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure> {
+    let program = root().join("target/debug/lamplight");
+    if !program.is_file() {
+        return Err(Failure::environment("build it first: cargo build"));
+    }
+    let folder = root().join("target/fuzz/commands").join(surface.name);
+    fs::create_dir_all(&folder).map_err(environment)?;
+    for (name, text) in surface.beside {
+        fs::write(folder.join(name), text).map_err(environment)?;
+    }
+    let corpus = mutate::files(&root().join(surface.corpus.0), surface.corpus.1);
+    let words: Vec<&str> = surface.words.split(' ').filter(|word| !word.is_empty()).collect();
+    let (mut random, started) = (Random(seed), Instant::now());
+    let (mut inputs, mut findings) = (0u64, 0);
+    while started.elapsed().as_secs() < seconds {
+        let input = mutate::mutated(&mut random, &corpus, &words);
+        fs::write(folder.join(surface.file), &input).map_err(environment)?;
+        inputs += 1;
+        if let Some(reason) = judge(&program, &folder, surface.arguments)? {
+            findings += 1;
+            keep(surface, &input, &reason)?;
+        }
+    }
+    println!("{}: {inputs} inputs, {findings} findings", surface.name);
+    Ok(findings)
+}
+
+/// What is wrong with a run.
+fn judge(program: &Path, folder: &Path, arguments: &[&str]) -> Result<Option<String>, Failure> {
+    let limited = format!("ulimit -v {MEMORY_KIB}; exec \"$@\"");
+    let said = fs::File::create(folder.join("said")).map_err(environment)?;
+    let mut child = Command::new("sh")
+        .args(["-c", &limited, "sh"])
+        .arg(program)
+        .args(arguments)
+        .current_dir(folder)
+        .env("RAYON_NUM_THREADS", "1")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(said)
+        .spawn()
+        .map_err(environment)?;
+    let started = Instant::now();
+    let status = loop {
+        match child.try_wait().map_err(environment)? {
+            Some(status) => break status,
+            None if started.elapsed() > LONGEST => {
+                let _ = child.kill();
+                let _ = child.wait();
+                return Ok(Some(format!("takes more than {LONGEST:?}")));
+            }
+            None => std::thread::sleep(Duration::from_millis(2)),
+        }
+    };
+    let said = fs::read(folder.join("said")).map_err(environment)?;
+    let said = String::from_utf8_lossy(&said);
+    let is_bad = said.contains("panicked") || said.contains("internal error");
+    Ok(match status.code() {
+        None => Some(format!("aborts ({status})")),
+        Some(code) if code > 128 => Some(format!("aborts ({status})")),
+        Some(_) if is_bad => Some(format!("panics: {}", said.lines().next().unwrap_or_default())),
+        Some(_) => None,
+    })
+}
+
+fn keep(surface: &Surface, input: &[u8], reason: &str) -> Outcome {
+    println!("{}: {reason} ({} bytes)", surface.name, input.len());
+    let folder = root().join("target/fuzz/findings").join(surface.name);
+    fs::create_dir_all(&folder).map_err(environment)?;
+    let name: String =
+        reason.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).take(80).collect();
+    fs::write(folder.join(name), input).map_err(environment)
+}
+
+fn environment(error: std::io::Error) -> Failure {
+    Failure::environment(error.to_string())
+}
