@@ -139,7 +139,8 @@ fn compare(reference: &Reference, words: &[u32; 12], found: &[u32]) -> Result<()
             let found: Vec<f64> =
                 found.iter().map(|word| f64::from(f32::from_bits(*word))).collect();
             let is_off = |(found, expected): (&f64, &f64)| {
-                !((found - expected).abs() <= share * expected.abs() + least)
+                let off = (found - expected).abs();
+                off.is_nan() || off > share * expected.abs() + least
             };
             match found.iter().zip(&expected).position(is_off) {
                 None if found.len() == expected.len() => Ok(()),

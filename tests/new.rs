@@ -24,9 +24,10 @@ use crate::snapshot::root;
 use crate::{house, scene, shaderlib};
 
 type Outcome = Result<(), Failed>;
+type Run = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let all: [(&str, fn() -> Outcome); 8] = [
+    let all: [(&str, Run); 8] = [
         ("function", function),
         ("axis_value", axis_value),
         ("diagnostic", diagnostic),

@@ -114,10 +114,10 @@ impl Storage for Folder {
         let path = self.path.join(name);
         let scratch = self.scratch()?;
         self.make_folders(name)?;
-        if let Ok(found) = fs::symlink_metadata(&path) {
-            if !found.is_file() || found.len() > 0 && !is_record(&path) {
-                return Err(format!("`{}` is no record of a cache", path.display()));
-            }
+        if let Ok(found) = fs::symlink_metadata(&path)
+            && (!found.is_file() || found.len() > 0 && !is_record(&path))
+        {
+            return Err(format!("`{}` is no record of a cache", path.display()));
         }
         self.put_file(scratch, &path, bytes)
     }

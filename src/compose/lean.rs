@@ -1,8 +1,8 @@
 //! A text without its comments and its layout: the same program in a third of the bytes.
 //!
-//! To naga comments and blanks are the same, so that what it makes of a lean text differs in its
-//! spans only, and nothing that is written has spans. Texts that differ in comments or in layout
-//! alone are compiled once, and an edited comment compiles nothing.
+//! naga ignores comments and layout. So the outputs of a lean text are those of the whole text;
+//! only naga's spans differ, and no output holds spans. Texts that differ in comments or layout
+//! alone are compiled once, and after an edited comment nothing is compiled.
 //!
 //! Type aliases are replaced by what they stand for. naga gives an alias a type of its own, and
 //! Metal would take an array and its alias for two types.
@@ -11,14 +11,15 @@ use std::ops::Range;
 
 use super::{Composed, Part, PartKind, SourceMap};
 use crate::bundle::Language;
+use crate::parse::wesl::blank::{block_comment, is_blank, line_comment};
 
-/// Aliases within each other after which they stay as they are, for naga to report.
+/// The most aliases within each other that are replaced. Deeper ones stay, so that naga reports them.
 const ALIAS_DEPTH: usize = 64;
 
 /// Bytes that the aliases of one part may be expanded to.
 const ALIAS_BYTES: usize = 1 << 16;
 
-/// The text to compile. It leads nowhere: for errors, validate the whole text.
+/// The text to compile. It has no map to the author's files: for errors, validate the whole text.
 pub fn lean(composed: &Composed) -> Composed {
     let mut text = String::with_capacity(composed.text.len() / 2);
     let mut parts = Vec::with_capacity(composed.parts.len());
@@ -102,7 +103,7 @@ fn append(
 /// Where the type begins in the declaration of an alias: after the `=` that follows its name.
 fn declares(declaration: &str, name: &str) -> Option<usize> {
     let squeezed = wgsl(declaration);
-    // Comments may hold anything, so the place is found by what it must look like.
+    // A comment may hold an `=` too, so each one is tried: the right one leaves the type behind it.
     let (_, target) = squeezed.split_once('=')?;
     let plain = squeezed.strip_prefix("alias ")?.trim_start().strip_prefix(name)?;
     let ends = declaration.rfind(';')?;
@@ -113,15 +114,6 @@ fn declares(declaration: &str, name: &str) -> Option<usize> {
     });
     fitting.next().filter(|_| is_plain)
 }
-
-/// What WGSL calls blank: line breaks and the marks of direction among it.
-const BLANKS: [char; 11] = [
-    ' ', '\t', '\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{200e}', '\u{200f}', '\u{2028}',
-    '\u{2029}',
-];
-
-/// Each of WGSL's line breaks ends a line comment.
-const BREAKS: [char; 7] = ['\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{2028}', '\u{2029}'];
 
 /// WGSL without comments and layout. It has no strings: `//` and `/*` always begin a comment, and
 /// block comments nest.
@@ -158,7 +150,7 @@ fn token(text: &str) -> usize {
             b'/' if comment(&text[at..]).is_some() => return at,
             b'!'..=b'~' => 1,
             _ => match text[at..].chars().next() {
-                Some(found) if !BLANKS.contains(&found) => found.len_utf8(),
+                Some(found) if !is_blank(found) => found.len_utf8(),
                 _ => return at,
             },
         };
@@ -177,7 +169,7 @@ fn gap(text: &str) -> usize {
             b'!'..=b'.' | b'0'..=b'~' => return at,
             _ => match (comment(&text[at..]), text[at..].chars().next()) {
                 (Some(length), _) => length,
-                (None, Some(found)) if BLANKS.contains(&found) => found.len_utf8(),
+                (None, Some(found)) if is_blank(found) => found.len_utf8(),
                 _ => return at,
             },
         };
@@ -193,39 +185,10 @@ fn stands_alone(found: u8) -> bool {
 /// Bytes of the comment that the text begins with.
 fn comment(text: &str) -> Option<usize> {
     match text.as_bytes() {
-        [b'/', b'/', ..] => Some(line(text)),
-        [b'/', b'*', ..] => Some(block(text)),
+        [b'/', b'/', ..] => Some(line_comment(text)),
+        [b'/', b'*', ..] => Some(block_comment(text).0),
         _ => None,
     }
-}
-
-fn line(text: &str) -> usize {
-    // Looked for byte by byte as long as these are characters.
-    let first = text
-        .bytes()
-        .position(|byte| matches!(byte, b'\n'..=b'\r') || !byte.is_ascii())
-        .unwrap_or(text.len());
-    text[first..].find(BREAKS).map_or(text.len(), |more| first + more)
-}
-
-fn block(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let (mut depth, mut at) = (0, 0);
-    while at < bytes.len() {
-        match (bytes[at], bytes.get(at + 1)) {
-            (b'/', Some(b'*')) => depth += 1,
-            (b'*', Some(b'/')) => depth -= 1,
-            _ => {
-                at += 1;
-                continue;
-            }
-        }
-        at += 2;
-        if depth == 0 {
-            break;
-        }
-    }
-    at
 }
 
 /// GLSL without comments and layout. Directives end with their line, so lines stay; block comments
@@ -249,7 +212,8 @@ pub fn glsl(text: &str) -> String {
     for line in plain.lines().filter(|line| !line.trim_ascii().is_empty()) {
         let is_directive = line.trim_ascii().starts_with('#');
         for word in line.split_ascii_whitespace() {
-            // A macro with parameters is another than one whose text is in brackets.
+            // A blank before a bracket matters in a directive: `#define F(x)` has a parameter,
+            // `#define F (x)` has none.
             if is_directive && !lean.ends_with('\n') && !lean.is_empty() {
                 lean.push(' ')
             } else {

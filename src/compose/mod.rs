@@ -1,4 +1,4 @@
-//! Weaves the modules that an entry point reaches into one text, with a map back to the authors'.
+//! Writes the modules that an entry point reaches as one text, with a map back to the authors' files.
 
 pub mod glsl;
 pub mod lean;
@@ -75,7 +75,7 @@ pub struct Composed {
 }
 
 impl Composed {
-    /// A text that no composition wrote: nothing in it leads to an author's file.
+    /// A text that was not composed: it has no map to an author's file.
     pub fn of_text(language: Language, stage: Option<Stage>, text: String) -> Self {
         Self {
             language,
@@ -115,7 +115,7 @@ pub fn code_lines(text: &str, part: Range<usize>) -> impl Iterator<Item = Range<
     })
 }
 
-/// A condition of an `#if` or `#elif`, and how it came out.
+/// A condition of an `#if` or `#elif`, with its value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Decision {
     /// The directive's line.

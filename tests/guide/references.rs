@@ -127,7 +127,9 @@ fn commands() -> Result<(), Failed> {
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let names: Vec<&str> = listed
         .take_while(|line| !line.is_empty())
-        .filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next())
+        // A line that is moved in further continues the one above.
+        .filter_map(|line| line.strip_prefix("  ").filter(|line| !line.starts_with(' ')))
+        .filter_map(|line| line.split_whitespace().next())
         .filter(|name| *name != "help")
         .collect();
     for name in names {

@@ -84,7 +84,7 @@ fn agrees(program: &mut Program, index: usize, text: &Text, variant: u32) -> Res
             let given = found[lane].targets[0].map(f32::from_bits);
             let is_off = |i: usize| {
                 let (given, wanted) = (f64::from(given[i]), wanted[lane][i].value());
-                !((given - wanted).abs() <= SHARE * (wanted.abs() + 40.0))
+                (given - wanted).is_nan() || (given - wanted).abs() > SHARE * (wanted.abs() + 40.0)
             };
             if (0..4).any(is_off) {
                 let arguments = &arguments[lane];

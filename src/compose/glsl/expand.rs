@@ -75,7 +75,7 @@ impl<'g, 's> Expander<'g, 's> {
     /// Appends the expansion of the whole input.
     pub fn run(&mut self, mut input: Input<'_>, out: &mut Vec<Tok>) -> Result<(), Fatal> {
         let floor = self.frames.len();
-        // Where a macro expanded to nothing, what stood before it stands before the next token.
+        // Where a macro expanded to nothing, the blanks before it come before the next token.
         let mut gap = None;
         loop {
             if self.frames.len() == floor {
@@ -151,7 +151,8 @@ impl<'g, 's> Expander<'g, 's> {
         }
     }
 
-    /// The next token, from expansions above `floor` first; a macro inside its own is painted.
+    /// The next token, from expansions above `floor` first. The name of a macro inside its own
+    /// expansion is marked, so that it is not expanded again.
     fn next(&mut self, floor: usize, input: &mut Input<'_>) -> Option<Tok> {
         let mut token = self.take(floor, input)?;
         if token.kind == Kind::Identifier && self.table.is_active(token.symbol) {

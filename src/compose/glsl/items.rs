@@ -92,7 +92,7 @@ fn names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     }
 }
 
-/// The same for what is no statement about names that there are already.
+/// The same for items other than `precision`, `invariant` and `precise` statements.
 fn declared_names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     let mut at = 0;
     let mut is_struct = false;

@@ -184,8 +184,8 @@ impl<'g> State<'g, '_> {
         }
     }
 
-    /// Goes on in the first branch whose condition holds. None is taken where a condition is
-    /// wrong: what stands in the others would give errors that say nothing.
+    /// Goes on in the first branch whose condition holds. If a condition has an error, no branch is
+    /// taken: errors in the others would only follow from it.
     fn choose(&mut self, module: usize, mut index: usize) -> Result<(), Fatal> {
         while let Some(Part::Directive(directive, span)) =
             self.graph.modules[module].parts.get(index)
@@ -390,7 +390,7 @@ impl<'g> State<'g, '_> {
         Ok(())
     }
 
-    /// A file that is broken as a whole is not read any further; its errors are given once.
+    /// A file that cannot be parsed is not read any further. Its errors are reported once.
     fn check_module(&mut self, module: usize) {
         let errors = &self.graph.modules[module].errors;
         if errors.is_empty() {

@@ -10,7 +10,7 @@ pub struct Reads<'s> {
     order: Vec<u16>,
     /// How often any was read.
     pub count: usize,
-    /// What a condition takes a macro for that is not defined.
+    /// The value of an undefined macro in a condition; an error if there is none.
     pub undeclared: Option<bool>,
 }
 

@@ -1,4 +1,4 @@
-//! Declarations that need themselves.
+//! Declarations that depend on themselves.
 
 use super::reach::{Dependency, Reached, Thing, name_of};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -65,7 +65,7 @@ fn search(
     }
 }
 
-/// Steps of a circle that are told.
+/// The most steps of a circle that a message lists.
 const TOLD: usize = 12;
 
 fn report(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) -> Diagnostic {

@@ -65,12 +65,12 @@ impl<'a> Evaluator<'a> {
         state(self, condition) == State::True
     }
 
-    /// Whether all hold; asks no further than the first that does not.
+    /// Whether all hold. Evaluation ends at the first that does not.
     pub fn all_hold(&mut self, node: u32, conditions: &[ConditionId]) -> bool {
         conditions.iter().all(|condition| self.holds(node, *condition))
     }
 
-    /// Visits the events of an item that count: uses of globals, cuts, and the nodes that go.
+    /// Visits the events of an item under these settings: uses of globals, cuts, and removed nodes.
     pub fn live(&mut self, node: u32, events: &[Event], mut visit: impl FnMut(&mut Self, Event)) {
         let mut at = 0;
         while let Some(event) = events.get(at) {
@@ -87,7 +87,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Whether a conditional local declaration is there to explain a use.
+    /// Whether a use means a local declaration whose condition holds.
     fn is_local(&mut self, node: u32, mut guard: Option<u32>) -> bool {
         let graph = self.graph;
         while let Some(index) = guard {

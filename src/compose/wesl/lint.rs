@@ -1,4 +1,4 @@
-//! Conditions that decide nothing.
+//! Lints of conditions: those that have the same value in every permutation.
 
 use super::evaluate::Evaluator;
 use crate::diagnostic::{Diagnostic, codes};
@@ -39,7 +39,7 @@ impl<'g> Outcomes<'g> {
         Self { graph, open: open.collect() }
     }
 
-    /// Whether another permutation can tell no more.
+    /// Whether no further permutation can change the result.
     pub fn is_settled(&self) -> bool {
         self.open.is_empty()
     }
@@ -70,7 +70,7 @@ impl<'g> Outcomes<'g> {
         })
     }
 
-    /// A warning for each condition that never had another outcome.
+    /// A warning for each condition that had one outcome only.
     pub fn warnings(&self) -> impl Iterator<Item = Diagnostic> {
         self.open.iter().filter(|condition| condition.held || condition.failed).filter_map(
             |condition| {
@@ -82,7 +82,7 @@ impl<'g> Outcomes<'g> {
     }
 }
 
-/// The warning about a condition that has always come out one way.
+/// The warning about a condition that always had the same value.
 pub fn constant(span: Span, held: bool) -> Diagnostic {
     let word = if held { "true" } else { "false" };
     let warning = Diagnostic::warning(

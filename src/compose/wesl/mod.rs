@@ -49,7 +49,7 @@ pub fn compose(
 }
 
 fn traced(graph: &Graph, errors: Diagnostics) -> Diagnostics {
-    // What several uses run into is told once.
+    // An error that several uses have is reported once.
     let mut known = BTreeSet::new();
     let is_new = |error: &Diagnostic| {
         error.labels.first().is_none_or(|label| known.insert((error.code.name, label.span)))

@@ -1,4 +1,4 @@
-//! Names in the output: as declared where nothing speaks against it, else the qualified path.
+//! Names in the output: as declared, or the qualified path where two things have the same name.
 
 use std::collections::HashSet;
 
@@ -25,14 +25,14 @@ impl Renames {
     }
 }
 
-/// How firmly a thing holds to its name.
+/// Which of two things with the same name keeps it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Hold {
-    /// Imported: gives it up for any other.
+    /// Imported: the other thing keeps the name.
     Loose,
-    /// Of the root module: gives it up only where keeping it would change what a use means.
+    /// Of the root module: renamed only where the name would change what a use means.
     Root,
-    /// An entry point or an override: the host knows it.
+    /// An entry point or an override: never renamed, since the host asks for it by name.
     Fixed,
 }
 
@@ -105,9 +105,9 @@ struct Table<'a> {
     claims: Vec<u32>,
     /// Used for something predeclared.
     free: Vec<bool>,
-    /// Who keeps it whatever comes.
+    /// The thing that is never renamed.
     firm: Vec<Option<Thing>>,
-    /// The last one that might give it up.
+    /// The last thing that may be renamed.
     loose: Vec<Option<Thing>>,
 }
 

@@ -3,6 +3,7 @@
 //! There is no syntax tree: composing needs items, scopes and conditions, and naga parses the
 //! composed text anyway.
 
+pub(crate) mod blank;
 mod body;
 mod condition;
 mod cursor;
@@ -25,10 +26,11 @@ use std::sync::Arc;
 
 use crate::source::SourceId;
 
-/// How many errors of one file are worth telling.
+/// The most errors of one file that are reported.
 const ERRORS: usize = 50;
 
-/// Parses a file. What is wrong with it is in [`Module::errors`]; the rest is as good as it gets.
+/// Parses a file. Its errors are in [`Module::errors`]. What follows an error may be missing from
+/// the rest.
 pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
     let mut module = Module {
         source,

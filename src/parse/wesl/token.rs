@@ -1,5 +1,6 @@
 //! Words, numbers, punctuation; every bracket knows its partner.
 
+use super::blank::{block_comment, is_blank, line_comment};
 use super::name::{Name, Names};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::{LIMITS, SourceId, Span};
@@ -155,22 +156,15 @@ impl Scanner<'_> {
     }
 
     fn line_comment(&mut self) {
-        let rest = &self.text[self.at..];
-        self.at += rest.find(is_line_break).unwrap_or(rest.len());
+        self.at += line_comment(&self.text[self.at..]);
     }
 
     fn block_comment(&mut self) -> Result<(), Diagnostic> {
         let start = self.at;
-        let mut depth = 0usize;
-        while self.at < self.bytes.len() {
-            match (self.bytes[self.at], self.peek(1)) {
-                (b'/', b'*') => (depth, self.at) = (depth + 1, self.at + 2),
-                (b'*', b'/') => (depth, self.at) = (depth - 1, self.at + 2),
-                _ => self.at += 1,
-            }
-            if depth == 0 {
-                return Ok(());
-            }
+        let (length, is_closed) = block_comment(&self.text[start..]);
+        self.at += length;
+        if is_closed {
+            return Ok(());
         }
         Err(Diagnostic::error(codes::UNTERMINATED_COMMENT, "a block comment is never closed")
             .at(Span::new(self.source, start..start + 2), "opened here")
@@ -260,12 +254,4 @@ impl Scanner<'_> {
             }
         }
     }
-}
-
-fn is_line_break(letter: char) -> bool {
-    matches!(letter, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
-}
-
-fn is_blank(letter: char) -> bool {
-    matches!(letter, '\u{85}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}')
 }

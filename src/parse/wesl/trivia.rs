@@ -1,6 +1,8 @@
-//! Which comments and blanks belong to what: they go where it goes.
+//! Which comments and blanks belong to an item. They are kept, moved and removed with it.
 
 use std::ops::Range;
+
+use super::blank::{block_comment, line_comment};
 
 /// Where an item's text starts: at the comments right above it, without a blank line between.
 ///
@@ -82,21 +84,8 @@ fn comment_lines(text: &str, before: u32, start: u32) -> u32 {
 
 fn comment_end(text: &str, at: usize, limit: usize) -> usize {
     let rest = &text[at..limit];
-    if rest.starts_with("//") {
-        return at + rest.find(['\n', '\r']).unwrap_or(rest.len());
+    match rest.starts_with("//") {
+        true => at + line_comment(rest),
+        false => at + block_comment(rest).0,
     }
-    let (mut depth, mut end) = (0usize, 0);
-    while end < rest.len() {
-        if rest[end..].starts_with("/*") {
-            (depth, end) = (depth + 1, end + 2);
-        } else if rest[end..].starts_with("*/") {
-            (depth, end) = (depth - 1, end + 2);
-            if depth == 0 {
-                break;
-            }
-        } else {
-            end += rest[end..].chars().next().map_or(1, char::len_utf8);
-        }
-    }
-    (at + end.max(1)).min(limit)
 }

@@ -137,7 +137,7 @@ fn albedo(
             let at_most = matches!(rule.wanted, Wanted::AtMost(_));
             let off = if at_most { (sum - wanted).max(0.0) } else { (sum - wanted).abs() };
             // No number is off, too.
-            if !(off <= rule.within) {
+            if off.is_nan() || off > rule.within {
                 verdict.broken += 1;
                 let most = if at_most { "at most " } else { "" };
                 verdict.example.get_or_insert_with(|| {
@@ -197,7 +197,7 @@ fn inverse(
         let wanted = &inputs[first..first + shape.words() as usize];
         let off = |(found, wanted): (&f64, &f64)| (found - wanted).abs() / wanted.abs().max(1.0);
         let worst = found.iter().zip(wanted).map(off).fold(0.0, nan_max);
-        if !(worst <= rule.within) || found.len() != wanted.len() {
+        if worst.is_nan() || worst > rule.within || found.len() != wanted.len() {
             verdict.broken += 1;
             verdict.example.get_or_insert_with(|| {
                 format!("{inputs:?}: `{}` leads back to {found:?}, off by {worst:e}", kernel.name)

@@ -25,8 +25,10 @@ use glam::DVec3;
 
 use super::{Eye, Lamp, LampKind, Scene, Set, base, palette};
 
+/// The scene, for the table of all.
 pub const SET: Set = Set { name: "NAME", about: "", make: scene };
 
+/// The scene itself.
 pub fn scene() -> Scene {
     let objects = Vec::new();
     let eye = Eye {

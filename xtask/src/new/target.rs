@@ -28,6 +28,7 @@ const TEXT: &str = r#"//! NAME.
 use crate::bundle::Target;
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
+/// The target, for the table of all.
 pub const TARGET: Entry = Entry {
     target: Target::CONSTANT,
     extension: "NAME",

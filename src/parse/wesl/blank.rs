@@ -1,0 +1,44 @@
+//! What stands between the tokens of WGSL: blanks and comments. WGSL has no strings, so `//` and
+//! `/*` always begin a comment.
+
+/// Each of WGSL's line breaks ends a line comment.
+pub fn is_line_break(letter: char) -> bool {
+    matches!(letter, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
+}
+
+/// What WGSL calls blank: line breaks and marks of direction are among it.
+pub fn is_blank(letter: char) -> bool {
+    matches!(letter, ' ' | '\t' | '\u{200e}' | '\u{200f}') || is_line_break(letter)
+}
+
+/// Bytes of the line comment that the text begins with, without its line break.
+pub fn line_comment(text: &str) -> usize {
+    // Looked for byte by byte as long as these are characters.
+    let first = text
+        .bytes()
+        .position(|byte| matches!(byte, b'\n'..=b'\r') || !byte.is_ascii())
+        .unwrap_or(text.len());
+    text[first..].find(is_line_break).map_or(text.len(), |more| first + more)
+}
+
+/// Bytes of the block comment that the text begins with, and whether it is closed. Block comments
+/// nest.
+pub fn block_comment(text: &str) -> (usize, bool) {
+    let bytes = text.as_bytes();
+    let (mut depth, mut at) = (0_usize, 0);
+    while at < bytes.len() {
+        match (bytes[at], bytes.get(at + 1)) {
+            (b'/', Some(b'*')) => depth += 1,
+            (b'*', Some(b'/')) => depth -= 1,
+            _ => {
+                at += 1;
+                continue;
+            }
+        }
+        at += 2;
+        if depth == 0 {
+            return (at, true);
+        }
+    }
+    (at, false)
+}
