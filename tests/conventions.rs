@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use lamplight::bundle::{
-    Bundle, Clip, ClipSpace, Found, FrontFace, Kind, Rows, Target, Viewport, YAxis, blob_files,
-    pack,
+    Binding, Bundle, Clip, ClipSpace, Found, FrontFace, Kind, Rows, Target, Viewport, YAxis,
+    blob_files, pack,
 };
 use lamplight::emit::targets;
 use lamplight::judge;
@@ -155,69 +155,74 @@ fn after<'t>(text: &'t str, word: &str, until: &[char]) -> Option<&'t str> {
     rest.split(until).next().map(str::trim)
 }
 
+/// A name, a register such as `t3`, and its space.
+type Register = (String, String, u32);
+
 /// HLSL: registers and spaces, heaps, their buffers of places, and semantics are those of the text.
 fn registers() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
-    for entry in ["vs_main", "fs_main"] {
+    for (entry, semantics) in [("vs_main", &["LOC0", "LOC4"][..]), ("fs_main", &[])] {
         let found = found(&package, "bundle", entry, Target::HLSL)?;
         let text = text(&found)?;
-        let mut said = BTreeSet::new();
-        for line in text.lines() {
-            let (Some(register), Some((head, _))) =
-                (after(line, "register(", &[')']), line.split_once(':'))
-            else {
-                continue;
-            };
-            let name = head.split_whitespace().last().unwrap_or_default().to_owned();
-            let (register, space) = register.split_once(", space").unwrap_or((register, "0"));
-            said.insert((name, register.to_owned(), space.parse::<u32>()?));
-        }
-        let mut told = BTreeSet::new();
-        for slot in &found.native.slots {
-            let is_it = |found: &&lamplight::bundle::Binding| {
-                (found.group, found.binding) == (slot.group, slot.binding)
-            };
-            let binding = found.reflection.bindings.iter().find(is_it).ok_or("no binding")?;
-            let class = slot.register.clone().ok_or("no class of register")?;
-            let number = slot.index.ok_or("no number")?;
-            told.insert((
-                binding.name.clone(),
-                format!("{class}{number}"),
-                slot.space.unwrap_or(9),
-            ));
-        }
-        for heap in &found.native.sampler_heaps {
-            let name = format!("{}[{}]", heap.name, heap.size);
-            told.insert((name, format!("s{}", heap.register), heap.space));
-            for sampler in &heap.samplers {
-                let array = format!("nagaGroup{}SamplerIndexArray", sampler.group);
-                let place = format!("{}[{array}[{}]]", heap.name, sampler.element);
-                if !text.contains(&place) {
-                    return Err(format!("the text has no {place}").into());
-                }
-                let register = format!("t{}", sampler.buffer_register);
-                told.insert((array, register, sampler.buffer_space));
-            }
-        }
+        let (mut said, told) = (registers_in(&text)?, registers_told(&found, &text)?);
         // Both heaps are declared, whichever is used.
         let heaps = told.iter().any(|(name, ..)| name.starts_with("naga"));
         said.retain(|(name, ..)| !name.starts_with("naga") || heaps);
         if said != told {
             return Err(format!("{entry}: {said:?} in the text, {told:?} told:\n{text}").into());
         }
-        let semantics: BTreeSet<String> =
-            found.native.semantics.iter().map(|one| format!("{}{}", one.name, one.index)).collect();
-        let expected: &[&str] = if entry == "vs_main" { &["LOC0", "LOC4"] } else { &[] };
-        if !semantics.iter().map(String::as_str).eq(expected.iter().copied()) {
-            return Err(format!("{entry}: {semantics:?}").into());
-        }
-        let lost = expected.iter().find(|semantic| !text.contains(&format!(": {semantic}")));
-        if let Some(lost) = lost {
-            return Err(format!("the text has no {lost}").into());
+        let native = &found.native.semantics;
+        let told: Vec<String> =
+            native.iter().map(|one| format!("{}{}", one.name, one.index)).collect();
+        let lost = told.iter().find(|semantic| !text.contains(&format!(": {semantic}")));
+        if told != semantics || lost.is_some() {
+            return Err(format!("{entry}: {told:?}, the text has no {lost:?}").into());
         }
     }
     Ok(())
+}
+
+/// What the text declares.
+fn registers_in(text: &str) -> Result<BTreeSet<Register>, Failed> {
+    let mut said = BTreeSet::new();
+    for line in text.lines() {
+        let head = line.split_once(':').map(|(head, _)| head);
+        let (Some(register), Some(head)) = (after(line, "register(", &[')']), head) else {
+            continue;
+        };
+        let name = head.split_whitespace().last().unwrap_or_default().to_owned();
+        let (register, space) = register.split_once(", space").unwrap_or((register, "0"));
+        said.insert((name, register.to_owned(), space.parse()?));
+    }
+    Ok(said)
+}
+
+/// What the reflection says, whose places in heaps the text must have.
+fn registers_told(found: &Found, text: &str) -> Result<BTreeSet<Register>, Failed> {
+    let mut told = BTreeSet::new();
+    for slot in &found.native.slots {
+        let is_it =
+            |binding: &&Binding| (binding.group, binding.binding) == (slot.group, slot.binding);
+        let binding = found.reflection.bindings.iter().find(is_it).ok_or("no binding")?;
+        let class = slot.register.clone().ok_or("no class of register")?;
+        let number = slot.index.ok_or("no number")?;
+        let space = slot.space.ok_or("no space")?;
+        told.insert((binding.name.clone(), format!("{class}{number}"), space));
+    }
+    for heap in &found.native.sampler_heaps {
+        let name = format!("{}[{}]", heap.name, heap.size);
+        told.insert((name, format!("s{}", heap.register), heap.space));
+        for sampler in &heap.samplers {
+            let array = format!("nagaGroup{}SamplerIndexArray", sampler.group);
+            let place = format!("{}[{array}[{}]]", heap.name, sampler.element);
+            if !text.contains(&place) {
+                return Err(format!("the text has no {place}").into());
+            }
+            told.insert((array, format!("t{}", sampler.buffer_register), sampler.buffer_space));
+        }
+    }
+    Ok(told)
 }
 
 /// What the text of an output says: for each thing that is bound, its name and its number.

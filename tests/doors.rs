@@ -2,6 +2,7 @@
 
 mod command_line;
 mod package;
+mod reload;
 mod roots;
 mod same_bytes;
 mod told;
@@ -15,7 +16,14 @@ type Outcome = Result<(), libtest_mimic::Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases = [command_line::CASES, roots::CASES, same_bytes::CASES, told::CASES, tools::CASES];
+    let cases = [
+        command_line::CASES,
+        reload::CASES,
+        roots::CASES,
+        same_bytes::CASES,
+        told::CASES,
+        tools::CASES,
+    ];
     let named = |(name, case): &Case| Trial::test(format!("doors::{name}"), *case);
     cases.into_iter().flatten().map(named).collect()
 }

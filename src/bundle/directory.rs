@@ -205,6 +205,13 @@ impl Store for Directory {
         })
     }
 
+    fn digest(&self, blob: u32) -> Result<String, Error> {
+        let artifact = self.artifacts.get(blob as usize);
+        let artifact =
+            artifact.ok_or_else(|| Error::corrupt(MANIFEST, "a blob is out of range"))?;
+        Ok(artifact.blob.clone())
+    }
+
     fn blob(&self, blob: u32) -> Result<Vec<u8>, Error> {
         let artifact = self
             .artifacts

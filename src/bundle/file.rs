@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use memmap2::Mmap;
 use serde::de::DeserializeOwned;
 
-use super::contents::{Hash, checksum, plain};
+use super::contents::{Hash, checksum, hex, plain};
 use super::layout::*;
 use super::store::{Artifact, Program, Programs, Store, Unit};
 use super::{Axis, Error, Reflection, VERSION};
@@ -375,6 +375,11 @@ impl Store for Packed {
             (u32_at(table, at + 4, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize);
         let group = self.group(u32_at(table, at, "blobs")?)?;
         slice(&group, offset, length, "blobs").map(<[u8]>::to_vec)
+    }
+
+    fn digest(&self, blob: u32) -> Result<String, Error> {
+        let table = self.section(BLOBS)?;
+        hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs").map(|hash| hex(&hash))
     }
 
     fn measure(&self) -> Result<(), Error> {

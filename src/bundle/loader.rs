@@ -1,7 +1,7 @@
 //! What an engine calls.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::contents::Contents;
@@ -28,6 +28,13 @@ use super::{
 pub struct Bundle {
     store: Box<dyn Store>,
     recorder: Option<Recorder>,
+    /// Where it was opened.
+    path: Option<PathBuf>,
+}
+
+/// Opens either form.
+pub fn store_of(path: &Path) -> Result<Box<dyn Store>, Error> {
+    Ok(if path.is_dir() { Box::new(directory::open(path)?) } else { Box::new(file::open(path)?) })
 }
 
 /// One program of a bundle.
@@ -77,17 +84,24 @@ impl Bundle {
     /// are verified on first use of what they cover; [`Bundle::verify`] checks all.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let store: Box<dyn Store> = if path.is_dir() {
-            Box::new(directory::open(path)?)
-        } else {
-            Box::new(file::open(path)?)
-        };
-        Ok(Self { store, recorder: None })
+        Ok(Self { store: store_of(path)?, recorder: None, path: Some(path.to_owned()) })
     }
 
     /// A single-file bundle that is in memory.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, Error> {
-        Ok(Self { store: Box::new(file::from_bytes(bytes)?), recorder: None })
+        Ok(Self { store: Box::new(file::from_bytes(bytes)?), recorder: None, path: None })
+    }
+
+    pub(super) fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    pub(super) fn store(&self) -> &dyn Store {
+        &*self.store
+    }
+
+    pub(super) fn replace_store(&mut self, store: Box<dyn Store>) {
+        self.store = store;
     }
 
     /// Names of the programs, sorted.

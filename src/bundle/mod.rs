@@ -19,6 +19,7 @@ mod manifest;
 mod merge;
 mod pack;
 mod reflection;
+mod reload;
 mod store;
 mod target;
 mod usage;

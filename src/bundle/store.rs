@@ -58,6 +58,9 @@ pub trait Store: Send + Sync {
     /// The bytes of a blob, verified.
     fn blob(&self, blob: u32) -> Result<Vec<u8>, Error>;
 
+    /// The hash of a blob's bytes, without reading them.
+    fn digest(&self, blob: u32) -> Result<String, Error>;
+
     /// Refuses what would take memory or time out of proportion to its size.
     fn measure(&self) -> Result<(), Error>;
 

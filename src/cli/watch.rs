@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
+use super::lint::plural;
 use super::terminal::stdout;
 use super::work::{Places, Work};
 use crate::generate::Request;
@@ -83,8 +84,9 @@ fn update(arguments: &Arguments, work: &mut Work, form: DiagnosticForm) -> Resul
     let summary = work.run(&all, false, form)?;
     let compiled = summary.texts().saturating_sub(summary.cached);
     say(&format!(
-        "{} permutations, {compiled} texts compiled, {:.2} s",
-        summary.permutations(),
+        "{}, {} compiled, {:.2} s",
+        plural(summary.permutations(), "permutation"),
+        plural(compiled, "text"),
         start.elapsed().as_secs_f64()
     ))
 }

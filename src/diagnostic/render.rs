@@ -102,8 +102,10 @@ fn short(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
         let (line, column) = sources.position(label.span.source, label.span.start as usize);
         format!("{}:{line}:{column}: ", sources.get(label.span.source).path)
     });
+    let help = diagnostic.notes.iter().find_map(|note| note.strip_prefix("help: "));
+    let help = help.map_or(String::new(), |help| format!(" ({})", help.replace('\n', " ")));
     tidy(&format!(
-        "{place}{}[{}]: {}",
+        "{place}{}[{}]: {}{help}",
         severity_name(diagnostic.severity),
         diagnostic.code.name,
         diagnostic.message.replace('\n', " ")

@@ -8,8 +8,8 @@ use super::weave::Woven;
 use crate::compose::Decision;
 use crate::compose::wesl::lint::{self, Outcomes};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::permute::axis::Mode;
-use crate::permute::{Assignment, Program};
+use crate::permute::axis::{Axis, Mode};
+use crate::permute::{Assignment, Program, cover};
 use crate::resolve::Graph;
 use crate::source::{SourceSet, Span};
 
@@ -63,6 +63,15 @@ impl Lints {
             }
             outcomes.see(&program.space.settings(point));
         }
+        // What only the lists made constant decides something as soon as they are longer.
+        if program.space.count() < program.space.valid_count() {
+            for point in cover::pairwise(&program.space).points {
+                if outcomes.is_settled() {
+                    break;
+                }
+                outcomes.see(&program.space.settings(&point));
+            }
+        }
         for span in outcomes.places() {
             *self.conditions.entry(place(sources, span)).or_default() += 1;
         }
@@ -81,13 +90,16 @@ impl Lints {
             for span in woven.decided.places() {
                 *self.conditions.entry(place(sources, span)).or_default() += 1;
             }
+            // GLSL's conditions are known from what was composed: of a part, too little.
+            let is_part = program.space.count() < program.space.valid_count();
+            let decided = if is_part { Vec::new() } else { woven.decided.warnings() };
             entry
                 .graph
-                .own(woven.decided.warnings())
+                .own(decided)
                 .into_iter()
                 .for_each(|warning| self.constant(sources, warning));
         }
-        self.see_reads(program, woven);
+        self.see_reads(program, entries, woven);
     }
 
     fn constant(&mut self, sources: &SourceSet, warning: Diagnostic) {
@@ -97,13 +109,15 @@ impl Lints {
         }
     }
 
-    fn see_reads(&mut self, program: &Program, woven: &[Woven]) {
-        let asked = |name: &String| woven.iter().any(|woven| woven.reads.contains(name));
-        let unread = program
-            .space
-            .axes()
-            .iter()
-            .filter(|axis| axis.mode != Mode::Dynamic && !asked(&axis.name));
+    fn see_reads(&mut self, program: &Program, entries: &[Entry], woven: &[Woven]) {
+        let read = |name: &String| woven.iter().any(|woven| woven.reads.contains(name));
+        // The number of such an axis is left open, so that no composition asks for it.
+        let is_open = |axis: &Axis| {
+            axis.mode == Mode::Spec && entries.iter().any(|entry| entry.graph.may_ask(&axis.name))
+        };
+        let asked = |axis: &Axis| read(&axis.name) || is_open(axis);
+        let unread =
+            program.space.axes().iter().filter(|axis| axis.mode != Mode::Dynamic && !asked(axis));
         self.found.extend(unread.map(|axis| {
             let message = format!(
                 "no entry point of program `{}` asks for the axis `{}`",

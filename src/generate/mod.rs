@@ -165,7 +165,15 @@ fn prepared<'a>(
 ) -> Result<Vec<Prepared<'a>>, Diagnostics> {
     let (mut programs, mut errors) = (Vec::new(), Diagnostics::new());
     for program in chosen(manifest, request)? {
-        let points = points(program, request)?;
+        let points = points(program, request).map_err(|errors| {
+            // A key is of one program.
+            let help = format!("of program `{}`; `--program` names another", program.name);
+            let named = manifest.programs.len() > 1 && request.program.is_none();
+            errors
+                .into_iter()
+                .map(|error| if named { error.note(&*help) } else { error })
+                .collect::<Diagnostics>()
+        })?;
         match entry::entries(sources, packages, program, points.first()) {
             Ok(entries) => programs.push((program, points, entries)),
             Err(found) => errors.extend(found),

@@ -157,18 +157,27 @@ impl Summary {
     }
 }
 
+/// `1 text`, `2 texts`.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for program in &self.programs {
-            writeln!(f, "{}: {} permutations", program.name, program.permutations)?;
+            writeln!(f, "{}: {}", program.name, counted(program.permutations, "permutation"))?;
             for entry in &program.entries {
                 let language = format!("{:?}", entry.language).to_lowercase();
                 writeln!(
                     f,
-                    "  {:12} {language}  {:6} unique, {} axes seen",
+                    "  {:12} {language}  {:6} unique, {} seen",
                     entry.entry,
                     entry.unique,
-                    entry.axes.len()
+                    if entry.axes.len() == 1 {
+                        "1 axis".to_owned()
+                    } else {
+                        format!("{} axes", entry.axes.len())
+                    }
                 )?;
             }
         }
@@ -187,12 +196,12 @@ impl fmt::Display for Summary {
         if self.up_to_date {
             return writeln!(
                 f,
-                "{} permutations up to date, checked in {:.2} s",
-                self.permutations(),
+                "{} up to date, checked in {:.2} s",
+                counted(self.permutations(), "permutation"),
                 self.seconds
             );
         }
-        writeln!(f, "{} texts: {} from the cache", self.texts(), self.cached)?;
+        writeln!(f, "{}: {} from the cache", counted(self.texts(), "text"), self.cached)?;
         for whole in &self.whole {
             let WholeSummary { entry, target, reason, texts, example, .. } = whole;
             let about = reason.about();
@@ -204,8 +213,8 @@ impl fmt::Display for Summary {
         let rate = self.permutations() as f64 / self.seconds.max(1e-9);
         writeln!(
             f,
-            "{} permutations in {:.2} s, {rate:.0} a second",
-            self.permutations(),
+            "{} in {:.2} s, {rate:.0} a second",
+            counted(self.permutations(), "permutation"),
             self.seconds
         )
     }

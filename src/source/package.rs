@@ -254,7 +254,11 @@ pub fn is_inside(path: &str) -> bool {
     })
 }
 
-fn decode(bytes: Vec<u8>) -> Result<String, ReadError> {
+/// The text of a file, without the mark that some editors put first.
+fn decode(mut bytes: Vec<u8>) -> Result<String, ReadError> {
+    if bytes.starts_with("\u{feff}".as_bytes()) {
+        bytes.drain(..'\u{feff}'.len_utf8());
+    }
     String::from_utf8(bytes).map_err(|error| {
         let offset = error.utf8_error().valid_up_to();
         ReadError::NotUtf8 { lossy: String::from_utf8_lossy(error.as_bytes()).into_owned(), offset }

@@ -6,10 +6,12 @@
 mod constants;
 mod every;
 mod guard;
+mod hints;
 mod limits;
 mod report;
 mod sizes;
 mod uniformity;
+mod words;
 
 pub use every::every;
 pub use guard::{guard, on_large_stack};
@@ -100,7 +102,7 @@ fn analyse(composed: &Composed, module: naga::Module) -> Result<Validated, Diagn
     }
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
         .validate(&module)
-        .map_err(|error| vec![report::validation(composed, &error)])?;
+        .map_err(|error| vec![report::validation(composed, &module, &error)])?;
     Ok(Validated { language: composed.language, module, info })
 }
 

@@ -1,22 +1,40 @@
 //! naga's errors as diagnostics in the author's text.
 
-use std::error::Error;
 use std::ops::Range;
 
+use naga::Module;
+use naga::front::glsl::ErrorKind;
 use naga::front::{glsl, wgsl};
 use naga::valid::ValidationError;
 
+use super::{hints, words};
 use crate::bundle::Language;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
 /// An error of the WGSL parser, with all its labels and notes.
+///
+/// Its kinds are naga's own, so that its sentences are taken over, in our spelling.
 pub fn wgsl(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
-    let mut diagnostic = Diagnostic::error(codes::WGSL_ERROR, sentence(error.message()));
+    let message = sentence(error.message());
+    let mut diagnostic = Diagnostic::error(codes::WGSL_ERROR, &*message);
     for (span, label) in error.labels() {
-        diagnostic = place(diagnostic, composed, span.to_range(), label);
+        diagnostic = place(diagnostic, composed, span.to_range(), &sentence(label));
     }
-    error.notes().fold(diagnostic, |diagnostic, note| diagnostic.note(note))
+    diagnostic = error.notes().fold(diagnostic, |diagnostic, note| diagnostic.note(sentence(note)));
+    match unknown_name(&message) {
+        Some(name) => hints::unknown(diagnostic, composed, name),
+        None => diagnostic,
+    }
+}
+
+/// What naga's sentences say before a name that nothing declares.
+const UNKNOWN: &[&str] =
+    &["no definition in scope for identifier: `", "unknown type: `", "unknown identifier: `"];
+
+fn unknown_name(message: &str) -> Option<&str> {
+    let rest = UNKNOWN.iter().find_map(|start| message.strip_prefix(start))?;
+    rest.strip_suffix('`')
 }
 
 /// Every error of the GLSL parser.
@@ -25,30 +43,68 @@ pub fn glsl(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
         .errors
         .iter()
         .map(|error| {
-            let message = sentence(&error.kind.to_string());
+            let message = sentence(&words::glsl(&error.kind));
             if message == "missing entry point" {
                 return Diagnostic::error(codes::NO_ENTRY_POINT, "the file has no function `main`");
             }
-            let diagnostic = Diagnostic::error(codes::GLSL_ERROR, message);
-            place(diagnostic, composed, error.meta.to_range(), "here")
+            let range = error.meta.to_range();
+            match &error.kind {
+                ErrorKind::UnknownVariable(name) | ErrorKind::UnknownType(name) => {
+                    let error = Diagnostic::error(codes::GLSL_ERROR, message);
+                    hints::unknown(place(error, composed, range, "here"), composed, name)
+                }
+                ErrorKind::SemanticError(text) => called(composed, text, message, range),
+                _ => place(Diagnostic::error(codes::GLSL_ERROR, message), composed, range, "here"),
+            }
         })
         .collect()
 }
 
-/// An error of the validator: its chain of causes as the message, its spans as labels.
-pub fn validation(composed: &Composed, error: &naga::WithSpan<ValidationError>) -> Diagnostic {
-    let code = match composed.language {
+/// naga says the same of a function that is not there and of one that takes other arguments.
+fn called(
+    composed: &Composed,
+    text: &str,
+    message: String,
+    range: Option<Range<usize>>,
+) -> Diagnostic {
+    let name = text.strip_prefix("Unknown function '").and_then(|rest| rest.strip_suffix('\''));
+    let Some(name) = name else {
+        return place(Diagnostic::error(codes::GLSL_ERROR, message), composed, range, "here");
+    };
+    let is_declared =
+        composed.parts.iter().any(|part| part.names.iter().any(|known| known == name));
+    if is_declared {
+        let message = format!("`{name}` does not take these arguments");
+        let error = Diagnostic::error(codes::CALL_MISMATCH, message);
+        return hints::signatures(place(error, composed, range, "here"), composed, name);
+    }
+    let error = Diagnostic::error(codes::GLSL_ERROR, format!("there is no function `{name}`"));
+    hints::unknown(place(error, composed, range, "here"), composed, name)
+}
+
+/// An error of the validator in our words, its spans as labels.
+pub fn validation(
+    composed: &Composed,
+    module: &Module,
+    error: &naga::WithSpan<ValidationError>,
+) -> Diagnostic {
+    let fallback = match composed.language {
         Language::Wesl => codes::WGSL_ERROR,
         Language::Glsl => codes::GLSL_ERROR,
     };
-    // The shortest span says most: it becomes the diagnostic's place.
+    // The shortest span says most: it becomes the diagnostic's place. A type stands where it was
+    // first written, which may be anywhere: it comes last.
     let mut spans: Vec<_> =
         error.spans().map(|(span, context)| (span.to_range(), kind(context))).collect();
-    spans.sort_by_key(|(range, _)| range.as_ref().map_or(usize::MAX, ExactSizeIterator::len));
-    let diagnostic = Diagnostic::error(code, sentence(&causes(error.as_inner()).join(": ")));
-    spans
+    spans.sort_by_key(|(range, words)| {
+        (*words == TYPE, range.as_ref().map_or(usize::MAX, ExactSizeIterator::len))
+    });
+    let said = words::validation(module, error.as_inner());
+    let diagnostic = Diagnostic::error(said.code.unwrap_or(fallback), said.message);
+    let diagnostic = spans
         .into_iter()
-        .fold(diagnostic, |diagnostic, (range, words)| place(diagnostic, composed, range, words))
+        .fold(diagnostic, |diagnostic, (range, words)| place(diagnostic, composed, range, words));
+    said.notes.into_iter().fold(diagnostic, Diagnostic::note)
 }
 
 /// A label where the range has an author, else a note that quotes the composed text.
@@ -72,34 +128,11 @@ fn place(
     diagnostic.note(format!("{label}: in text the composer wrote, `{quoted}`"))
 }
 
-/// The messages of an error and of its causes, outermost first, without naga's handles.
-fn causes(error: &dyn Error) -> Vec<String> {
-    let mut messages = Vec::new();
-    let mut next = Some(error);
-    while let Some(error) = next {
-        messages.push(without_handles(&error.to_string()));
-        next = error.source();
-    }
-    messages
-}
-
-/// Removes indices into naga's arenas, such as ` [12]`, which mean nothing to an author.
-fn without_handles(message: &str) -> String {
-    let message = message.replace("Some([", "[").replace("])", "]");
-    let mut clean = String::with_capacity(message.len());
-    let mut rest = message.as_str();
-    while let Some(start) = rest.find(" [") {
-        let digits = rest[start + 2..].bytes().take_while(u8::is_ascii_digit).count();
-        let end = start + 2 + digits;
-        let is_handle = digits > 0 && rest[end..].starts_with(']');
-        clean.push_str(&rest[..if is_handle { start } else { start + 2 }]);
-        rest = &rest[if is_handle { end + 1 } else { start + 2 }..];
-    }
-    clean + rest
-}
+/// What a label says of a type.
+const TYPE: &str = "this type";
 
 /// What a span of the validator stands for; naga names the Rust type of its arena.
-fn kind(context: &str) -> &str {
+fn kind(context: &str) -> &'static str {
     const KINDS: [(&str, &str); 8] = [
         ("::GlobalVariable", "this variable"),
         ("::LocalVariable", "this variable"),
@@ -108,20 +141,27 @@ fn kind(context: &str) -> &str {
         ("::Constant", "this constant"),
         ("::Override", "this override"),
         ("::EntryPoint", "this entry point"),
-        ("::Type", "this type"),
+        ("::Type", TYPE),
     ];
-    KINDS.iter().find(|(name, _)| context.contains(name)).map_or(context, |(_, words)| words)
+    KINDS.iter().find(|(name, _)| context.contains(name)).map_or("here", |(_, words)| words)
 }
 
-/// naga's message in our style: a lower-case start, unless a name starts it.
+/// naga's message in our style: a lower-case start, unless a name starts it, and texts of the
+/// shader in backticks.
 fn sentence(message: &str) -> String {
-    let message = message.trim();
+    let message = message.trim().replace(['"', '\''], "`");
+    // An apostrophe is no quote.
+    let message =
+        APOSTROPHES.iter().fold(message, |message, (wrong, right)| message.replace(wrong, right));
     let first_word = message.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
     let is_name = first_word.chars().skip(1).any(char::is_uppercase);
     match message.chars().next() {
         Some(first) if !is_name && first.is_uppercase() => {
             first.to_lowercase().chain(message.chars().skip(1)).collect()
         }
-        _ => message.to_owned(),
+        _ => message,
     }
 }
+
+const APOSTROPHES: &[(&str, &str)] =
+    &[("n`t ", "n't "), ("`s ", "'s "), ("s` ", "s' "), ("`re ", "'re "), ("`ll ", "'ll ")];

@@ -3,7 +3,7 @@
 use std::io::{IsTerminal, Write, stderr};
 use std::path::{Path, PathBuf};
 
-use lamplight::bundle::{self, Bundle, DirectoryWriter, blob_files};
+use lamplight::bundle::{self, Bundle, Contents, DirectoryWriter, blob_files};
 use lamplight::cache::{Cache, Folder};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
@@ -11,7 +11,9 @@ use lamplight::generate::{
     Generated, Progress, Recorder, Request, Run, Summary, Told, Tools, Trace, generate,
 };
 use lamplight::judge::{Made, blame};
+use lamplight::permute::Manifest;
 use lamplight::project;
+use lamplight::resolve::Packages;
 use lamplight::source::SourceSet;
 
 use crate::validate::{Judged, judge};
@@ -59,13 +61,8 @@ pub fn run(arguments: &[String]) -> Outcome {
         let judged = judge(files, Some(&cache))?;
         let summary =
             Summary { up_to_date: true, seconds: start.elapsed().as_secs_f64(), ..summary };
-        if !judged.refusals.is_empty() {
-            let contents = Bundle::open(&out).and_then(|bundle| bundle.contents());
-            let contents = &contents.map_err(environment)?;
-            let made = Made { packages: &packages, manifest: &manifest, contents };
-            let refused = blame(&mut sources, &made, &judged.refusals);
-            return Err(input(&sources, refused));
-        }
+        let contents = || Bundle::open(&out).and_then(|bundle| bundle.contents());
+        refuse(&mut sources, &packages, &manifest, &judged, &contents)?;
         return finish(&summary, &judged);
     }
     let writer = DirectoryWriter::create(&out).map_err(environment)?;
@@ -74,16 +71,28 @@ pub fn run(arguments: &[String]) -> Outcome {
     let Generated { contents, summary, warnings } =
         generated.map_err(|diagnostics| input(&sources, diagnostics))?;
     let judged = judge(writer.blob_files().map_err(environment)?, Some(&cache))?;
-    if !judged.refusals.is_empty() {
-        let made = Made { packages: &packages, manifest: &manifest, contents: &contents };
-        let refused = blame(&mut sources, &made, &judged.refusals);
-        return Err(input(&sources, refused));
-    }
+    refuse(&mut sources, &packages, &manifest, &judged, &|| Ok(contents.clone()))?;
     writer.finish(&contents).map_err(environment)?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
     let trace = Trace::new(&recorder, &out, summary.clone(), Told::new(&path, &sources, &warnings));
     trace.into_iter().for_each(|trace| trace.keep(&cache, as_run()));
     finish(&summary, &judged)
+}
+
+/// Fails with the author's places of what the judges refused.
+fn refuse(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &Manifest,
+    judged: &Judged,
+    contents: &dyn Fn() -> Result<Contents, bundle::Error>,
+) -> Outcome {
+    if judged.refusals.is_empty() {
+        return Ok(());
+    }
+    let made = Made { packages, manifest, contents: &contents().map_err(environment)? };
+    let refused = blame(sources, &made, &judged.refusals);
+    Err(Failure::input(render(sources, &refused, Form::Human)))
 }
 
 fn finish(summary: &Summary, judged: &Judged) -> Outcome {

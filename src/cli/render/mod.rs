@@ -13,7 +13,7 @@ use super::executor;
 use super::failure::{DiagnosticForm, Failure};
 use super::input::{LanguageName, axis_value};
 use super::overwrite::Overwrite;
-use super::terminal::stdout;
+use super::terminal::{self, stdout};
 use crate::bundle::Language;
 use crate::catalogue::preset::{self, Preset};
 use crate::catalogue::probe;
@@ -114,6 +114,7 @@ fn draw(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|problems| input(&programs, problems))?;
     let name = arguments.preset.as_deref().unwrap_or("render");
     let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
+    told_form(&path);
     let png = picture.png().map_err(Failure::environment)?;
     output::write_file(&path, &png, is_own_png, arguments.overwrite.replace())?;
     let last = plan.last().map_or("", |pass| pass.key.as_str());
@@ -265,4 +266,13 @@ fn surroundings(name: &str) -> Result<Surroundings, Failure> {
     let image = Equirect::from_radiance(&bytes)
         .map_err(|error| Failure::input(format!("`{name}`: {error}")))?;
     Ok(Surroundings::Image(Arc::new(image)))
+}
+
+/// A name that promises another form is no reason to fail, but its user wants to know.
+fn told_form(path: &std::path::Path) {
+    const OTHERS: [&str; 6] = ["jpg", "jpeg", "webp", "gif", "bmp", "hdr"];
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    if ending.is_some_and(|ending| OTHERS.contains(&ending.as_str())) {
+        let _ = writeln!(terminal::stderr(), "warning: `{}` will hold a PNG", path.display());
+    }
 }

@@ -80,15 +80,22 @@ fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> La
                 verdict.broken += 1;
                 verdict.row.get_or_insert(index);
                 let text = || {
-                    format!(
-                        "{row:?} gives {value}, compared with {other:?}: off by {broken:e}, allowed {allowed:e}"
-                    )
+                    let compared = other.map_or(String::new(), |other| {
+                        format!(", and {other} for the inputs that the law compares with")
+                    });
+                    let (broken, allowed) = (amount(broken), amount(allowed));
+                    format!("{row:?} gives {value}{compared}: off by {broken}, allowed {allowed}")
                 };
                 verdict.example.get_or_insert_with(text);
             }
         }
     }
     verdict
+}
+
+/// An error as people write it.
+fn amount(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:.2e}") }
 }
 
 /// Distance between the numbers of two rows.

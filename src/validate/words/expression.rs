@@ -1,0 +1,183 @@
+//! Expressions.
+
+use naga::valid::ExpressionError;
+use naga::{BinaryOperator, Module, UnaryOperator};
+
+use super::function::mismatch;
+use super::{Said, foreign, inner, lacking, spaced, ty, types};
+use crate::diagnostic::codes;
+
+pub fn expression(module: &Module, error: &ExpressionError) -> Said {
+    use ExpressionError as E;
+    let text = match error {
+        E::InvalidBaseType(_) => "this has no members and no elements",
+        E::InvalidIndexType(_) => "an index is an integer",
+        E::NegativeIndex(_) => "an index is not negative",
+        E::IndexOutOfBounds(_, index) => {
+            return Said::plain(format!("there is no element {index}: it has fewer"));
+        }
+        E::InvalidPointerType(_) => "there is nothing to be read here",
+        E::InvalidArrayType(_) => "only arrays in storage buffers have a length to ask for",
+        E::InvalidSplatType(_) => "only a scalar can fill all components of a vector",
+        E::InvalidVectorType(_) => "only vectors have components such as `xyz`",
+        E::InvalidSwizzleComponent(component, _) => {
+            let name = spaced(&format!("{component:?}"));
+            return Said::plain(format!("the vector has no component `{name}`"));
+        }
+        E::Compose(error) => return types::compose(module, error),
+        E::InvalidZeroValue(handle) => {
+            return Said::plain(format!("there is no zero of {}", ty(module, *handle)));
+        }
+        E::IndexableLength(_) => "the length of this is not known",
+        E::InvalidUnaryOperandType(operator, _) => {
+            let operator = unary(*operator);
+            return mismatch(format!("`{operator}` does not work with this type"));
+        }
+        E::InvalidBinaryOperandTypes { op, lhs_type, rhs_type, .. } => {
+            let (left, right) = (inner(module, lhs_type), inner(module, rhs_type));
+            return mismatch(format!("`{}` does not work with {left} and {right}", binary(*op)));
+        }
+        E::SelectValuesTypeMismatch { accept, reject } => {
+            let (accept, reject) = (inner(module, accept), inner(module, reject));
+            return mismatch(format!("the two choices have different types: {accept}, {reject}"));
+        }
+        E::SelectConditionNotABool { actual } => {
+            return mismatch(format!("the condition is {}, not `bool`", inner(module, actual)));
+        }
+        E::InvalidBooleanVector(_) => return mismatch("this needs booleans"),
+        E::InvalidFloatArgument(_) => return mismatch("this needs floating-point numbers"),
+        E::Type(_) => return mismatch("the types of this expression do not go together"),
+        E::ExpectedGlobalVariable | E::ExpectedGlobalOrArgument => {
+            "a texture or sampler must be named directly"
+        }
+        E::ExpectedBindingArrayType(_) => "this is no array of bindings",
+        E::ExpectedImageType(_) => "this is no texture",
+        E::ExpectedSamplerType(_) => "this is no sampler",
+        E::InvalidDerivative => "derivatives are of floating-point scalars and vectors",
+        E::InvalidImageClass(_)
+        | E::InvalidImageFormat(_)
+        | E::InvalidImageStorageAccess(_)
+        | E::InvalidImageArrayIndex
+        | E::InvalidImageSampleSelector
+        | E::MissingImageSampleSelector
+        | E::InvalidImageLevelSelector
+        | E::MissingImageLevelSelector
+        | E::InvalidImageArrayIndexType(_)
+        | E::InvalidImageOtherIndexType(_)
+        | E::InvalidImageCoordinateType(..)
+        | E::ComparisonSamplingMismatch { .. }
+        | E::InvalidSampleOffsetExprType
+        | E::InvalidSampleOffset(..)
+        | E::InvalidDepthReference(_)
+        | E::InvalidDepthSampleLevel
+        | E::InvalidGatherLevel
+        | E::InvalidGatherComponent(_)
+        | E::InvalidGatherDimension(_)
+        | E::InvalidSampleLevelExactType(_)
+        | E::InvalidSampleLevelBiasType(_)
+        | E::InvalidSampleLevelBiasDimension(_)
+        | E::InvalidSampleLevelGradientType(..)
+        | E::InvalidSampleClampCoordinateToEdge(_) => return texture(error),
+        E::InvalidCastArgument => return mismatch("this cannot be converted to that type"),
+        E::WrongArgumentCount(function) => {
+            let name = spaced(&format!("{function:?}"));
+            let message = format!("`{name}` takes another number of arguments");
+            return Said::coded(codes::CALL_MISMATCH, message);
+        }
+        E::InvalidArgumentType(function, index, _) => {
+            let name = spaced(&format!("{function:?}"));
+            let message =
+                format!("argument {} of `{name}` has a type that it does not take", index + 1);
+            return Said::coded(codes::CALL_MISMATCH, message);
+        }
+        E::MissingCapabilities(capabilities) => return lacking(*capabilities),
+        E::Literal(error) => return types::literal(error),
+        E::UnsupportedWidth(_, _, width) => {
+            return foreign(&format!("this function for {} bits", u32::from(*width) * 8));
+        }
+        E::ShiftAmountTooLarge { lhs_type, .. } => {
+            return Said::plain(format!("{} has fewer bits than that", inner(module, lhs_type)));
+        }
+        E::DivideByZero => "this divides by zero",
+        E::InvalidRayQueryType(_) => return foreign("ray tracing"),
+        E::InvalidCooperativeOperand(_) => return foreign("cooperative matrices"),
+        E::NotInScope | E::FunctionArgumentDoesntExist(_) => {
+            "naga read the expression in a way that it does not understand itself"
+        }
+        E::InvalidWorkGroupUniformLoadResultType(_) => {
+            "this type cannot be loaded for a whole workgroup"
+        }
+    };
+    Said::plain(text)
+}
+
+/// Lookups of textures, each by what does not fit the texture.
+fn texture(error: &ExpressionError) -> Said {
+    use ExpressionError as E;
+    let text = match error {
+        E::InvalidImageArrayIndex => {
+            "an index of the layer is for arrays of textures, and they need one"
+        }
+        E::InvalidImageSampleSelector | E::MissingImageSampleSelector => {
+            "a sample is named for multisampled textures, and for no others"
+        }
+        E::InvalidImageLevelSelector | E::MissingImageLevelSelector => {
+            "a level is named for textures with mip levels, and for no others"
+        }
+        E::InvalidImageArrayIndexType(_) | E::InvalidImageOtherIndexType(_) => {
+            "a layer, a sample and a level are integers"
+        }
+        E::InvalidImageCoordinateType(..) => "the coordinates do not fit the texture",
+        E::ComparisonSamplingMismatch { .. } => {
+            "a comparison needs a depth texture and a `sampler_comparison`; other lookups need a \
+             `sampler`"
+        }
+        E::InvalidSampleOffsetExprType | E::InvalidSampleOffset(..) => {
+            "the offset of a lookup is a constant, with one integer for each axis of the texture"
+        }
+        E::InvalidDepthReference(_) => "the value to compare with is an `f32`",
+        E::InvalidDepthSampleLevel => "a comparison is made at the level of the lookup, or at 0",
+        E::InvalidGatherLevel | E::InvalidGatherComponent(_) | E::InvalidGatherDimension(_) => {
+            "four texels are gathered of level 0 of a 2D texture or cube, from a component it has"
+        }
+        E::InvalidSampleLevelExactType(_)
+        | E::InvalidSampleLevelBiasType(_)
+        | E::InvalidSampleLevelBiasDimension(_)
+        | E::InvalidSampleLevelGradientType(..) => {
+            "the level, bias or gradient does not fit the texture"
+        }
+        _ => "this texture cannot be used in this way",
+    };
+    Said::coded(codes::CALL_MISMATCH, text)
+}
+
+fn unary(operator: UnaryOperator) -> &'static str {
+    match operator {
+        UnaryOperator::Negate => "-",
+        UnaryOperator::LogicalNot => "!",
+        UnaryOperator::BitwiseNot => "~",
+    }
+}
+
+fn binary(operator: BinaryOperator) -> &'static str {
+    match operator {
+        BinaryOperator::Add => "+",
+        BinaryOperator::Subtract => "-",
+        BinaryOperator::Multiply => "*",
+        BinaryOperator::Divide => "/",
+        BinaryOperator::Modulo => "%",
+        BinaryOperator::Equal => "==",
+        BinaryOperator::NotEqual => "!=",
+        BinaryOperator::Less => "<",
+        BinaryOperator::LessEqual => "<=",
+        BinaryOperator::Greater => ">",
+        BinaryOperator::GreaterEqual => ">=",
+        BinaryOperator::And => "&",
+        BinaryOperator::ExclusiveOr => "^",
+        BinaryOperator::InclusiveOr => "|",
+        BinaryOperator::LogicalAnd => "&&",
+        BinaryOperator::LogicalOr => "||",
+        BinaryOperator::ShiftLeft => "<<",
+        BinaryOperator::ShiftRight => ">>",
+    }
+}

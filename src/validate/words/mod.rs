@@ -1,0 +1,134 @@
+//! naga's errors in the words of people who write shaders: for each kind of mistake a sentence,
+//! with the author's names and types in it.
+//!
+//! Every enum of naga's is matched without a wildcard, so that a version of naga with a new kind
+//! does not compile until the kind has words here.
+
+mod entry;
+mod expression;
+mod function;
+mod global;
+mod tokens;
+mod types;
+
+pub use tokens::glsl;
+
+use naga::common::wgsl::TypeContext;
+use naga::valid::{Capabilities, ValidationError};
+use naga::{Handle, Module, Type, TypeInner};
+
+use crate::diagnostic::{Code, codes};
+
+/// A sentence, with the code where a kind has one of its own.
+#[derive(Debug)]
+pub struct Said {
+    pub code: Option<&'static Code>,
+    pub message: String,
+    pub notes: Vec<String>,
+}
+
+impl Said {
+    fn plain(message: impl Into<String>) -> Self {
+        Self { code: None, message: message.into(), notes: Vec::new() }
+    }
+
+    fn coded(code: &'static Code, message: impl Into<String>) -> Self {
+        Self { code: Some(code), ..Self::plain(message) }
+    }
+
+    fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+}
+
+/// What is wrong with a module.
+pub fn validation(module: &Module, error: &ValidationError) -> Said {
+    match error {
+        ValidationError::InvalidHandle(_) | ValidationError::Corrupted => {
+            Said::plain("naga read the text in a way that it does not understand itself")
+        }
+        ValidationError::Layouter(_) => {
+            Said::plain("a type has no layout in memory: its size is not known, or too large")
+        }
+        ValidationError::Type { name, source, .. } => types::type_of(module, name, source),
+        ValidationError::ConstExpression { source, .. } => types::constant(module, source),
+        ValidationError::ArraySizeError { .. } => {
+            Said::plain("the size of an array must be above 0")
+        }
+        ValidationError::Constant { name, source, .. } => {
+            Said::plain(types::of_constant(name, source))
+        }
+        ValidationError::Override { name, source, .. } => types::of_override(module, name, source),
+        ValidationError::GlobalVariable { name, source, .. } => {
+            global::variable(module, name, source)
+        }
+        ValidationError::Function { handle, name, source } => {
+            let said = function::function(module, &module.functions[*handle], source);
+            said.note(format!("in function `{name}`"))
+        }
+        ValidationError::EntryPoint { stage, name, source } => {
+            let point = module.entry_points.iter().find(|point| point.name == *name);
+            let said = entry::entry(module, point.map(|point| &point.function), source);
+            said.note(format!("in entry point `{name}` ({})", stage_name(*stage)))
+        }
+    }
+}
+
+/// A type as WGSL spells it.
+fn ty(module: &Module, handle: Handle<Type>) -> String {
+    let mut text = String::new();
+    match module.to_ctx().write_type(handle, &mut text) {
+        Ok(()) if !text.is_empty() => format!("`{text}`"),
+        _ => "a type without a name".to_owned(),
+    }
+}
+
+fn inner(module: &Module, inner: &TypeInner) -> String {
+    let mut text = String::new();
+    match module.to_ctx().write_type_inner(inner, &mut text) {
+        Ok(()) if !text.is_empty() => format!("`{text}`"),
+        _ => "a type without a name".to_owned(),
+    }
+}
+
+/// What needs more than every target has.
+fn lacking(capabilities: Capabilities) -> Said {
+    let names: Vec<String> =
+        capabilities.iter_names().map(|(name, _)| name.to_lowercase().replace('_', " ")).collect();
+    Said::coded(
+        codes::NOT_PORTABLE,
+        format!("not every target has what this needs: {}", names.join(", ")),
+    )
+}
+
+fn stage_name(stage: naga::ShaderStage) -> &'static str {
+    match stage {
+        naga::ShaderStage::Vertex => "vertex",
+        naga::ShaderStage::Fragment => "fragment",
+        naga::ShaderStage::Compute => "compute",
+        naga::ShaderStage::Task
+        | naga::ShaderStage::Mesh
+        | naga::ShaderStage::RayGeneration
+        | naga::ShaderStage::Miss
+        | naga::ShaderStage::AnyHit
+        | naga::ShaderStage::ClosestHit => "a stage that no target has",
+    }
+}
+
+/// What only stages or devices have that no target has.
+fn foreign(what: &str) -> Said {
+    Said::coded(codes::NOT_PORTABLE, format!("no target has {what}"))
+}
+
+/// Words of naga's enums, such as `SampleCount`, as words: `sample count`.
+fn spaced(debug: &str) -> String {
+    let mut text = String::with_capacity(debug.len() + 4);
+    for (index, letter) in debug.chars().enumerate() {
+        if letter.is_uppercase() && index > 0 && !text.ends_with(' ') {
+            text.push(' ');
+        }
+        text.extend(letter.to_lowercase());
+    }
+    text
+}

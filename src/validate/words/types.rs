@@ -1,0 +1,146 @@
+//! Types, constants and overrides.
+
+use naga::Module;
+use naga::valid::{
+    ComposeError, ConstExpressionError, ConstantError, LiteralError, OverrideError, TypeError,
+    WidthError,
+};
+
+use super::{Said, entry, foreign, lacking, ty};
+use crate::diagnostic::codes;
+
+pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Said {
+    let what = if name.is_empty() { "this type".to_owned() } else { format!("`{name}`") };
+    match error {
+        TypeError::MissingCapability(capabilities) => lacking(*capabilities),
+        TypeError::InvalidAtomicWidth(..) => {
+            Said::plain(format!("{what} is no type that an atomic can have: `u32` and `i32` are"))
+        }
+        TypeError::InvalidPointerBase(base) => {
+            Said::plain(format!("there are no pointers to {}", ty(module, *base)))
+        }
+        TypeError::InvalidPointerToUnsized { base, .. } => Said::plain(format!(
+            "the size of {} is not known, so it can only be in a storage buffer",
+            ty(module, *base)
+        )),
+        TypeError::InvalidData(base) => {
+            Said::plain(format!("{} cannot be a member here", ty(module, *base)))
+        }
+        TypeError::InvalidArrayBaseType(base) => {
+            Said::plain(format!("there are no arrays of {}", ty(module, *base)))
+        }
+        TypeError::MatrixElementNotFloat => {
+            Said::plain("the elements of a matrix are floating-point numbers")
+        }
+        TypeError::UnsupportedSpecializedArrayLength(_) => {
+            Said::plain("an override cannot be the size of an array")
+        }
+        TypeError::UnsupportedImageType { arrayed, .. } => {
+            let many = if *arrayed { "arrays of such textures" } else { "such textures" };
+            foreign(many)
+        }
+        TypeError::InvalidArrayStride { stride, expected } => Said::plain(format!(
+            "the elements of {what} are {stride} bytes apart, and must be {expected}"
+        )),
+        TypeError::InvalidDynamicArray(field, _) => {
+            Said::plain(format!("`{field}` has no fixed size, so it must be the last member"))
+        }
+        TypeError::BindingArrayBaseTypeNotStruct(_)
+        | TypeError::BindingArrayBaseExternalTextures => foreign("arrays of such bindings"),
+        TypeError::MemberOverlap { index, offset } => Said::plain(format!(
+            "member {} of {what}, at byte {offset}, overlaps the member before it",
+            index + 1
+        )),
+        TypeError::MemberOutOfBounds { index, offset, size, span } => Said::plain(format!(
+            "member {} of {what} has {size} bytes at {offset}, beyond the {span} of the structure",
+            index + 1
+        )),
+        TypeError::EmptyStruct => Said::plain(format!("{what} needs at least one member")),
+        TypeError::InvalidBlendSrc(error) => entry::varying(module, error),
+        TypeError::WidthError(error) => width(error),
+        TypeError::UnresolvedOverride(_) | TypeError::InvalidArraySize(_) => {
+            Said::plain(format!("the size of {what} must be a constant above 0"))
+        }
+    }
+}
+
+pub fn width(error: &WidthError) -> Said {
+    match error {
+        WidthError::Invalid(_, bytes) => {
+            foreign(&format!("numbers of {} bits", u32::from(*bytes) * 8))
+        }
+        WidthError::MissingCapability { name, .. } => {
+            Said::coded(codes::NOT_PORTABLE, format!("not every target has the type `{name}`"))
+        }
+        WidthError::Abstract => Said::plain("this number needs a type, such as `1.0f` or `f32(x)`"),
+    }
+}
+
+pub fn literal(error: &LiteralError) -> Said {
+    match error {
+        LiteralError::NaN => Said::plain("a constant is not a number"),
+        LiteralError::Infinity => Said::plain("a constant is infinite"),
+        LiteralError::Width(error) => width(error),
+    }
+}
+
+pub fn compose(module: &Module, error: &ComposeError) -> Said {
+    match error {
+        ComposeError::Type(handle) => {
+            Said::plain(format!("{} has no constructor of components", ty(module, *handle)))
+        }
+        ComposeError::ComponentCount { given, expected } => Said::coded(
+            codes::CALL_MISMATCH,
+            format!("a constructor takes {expected} components, and {given} are given"),
+        ),
+        ComposeError::ComponentType { index } => Said::coded(
+            codes::CALL_MISMATCH,
+            format!("argument {} of a constructor has another type than it takes", index + 1),
+        ),
+    }
+}
+
+pub fn constant(module: &Module, error: &ConstExpressionError) -> Said {
+    match error {
+        ConstExpressionError::NonConstOrOverride | ConstExpressionError::NonFullyEvaluatedConst => {
+            Said::plain("this must be known when the shader is compiled")
+        }
+        ConstExpressionError::Compose(error) => compose(module, error),
+        ConstExpressionError::InvalidSplatType(_) => {
+            Said::plain("only a scalar can fill all components of a vector")
+        }
+        ConstExpressionError::Type(_) => Said::plain("the type of a constant cannot be found out"),
+        ConstExpressionError::Literal(error) => literal(error),
+        ConstExpressionError::Width(error) => width(error),
+    }
+}
+
+pub fn of_constant(name: &str, error: &ConstantError) -> String {
+    match error {
+        ConstantError::InitializerExprType => {
+            format!("the value of `{name}` must be known when the shader is compiled")
+        }
+        ConstantError::InvalidType => format!("the value of `{name}` does not fit its type"),
+        ConstantError::NonConstructibleType => {
+            format!("`{name}` has a type that a constant cannot have")
+        }
+    }
+}
+
+pub fn of_override(module: &Module, name: &str, error: &OverrideError) -> Said {
+    let text = match error {
+        OverrideError::MissingNameAndID => "an override needs a name".to_owned(),
+        OverrideError::DuplicateID => format!("the `@id` of `{name}` is used twice"),
+        OverrideError::InitializerExprType => {
+            format!("the default of `{name}` must be a constant")
+        }
+        OverrideError::InvalidType => format!("the default of `{name}` does not fit its type"),
+        OverrideError::NonConstructibleType | OverrideError::TypeNotScalar => {
+            format!("`{name}` is an override, and those are booleans or numbers")
+        }
+        OverrideError::NotAllowed => "there are no overrides here".to_owned(),
+        OverrideError::UninitializedOverride => format!("`{name}` needs a default"),
+        OverrideError::ConstExpression { source, .. } => return constant(module, source),
+    };
+    Said::plain(text)
+}

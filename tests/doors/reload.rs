@@ -1,0 +1,95 @@
+//! A bundle that is replaced while an engine has it open.
+
+use std::fs;
+
+use lamplight::bundle::{Bundle, Target};
+
+use super::package::{Package, equal};
+use super::{Case, Outcome};
+
+pub const CASES: &[Case] = &[
+    ("reload_of_a_folder", || reloads("live")),
+    ("reload_of_a_file", || reloads("live.lamplight")),
+    ("package_is_light", package_is_light),
+];
+
+const MANIFEST: &str = "[program.p]\nwesl = \"p.wesl\"\ntargets = [\"wgsl\", \"glsl330\"]\n\
+    [program.p.axis]\nfog = { values = [false, true] }\n";
+
+fn shader(clear: &str, foggy: &str) -> String {
+    format!(
+        "@fragment fn m(@location(0) x: f32) -> @location(0) vec4f {{\n\
+         @if(fog) {{ return vec4f(x * {foggy}); }}\n@else {{ return vec4f(x * {clear}); }}\n}}\n"
+    )
+}
+
+/// The loader says what changed, a reader keeps its generation, and an error changes nothing.
+fn reloads(out: &str) -> Outcome {
+    let package =
+        Package::new(&[("lamplight.toml", MANIFEST), ("p.wesl", &shader("0.5", "0.25"))])?;
+    let generate = format!("gen --cache cache -o {out}");
+    package.run(&generate)?.ends(0)?;
+    let path = package.path(out);
+    let mut bundle = Bundle::open(&path)?;
+    let reader = Bundle::open(&path)?;
+    equal(bundle.reload()?.is_empty(), true)?;
+    package.write("p.wesl", &shader("0.5", "0.125"))?;
+    package.run(&generate)?.ends(0)?;
+    let changed = bundle.reload()?;
+    let keys: Vec<(&str, &str)> =
+        changed.permutations.iter().map(|change| (change.key.as_str(), change.kind)).collect();
+    equal(keys, vec![("fog", "changed")])?;
+    equal(changed.permutations[0].parts.clone(), vec!["glsl330".to_owned(), "wgsl".to_owned()])?;
+    equal(text(&bundle, "fog")?.contains("0.125"), true)?;
+    // The older generation is whole: all of it is there for one that reads on.
+    equal(text(&reader, "fog")?.contains("0.25"), true)?;
+    equal(text(&reader, "default")?.contains("0.5"), true)?;
+    // A key that comes and one that goes.
+    package.write(
+        "lamplight.toml",
+        &MANIFEST.replace("[program.p.axis]", "exclude = [{ fog = true }]\n[program.p.axis]"),
+    )?;
+    package.run(&format!("{generate} --force"))?.ends(0)?;
+    let changed = bundle.reload()?;
+    equal(changed.permutations.iter().map(|change| change.kind).collect(), vec!["removed"])?;
+    damaged(&package, out, &mut bundle)
+}
+
+/// What cannot be read is no generation.
+fn damaged(package: &Package, out: &str, bundle: &mut Bundle) -> Outcome {
+    let path = package.path(out);
+    let file = if path.is_dir() { path.join("manifest.json") } else { path };
+    let other = package.path("damaged");
+    fs::write(&other, b"{ \"format\": ")?;
+    fs::rename(&other, &file)?;
+    if bundle.reload().is_ok() {
+        return Err("a damaged bundle was loaded".into());
+    }
+    equal(text(bundle, "default")?.contains("0.5"), true)
+}
+
+fn text(bundle: &Bundle, key: &str) -> Result<String, libtest_mimic::Failed> {
+    let found = bundle.program("p")?.shader("m")?.get(key, Target::WGSL)?;
+    Ok(String::from_utf8(found.bytes)?)
+}
+
+/// The crate that is published has no tests, snapshots and pictures, and all that it is built of.
+fn package_is_light() -> Outcome {
+    let root = crate::snapshot::root();
+    let output = std::process::Command::new(env!("CARGO"))
+        .args(["package", "--list", "--allow-dirty", "--offline", "--package", "lamplight"])
+        .current_dir(root)
+        .output()?;
+    let listed = String::from_utf8(output.stdout)?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+    }
+    for wrong in ["tests/", "snapshots/", "docs/", "xtask/", "bench/", "fuzz/"] {
+        equal((wrong, listed.lines().any(|file| file.starts_with(wrong))), (wrong, false))?;
+    }
+    for right in ["src/main.rs", "build.rs", "shaderlib/lamplight.toml", "README.md", "LICENSE-MIT"]
+    {
+        equal((right, listed.lines().any(|file| file == right)), (right, true))?;
+    }
+    Ok(())
+}
