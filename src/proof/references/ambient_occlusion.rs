@@ -45,7 +45,15 @@ fn gtao_arc(a: &mut Arguments<'_>) -> Expected {
     // Simpson's rule: the integrand is smooth between the ends.
     let value = |t: f64| (t - gamma).cos() * t.sin();
     let width = h / f64::from(STEPS);
-    let weight = |i: u32| if i == 0 || i == STEPS { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+    let weight = |i: u32| {
+        if i == 0 || i == STEPS {
+            1.0
+        } else if i % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        }
+    };
     let sum: f64 = (0..=STEPS).map(|i| weight(i) * value(width * f64::from(i))).sum();
     (sum * width / 3.0).into()
 }
@@ -56,5 +64,6 @@ fn kernel(i: f64, count: f64) -> DVec3 {
     let (x, y) = ((0.5 + i / p).rem_euclid(1.0), (0.5 + i / (p * p)).rem_euclid(1.0));
     let (radius, phi) = (x.sqrt(), TAU * y);
     let share = (i / count.max(1.0)).min(1.0);
-    DVec3::new(radius * phi.cos(), radius * phi.sin(), (1.0 - x).sqrt()) * (0.1 + 0.9 * share * share)
+    DVec3::new(radius * phi.cos(), radius * phi.sin(), (1.0 - x).sqrt())
+        * (0.1 + 0.9 * share * share)
 }

@@ -74,7 +74,13 @@ fn sphere(mu: f64, sin2: f64) -> f64 {
     // A ring at the angle t, all azimuths: the cosine is m + s*cos(azimuth), where it is positive.
     let ring = |t: f64| {
         let (m, s) = (mu * t.cos(), theta.sin() * t.sin());
-        let half = if m >= s { PI } else if m <= -s { 0.0 } else { (-m / s).acos() };
+        let half = if m >= s {
+            PI
+        } else if m <= -s {
+            0.0
+        } else {
+            (-m / s).acos()
+        };
         2.0 * (m * half + s * half.sin()) * t.sin()
     };
     // Rings begin to cross the horizon at one angle: smooth on either side of it.
@@ -122,5 +128,9 @@ fn area_alpha(a: &mut Arguments<'_>) -> Expected {
 
 /// The square of the quotient of both.
 fn area_energy(alpha: f64, wide: f64) -> f64 {
-    if wide <= alpha { 1.0 } else { (alpha.max(0.0) / wide.max(f64::from(f32::MIN_POSITIVE))).powi(2) }
+    if wide <= alpha {
+        1.0
+    } else {
+        (alpha.max(0.0) / wide.max(f64::from(f32::MIN_POSITIVE))).powi(2)
+    }
 }

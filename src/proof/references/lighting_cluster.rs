@@ -14,7 +14,11 @@ pub const REFERENCES: Entry = Entry {
 /// Where a slice begins.
 fn border(index: f64, near: f64, far: f64, count: f64) -> f64 {
     let first = near.max(f64::from(1e-6f32));
-    if far <= first || count == 0.0 { first } else { first * (far / first).powf(index.min(count) / count) }
+    if far <= first || count == 0.0 {
+        first
+    } else {
+        first * (far / first).powf(index.min(count) / count)
+    }
 }
 
 /// The slice found by search, and the one that is as right at a border.

@@ -36,7 +36,8 @@ fn split(a: &mut Arguments<'_>) -> Expected {
         return near.into();
     }
     let (share, lambda) = (index.min(count) / count, lambda.clamp(0.0, 1.0));
-    (lambda * near * (far / near).powf(share) + (1.0 - lambda) * (near + (far - near) * share)).into()
+    (lambda * near * (far / near).powf(share) + (1.0 - lambda) * (near + (far - near) * share))
+        .into()
 }
 
 /// To the nearest whole texel; half way either is right.

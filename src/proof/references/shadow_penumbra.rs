@@ -18,5 +18,9 @@ fn near(a: &mut Arguments<'_>) -> Expected {
 
 fn distant(a: &mut Arguments<'_>) -> Expected {
     let (receiver, blocker, size) = (a.f64(), a.f64(), a.f64());
-    if receiver <= blocker || size <= 0.0 { 0.0.into() } else { ((receiver - blocker) * size).into() }
+    if receiver <= blocker || size <= 0.0 {
+        0.0.into()
+    } else {
+        ((receiver - blocker) * size).into()
+    }
 }

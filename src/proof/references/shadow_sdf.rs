@@ -11,7 +11,8 @@ pub const REFERENCES: Entry = Entry {
 /// The circles of two steps, one `ph` behind the other, meet at a point beside the ray; its
 /// distance from the ray over that along the ray is the cone's slope.
 fn soft_step(a: &mut Arguments<'_>) -> Expected {
-    let (res, h, ph, t, k) = (a.f64().clamp(0.0, 1.0), a.f64().max(0.0), a.f64(), a.f64(), a.f64().max(0.0));
+    let (res, h, ph, t, k) =
+        (a.f64().clamp(0.0, 1.0), a.f64().max(0.0), a.f64(), a.f64(), a.f64().max(0.0));
     let place = if ph > 0.0 && h < 2.0 * ph {
         // x^2 + y^2 = ph^2 and (x - ph)^2 + y^2 = h^2.
         let x = (2.0 * ph * ph - h * h) / (2.0 * ph);
