@@ -1,5 +1,6 @@
 //! The next generation of a bundle, for engines that draw while shaders are edited.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::diff::{Change, Difference};
@@ -84,11 +85,14 @@ fn changes(
     for key in before.keys().chain(after.keys()).collect::<BTreeSet<_>>() {
         let (kind, parts) = match (before.get(key), after.get(key)) {
             (Some(one), Some(other)) => {
-                if !known.contains_key(&(*one, *other)) {
-                    let parts = parts((old, &old.unit(*one)?), (new, &new.unit(*other)?))?;
-                    known.insert((*one, *other), parts);
-                }
-                ("changed", known[&(*one, *other)].clone())
+                let parts = match known.entry((*one, *other)) {
+                    Entry::Occupied(known) => known.get().clone(),
+                    Entry::Vacant(place) => {
+                        let sides = ((old, &old.unit(*one)?), (new, &new.unit(*other)?));
+                        place.insert(parts(sides.0, sides.1)?).clone()
+                    }
+                };
+                ("changed", parts)
             }
             (Some(_), None) => ("removed", Vec::new()),
             (None, _) => ("added", Vec::new()),

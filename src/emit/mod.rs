@@ -235,9 +235,9 @@ pub fn at_entry(error: Diagnostic, composed: &Composed, entry: &str) -> Diagnost
         part.kind == PartKind::Function && part.names.iter().any(|name| name == entry)
     };
     let part = composed.parts.iter().find(is_entry).filter(|_| error.labels.is_empty());
-    let name = part.and_then(|part| {
+    let name = part.map(|part| {
         let at = composed.text[part.range.clone()].find(&format!("fn {entry}"));
-        Some(part.range.start + at.map_or(0, |at| at + 3))
+        part.range.start + at.map_or(0, |at| at + 3)
     });
     match name.and_then(|start| composed.map.lookup(start..start + entry.len())) {
         Some(span) => error.at(span, "of this entry point"),

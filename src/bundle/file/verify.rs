@@ -19,7 +19,10 @@ impl Budget {
     fn spend(&mut self, bytes: usize) -> Result<(), Error> {
         // An empty part costs time too.
         match self.left.checked_sub(bytes as u64 + 1) {
-            Some(left) => Ok(self.left = left),
+            Some(left) => {
+                self.left = left;
+                Ok(())
+            }
             None => Err(Error::corrupt(
                 self.part,
                 format!(
