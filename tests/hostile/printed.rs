@@ -9,12 +9,12 @@ use super::{Outcome, run};
 /// Clears the screen, in seven and in eight bits, and turns writing around.
 const EVIL: &str = "a\u{1b}[2J\u{9b}2J\u{202e}b";
 
+type Case = (&'static str, fn() -> Outcome);
+
 pub fn trials() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 3] =
+    let cases: [Case; 3] =
         [("arguments", arguments), ("messages", messages), ("composed", composed)];
-    let trial = |(name, case): (&str, fn() -> Outcome)| {
-        Trial::test(format!("hostile::printed_{name}"), case)
-    };
+    let trial = |(name, case): Case| Trial::test(format!("hostile::printed_{name}"), case);
     cases.into_iter().map(trial).collect()
 }
 
