@@ -402,7 +402,7 @@ fn static_in_glsl() -> Outcome {
     check(said.contains("static in GLSL, which is composed for each value: negative, taps"), &said)
 }
 
-/// Exactly what was asked for is generated; keys that are none any more are told.
+/// Exactly what was asked for is generated; keys and programs that are none any more are told.
 fn usage() -> Outcome {
     let folder = tempfile::tempdir()?;
     let used = "spec tint=green\nspec taps=16\nspec gone=1\nspec tint=mauve\nother x\n";
@@ -419,5 +419,7 @@ fn usage() -> Outcome {
         .map_err(|_| "no manifest")?;
     let told: Vec<&str> =
         manifest.warnings.iter().map(|warning| warning.message.as_str()).collect();
-    check(told.len() == 2 && told[0].contains("`gone=1`"), &format!("{told:?}"))
+    let names = ["`gone=1`", "`tint=mauve`", "no program `other`"];
+    let all = told.len() == 3 && told.iter().zip(names).all(|(told, name)| told.contains(name));
+    check(all, &format!("{told:?}"))
 }
