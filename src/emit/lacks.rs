@@ -1,8 +1,13 @@
-//! Functions that GLSL 3.30 and GLSL ES 3.00 do not have: both are older than these, and naga
-//! writes their names all the same.
+//! What naga writes in GLSL although the language does not have it, or means something else by it.
+//!
+//! GLSL 3.30 and GLSL ES 3.00 are older than some functions, whose names naga writes all the same;
+//! for `frexp` it writes one of its own, by `log2`, which is wrong for negative numbers and small
+//! ones. In std140 a column of a matrix of two rows takes 16 bytes, in WGSL and in a reflection 8.
 
 use naga::back::glsl::Version;
-use naga::{Expression, MathFunction, Module, Span};
+use naga::{
+    AddressSpace, Expression, Handle, MathFunction, Module, Span, Type, TypeInner, VectorSize,
+};
 
 use crate::bundle::Target;
 use crate::compose::Composed;
@@ -17,6 +22,7 @@ const LATER: &[(MathFunction, &str)] = &[
     (MathFunction::ExtractBits, "bitfieldExtract"),
     (MathFunction::FirstLeadingBit, "findMSB"),
     (MathFunction::FirstTrailingBit, "findLSB"),
+    (MathFunction::Frexp, "frexp"),
     (MathFunction::InsertBits, "bitfieldInsert"),
     (MathFunction::Ldexp, "ldexp"),
     (MathFunction::Pack4xI8, "bitfieldInsert"),
@@ -28,7 +34,10 @@ const LATER: &[(MathFunction, &str)] = &[
     (MathFunction::Unpack4xU8, "bitfieldExtract"),
 ];
 
-/// Refuses functions that targets do not have, in the author's places where `composed` knows them.
+const TWO_ROWS: &str =
+    "a matrix of two rows in a uniform block is laid out otherwise in GLSL: use vectors";
+
+/// Refuses what targets do not have, in the author's places where `composed` knows them.
 ///
 /// # Errors
 /// `emit-failed` for each.
@@ -38,32 +47,60 @@ pub fn check(composed: &Composed, module: &Module, targets: &[Target]) -> Result
         if !targets.contains(target) {
             continue;
         }
-        for (name, span) in lacking(module, *version) {
+        let functions = lacking(module, *version)
+            .map(|(name, span)| (told(*target, name), span, "it is written so"));
+        let blocks = two_rows(module)
+            .map(|span| (format!("target `{target}`: {TWO_ROWS}"), span, "it is in here"));
+        for (message, span, label) in functions.chain(blocks) {
             let place = span.to_range().and_then(|range| composed.map.lookup(range));
-            let error = Diagnostic::error(codes::EMIT_FAILED, told(*target, name));
-            found.push(
-                place.into_iter().fold(error, |error, span| error.at(span, "it is written so")),
-            );
+            let error = Diagnostic::error(codes::EMIT_FAILED, message);
+            found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
         }
     }
     if found.is_empty() { Ok(()) } else { Err(found) }
 }
 
-const VERSIONS: &[(Target, Version)] =
-    &[(Target::GLSL330, Version::Desktop(330)), (Target::ESSL300, Version::new_gles(300))];
+const VERSIONS: &[(Target, Version)] = &[
+    (Target::GLSL450, Version::Desktop(450)),
+    (Target::GLSL330, Version::Desktop(330)),
+    (Target::ESSL300, Version::new_gles(300)),
+];
 
 fn told(target: Target, name: &str) -> String {
     format!("target `{target}`: the language has no `{name}`, which is needed here")
 }
 
-/// The first function that a version does not have.
+/// The first thing that a version does not have.
 pub fn first(module: &Module, version: Version) -> Option<String> {
+    if two_rows(module).next().is_some() {
+        return Some(TWO_ROWS.to_owned());
+    }
     let (name, _) = lacking(module, version).next()?;
     Some(format!("the language has no `{name}`, which is needed"))
 }
 
+/// Uniform blocks with matrices of two rows.
+fn two_rows(module: &Module) -> impl Iterator<Item = Span> {
+    let blocks = module.global_variables.iter();
+    let blocks = blocks.filter(|(_, one)| one.space == AddressSpace::Uniform);
+    blocks
+        .filter(|(_, one)| has_two_rows(module, one.ty))
+        .map(|(handle, _)| module.global_variables.get_span(handle))
+}
+
+fn has_two_rows(module: &Module, ty: Handle<Type>) -> bool {
+    match &module.types[ty].inner {
+        TypeInner::Matrix { rows, .. } => *rows == VectorSize::Bi,
+        TypeInner::Array { base, .. } => has_two_rows(module, *base),
+        TypeInner::Struct { members, .. } => {
+            members.iter().any(|member| has_two_rows(module, member.ty))
+        }
+        _ => false,
+    }
+}
+
 fn lacking(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
-    let is_old = VERSIONS.iter().any(|(_, known)| *known == version);
+    let is_old = version != Version::Desktop(450);
     let points = module.entry_points.iter().map(|point| &point.function);
     let all = module.functions.iter().map(|(_, function)| function).chain(points);
     let all = all.filter(move |_| is_old);
