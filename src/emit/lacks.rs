@@ -6,32 +6,33 @@
 
 use naga::back::glsl::Version;
 use naga::{
-    AddressSpace, Expression, Handle, MathFunction, Module, Span, Type, TypeInner, VectorSize,
+    AddressSpace, Binding, BuiltIn, Expression, Function, Handle, ImageClass, ImageQuery,
+    MathFunction, Module, Span, Type, TypeInner, VectorSize,
 };
 
 use crate::bundle::Target;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
-/// Functions of WGSL, as GLSL calls what naga writes for them.
+/// Functions of WGSL, as GLSL calls what naga writes for them; the newest GLSL has them all.
 const LATER: &[(MathFunction, &str)] = &[
-    (MathFunction::CountOneBits, "bitCount"),
-    (MathFunction::CountTrailingZeros, "findLSB"),
-    (MathFunction::Dot4I8Packed, "bitfieldExtract"),
-    (MathFunction::Dot4U8Packed, "bitfieldExtract"),
-    (MathFunction::ExtractBits, "bitfieldExtract"),
-    (MathFunction::FirstLeadingBit, "findMSB"),
-    (MathFunction::FirstTrailingBit, "findLSB"),
-    (MathFunction::Frexp, "frexp"),
-    (MathFunction::InsertBits, "bitfieldInsert"),
-    (MathFunction::Ldexp, "ldexp"),
-    (MathFunction::Pack4xI8, "bitfieldInsert"),
-    (MathFunction::Pack4xI8Clamp, "bitfieldInsert"),
-    (MathFunction::Pack4xU8, "bitfieldInsert"),
-    (MathFunction::Pack4xU8Clamp, "bitfieldInsert"),
-    (MathFunction::ReverseBits, "bitfieldReverse"),
-    (MathFunction::Unpack4xI8, "bitfieldExtract"),
-    (MathFunction::Unpack4xU8, "bitfieldExtract"),
+    (MathFunction::CountOneBits, "`bitCount`"),
+    (MathFunction::CountTrailingZeros, "`findLSB`"),
+    (MathFunction::Dot4I8Packed, "`bitfieldExtract`"),
+    (MathFunction::Dot4U8Packed, "`bitfieldExtract`"),
+    (MathFunction::ExtractBits, "`bitfieldExtract`"),
+    (MathFunction::FirstLeadingBit, "`findMSB`"),
+    (MathFunction::FirstTrailingBit, "`findLSB`"),
+    (MathFunction::Frexp, "`frexp`"),
+    (MathFunction::InsertBits, "`bitfieldInsert`"),
+    (MathFunction::Ldexp, "`ldexp`"),
+    (MathFunction::Pack4xI8, "`bitfieldInsert`"),
+    (MathFunction::Pack4xI8Clamp, "`bitfieldInsert`"),
+    (MathFunction::Pack4xU8, "`bitfieldInsert`"),
+    (MathFunction::Pack4xU8Clamp, "`bitfieldInsert`"),
+    (MathFunction::ReverseBits, "`bitfieldReverse`"),
+    (MathFunction::Unpack4xI8, "`bitfieldExtract`"),
+    (MathFunction::Unpack4xU8, "`bitfieldExtract`"),
 ];
 
 const TWO_ROWS: &str =
@@ -48,7 +49,7 @@ pub fn check(composed: &Composed, module: &Module, targets: &[Target]) -> Result
             continue;
         }
         let functions = lacking(module, *version)
-            .map(|(name, span)| (told(*target, name), span, "it is written so"));
+            .map(|(what, span)| (told(*target, what), span, "it is written so"));
         let blocks = two_rows(module)
             .map(|span| (format!("target `{target}`: {TWO_ROWS}"), span, "it is in here"));
         for (message, span, label) in functions.chain(blocks) {
@@ -66,8 +67,8 @@ const VERSIONS: &[(Target, Version)] = &[
     (Target::ESSL300, Version::new_gles(300)),
 ];
 
-fn told(target: Target, name: &str) -> String {
-    format!("target `{target}`: the language has no `{name}`, which is needed here")
+fn told(target: Target, what: &str) -> String {
+    format!("target `{target}`: the language has no {what}, which is needed here")
 }
 
 /// The first thing that a version does not have.
@@ -75,8 +76,11 @@ pub fn first(module: &Module, version: Version) -> Option<String> {
     if two_rows(module).next().is_some() {
         return Some(TWO_ROWS.to_owned());
     }
-    let (name, _) = lacking(module, version).next()?;
-    Some(format!("the language has no `{name}`, which is needed"))
+    if asks_for_sample(module, version) {
+        return Some("the language has no `gl_SampleID`, which is needed".to_owned());
+    }
+    let (what, _) = lacking(module, version).next()?;
+    Some(format!("the language has no {what}, which is needed"))
 }
 
 /// Uniform blocks with matrices of two rows.
@@ -100,28 +104,109 @@ fn has_two_rows(module: &Module, ty: Handle<Type>) -> bool {
 }
 
 fn lacking(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
-    let is_old = version != Version::Desktop(450);
     let points = module.entry_points.iter().map(|point| &point.function);
     let all = module.functions.iter().map(|(_, function)| function).chain(points);
-    let all = all.filter(move |_| is_old);
-    all.flat_map(move |function| {
+    let expressions = all.flat_map(move |function| {
         let expressions = function.expressions.iter();
         expressions.filter_map(move |(handle, expression)| {
-            Some((later(version, expression)?, function.expressions.get_span(handle)))
+            let what = later(module, function, version, expression)?;
+            Some((what, function.expressions.get_span(handle)))
         })
+    });
+    expressions.chain(arrays_of_arrays(module, version))
+}
+
+fn arrays_of_arrays(
+    module: &Module,
+    version: Version,
+) -> impl Iterator<Item = (&'static str, Span)> {
+    let types = module.types.iter().filter(move |_| version != NEWEST);
+    types.filter_map(|(handle, ty)| match &ty.inner {
+        TypeInner::Array { base, .. } => {
+            let is_array = matches!(module.types[*base].inner, TypeInner::Array { .. });
+            is_array.then(|| ("array of arrays", place_of(module, handle)))
+        }
+        _ => None,
     })
 }
 
-/// What GLSL calls a function that a version does not have.
-fn later(version: Version, expression: &Expression) -> Option<&'static str> {
+/// Where a type without a name is first asked for.
+fn place_of(module: &Module, ty: Handle<Type>) -> Span {
+    let points = module.entry_points.iter().map(|point| &point.function);
+    let functions = module.functions.iter().map(|(_, function)| function).chain(points);
+    let in_functions = functions.flat_map(|function| {
+        let locals = function.local_variables.iter().filter(move |(_, local)| local.ty == ty);
+        let made = function.expressions.iter().filter(move |(_, one)| {
+            matches!(one, Expression::Compose { ty: own, .. } | Expression::ZeroValue(own) if *own == ty)
+        });
+        let locals = locals.map(|(handle, _)| function.local_variables.get_span(handle));
+        locals.chain(made.map(|(handle, _)| function.expressions.get_span(handle)))
+    });
+    let globals = module.global_variables.iter().filter(|(_, global)| global.ty == ty);
+    let globals = globals.map(|(handle, _)| module.global_variables.get_span(handle));
+    let holders = module.types.iter().filter(|(_, one)| match &one.inner {
+        TypeInner::Struct { members, .. } => members.iter().any(|member| member.ty == ty),
+        _ => false,
+    });
+    let holders = holders.map(|(handle, _)| module.types.get_span(handle));
+    let mut all = globals.chain(holders).chain(in_functions);
+    all.find(Span::is_defined).unwrap_or_default()
+}
+
+/// What GLSL calls something that a version does not have.
+fn later(
+    module: &Module,
+    function: &Function,
+    version: Version,
+    expression: &Expression,
+) -> Option<&'static str> {
+    let is_old = version != NEWEST;
     match expression {
-        Expression::Math { fun: MathFunction::QuantizeToF16, .. } => {
-            (version == Version::Desktop(330)).then_some("unpackHalf2x16")
+        Expression::ImageSample { image, depth_ref: None, .. }
+            if is_depth(module, function, *image) =>
+        {
+            Some(PLAIN_DEPTH)
         }
-        Expression::Math { fun, .. } => {
+        Expression::Math { fun: MathFunction::QuantizeToF16, .. } => {
+            (version == Version::Desktop(330)).then_some("`unpackHalf2x16`")
+        }
+        Expression::Math { fun, .. } if is_old => {
             LATER.iter().find(|(known, _)| known == fun).map(|(_, name)| *name)
         }
-        Expression::ImageSample { gather: Some(_), .. } => Some("textureGather"),
+        Expression::ImageSample { gather: Some(_), .. } if is_old => Some("`textureGather`"),
+        Expression::ImageQuery { query: ImageQuery::NumLevels, .. } if is_old => {
+            Some("`textureQueryLevels`")
+        }
+        Expression::ImageQuery { query: ImageQuery::NumSamples, .. } if is_old => {
+            Some("`textureSamples`")
+        }
         _ => None,
     }
+}
+
+const NEWEST: Version = Version::Desktop(450);
+const PLAIN_DEPTH: &str = "depth texture that is sampled without a comparison";
+
+fn is_depth(module: &Module, function: &Function, image: Handle<Expression>) -> bool {
+    let ty = match &function.expressions[image] {
+        Expression::GlobalVariable(variable) => module.global_variables[*variable].ty,
+        Expression::FunctionArgument(index) => function.arguments[*index as usize].ty,
+        _ => return false,
+    };
+    let depth = ImageClass::Depth { multi: false };
+    matches!(&module.types[ty].inner, TypeInner::Image { class, .. } if *class == depth)
+}
+
+/// Whether an entry point of GLSL ES 3.00 asks for the number of a sample.
+fn asks_for_sample(module: &Module, version: Version) -> bool {
+    let is_it = |ty: Handle<Type>, binding: Option<&Binding>| match &module.types[ty].inner {
+        TypeInner::Struct { members, .. } => {
+            members.iter().any(|one| one.binding == Some(Binding::BuiltIn(BuiltIn::SampleIndex)))
+        }
+        _ => binding == Some(&Binding::BuiltIn(BuiltIn::SampleIndex)),
+    };
+    let mut points = module.entry_points.iter().map(|point| &point.function);
+    version != NEWEST
+        && points
+            .any(|one| one.arguments.iter().any(|given| is_it(given.ty, given.binding.as_ref())))
 }

@@ -15,6 +15,7 @@ use lamplight::execute::executors::{self, prepare};
 use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Pair, Session, on_thread};
+use lamplight::permute::axis::ValueSet;
 use lamplight::picture::frame::probe;
 use libtest_mimic::{Failed, Trial};
 
@@ -37,13 +38,15 @@ const OPEN: f64 = 0.01;
 const MOST_FAILURES: usize = 20;
 
 pub fn trials() -> Vec<Trial> {
-    [("wesl", Language::Wesl), ("glsl", Language::Glsl)]
-        .map(|(name, language)| {
-            Trial::test(format!("frames/shipped/{name}"), move || {
-                on_thread(|| drawn(language)).ok_or("panicked")?.map_err(Failed::from)
-            })
+    let drawn = [("wesl", Language::Wesl), ("glsl", Language::Glsl)].map(|(name, language)| {
+        Trial::test(format!("frames/shipped/{name}"), move || {
+            on_thread(|| drawn(language)).ok_or("panicked")?.map_err(Failed::from)
         })
-        .into()
+    });
+    let others = Trial::test("frames/shipped/others_are_noticed", || {
+        on_thread(others_are_noticed).ok_or("panicked")?.map_err(Failed::from)
+    });
+    drawn.into_iter().chain([others]).collect()
 }
 
 /// Those of the environment, or all but MSL.
@@ -84,6 +87,37 @@ fn drawn(language: Language) -> Result<(), String> {
         failures.extend(driver.lacks.keys().map(|reason| format!("{}: {reason}", driver.target)));
     }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
+}
+
+/// The bytes of another permutation, whose surfaces scatter otherwise, are not taken for right.
+fn others_are_noticed() -> Result<(), String> {
+    let sources = Sources::load(Language::Wesl)?;
+    let space = &sources.space;
+    let usual = space.default_assignment();
+    let axis = space.axes().iter().position(|axis| axis.name == "diffuse").ok_or("no axis")?;
+    let choose = |axis: usize, allowed: ValueSet| {
+        let own = allowed.iter().find(|ordinal| *ordinal == usual.ordinal(axis));
+        own.or_else(|| allowed.iter().next()).unwrap_or_default()
+    };
+    let other = space.pick_valid(&[(axis, 1)], choose).ok_or("no other permutation")?;
+    let bundle = bundle(&sources, &[usual.clone(), other.clone()], &[Target::GLSL330])?;
+    let (mut driver, scene) = (Driver::open(Target::GLSL330)?, sources.scene(&usual)?);
+    for (point, is_right) in [(&usual, true), (&other, false)] {
+        let key = space.key(point).to_string();
+        let targets = driver.frame(&bundle, Language::Wesl, &key, &scene);
+        let targets = targets.map_err(|error| error.message)?;
+        let watched = [Watched { size: SIZE, targets: &targets }];
+        let resources =
+            fragments::resources(scene.buffers.clone(), &scene.fixtures, &BTreeMap::new());
+        let found = fragments::recompute_each(&scene.fragment, resources, &watched, STEP)?;
+        if found.iter().any(|found| found.is_ok() != is_right) {
+            return Err(format!(
+                "[{key}] is taken for {}",
+                if is_right { "wrong" } else { "right" }
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// What draws the files of a target, and what became of them.

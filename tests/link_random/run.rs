@@ -15,6 +15,7 @@ use std::sync::Arc;
 use lamplight::bundle::{Kind, Language, Reflection, Stage, Target, Unit, Varying};
 use lamplight::compose::Composed;
 use lamplight::diagnostic::{Diagnostic, codes};
+use lamplight::emit::reflect;
 use lamplight::eval::{Bounded, Function, Kind as Slot, Machine, Number, Program, Resources};
 use lamplight::execute::executors::{self, prepare};
 use lamplight::execute::fixture::Fixture;
@@ -159,7 +160,9 @@ impl<'r> Ready<'r> {
         let told = |problems: Vec<Diagnostic>| format!("seed {seed}: {problems:?}");
         let validated = validate(composed).map_err(told)?;
         let mut random = Random(seed ^ 0xfeed);
-        let text = feeder(&unit.reflection, &mut random);
+        // Of the whole text: an output leaves out what it does not read.
+        let whole = reflect(&validated, entry).map_err(|problem| told(vec![problem]))?;
+        let text = feeder(&whole, &mut random);
         let feeder = Composed::of_text(Language::Wesl, None, text);
         let feeder = validate(&feeder).map_err(told)?;
         let tells = probe::told(&validated.module, entry);
