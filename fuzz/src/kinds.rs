@@ -199,7 +199,7 @@ fn manifest(bytes: &[u8]) -> String {
     let id = sources.add("lamplight.toml", String::from_utf8_lossy(bytes).into_owned());
     match manifest::parse(&sources, id) {
         Err(problems) => told(&sources, &problems),
-        Ok(Manifest { programs, warnings }) => {
+        Ok(Manifest { programs, warnings, .. }) => {
             let spaces = programs
                 .iter()
                 .map(|program| format!("{}: {}\n", program.name, space(&program.space)));
