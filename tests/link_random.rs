@@ -176,7 +176,7 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
                 }
                 if how.often > 0 && seed % how.often == 0 {
                     tally.vertex_alone += usize::from(sound.runnable.is_none());
-                    runnables.extend(sound.runnable);
+                    runnables.extend(sound.runnable.map(|one| *one));
                 }
                 if seed % how.every == 0 {
                     owners.extend(sound.outputs.iter().map(|_| seed));
@@ -266,7 +266,7 @@ fn again(program: &Program, seed: u64, kind: &str, runner: Option<&Runner>) -> O
             let refused = refused.iter().map(|(index, words)| refusal(views[*index], words));
             let ran = match (runner, &sound.runnable) {
                 (Some(runner), Some(runnable)) => {
-                    runner.run(std::slice::from_ref(runnable), &mut BTreeMap::new()).ok()?
+                    runner.run(std::slice::from_ref(&**runnable), &mut BTreeMap::new()).ok()?
                 }
                 _ => Vec::new(),
             };

@@ -47,7 +47,7 @@ pub struct Sound {
     /// Why targets were compiled as a whole.
     pub whole: Vec<(String, Reason)>,
     /// One of its fragment stages, any of its permutations.
-    pub runnable: Option<Runnable>,
+    pub runnable: Option<Box<Runnable>>,
 }
 
 /// What became of a program.
@@ -195,7 +195,8 @@ impl Case {
             if sound.runnable.is_none() && is_fragment(&made.unit) {
                 let (entry, unit) = (name.to_owned(), made.unit);
                 let seed = source.seed;
-                sound.runnable = Some(Runnable { seed, composed, entry, unit });
+                let runnable = Runnable { seed, composed, entry, unit };
+                sound.runnable = Some(Box::new(runnable));
             }
         }
         sound.outputs.iter().try_for_each(read_again)?;

@@ -93,9 +93,12 @@ struct Stages {
 /// The targets of both draws.
 struct Drawn {
     target: Target,
-    outputs: Vec<Vec<u32>>,
-    inputs: Vec<Vec<u32>>,
+    outputs: Targets,
+    inputs: Targets,
 }
+
+/// Words of each target.
+type Targets = Vec<Vec<u32>>;
 
 impl Runner {
     /// Opens what runs each target.
@@ -207,7 +210,7 @@ impl<'r> Ready<'r> {
         &self,
         stages: &Stages,
         session: &dyn Session,
-    ) -> Result<(Vec<Vec<u32>>, Vec<Vec<u32>>), Diagnostic> {
+    ) -> Result<(Targets, Targets), Diagnostic> {
         self.drawing(|drawing| {
             let draw = |fragment| {
                 let pair = Pair { vertex: &stages.feeder, fragment };
@@ -319,9 +322,12 @@ fn numbers(start: u64, path: &str) -> Vec<f64> {
 
 /// The evaluator of one stage: what was given the same is computed once.
 struct Evaluator<'p> {
-    machine: Box<dyn FnMut(&[Vec<u32>; 4]) -> Result<Wanted, String> + 'p>,
+    machine: Box<Compute<'p>>,
     known: BTreeMap<Vec<u32>, Wanted>,
 }
+
+/// Computes a quad from the words that its fragments are given.
+type Compute<'p> = dyn FnMut(&[Vec<u32>; 4]) -> Result<Wanted, String> + 'p;
 
 /// What it says of a quad.
 #[derive(Clone)]
@@ -459,11 +465,7 @@ impl Metal {
         Ok(Self { compiled, first })
     }
 
-    fn draw(
-        &self,
-        index: usize,
-        ready: &Ready<'_>,
-    ) -> Result<(Vec<Vec<u32>>, Vec<Vec<u32>>), Diagnostic> {
+    fn draw(&self, index: usize, ready: &Ready<'_>) -> Result<(Targets, Targets), Diagnostic> {
         let first = self.first[&index];
         let outputs = &ready.runnable.unit.reflection.outputs;
         let count =
