@@ -24,6 +24,7 @@ mod judged;
 mod keys;
 mod lint;
 mod list;
+mod lsp;
 mod merge;
 mod mutate;
 mod overwrite;
@@ -84,6 +85,7 @@ enum Command {
     Mutate(mutate::Arguments),
     Export(export::Arguments),
     Explain(explain::Arguments),
+    Lsp(lsp::Arguments),
     Completions(completions::Completions),
     Man(completions::Manual),
 }
@@ -190,6 +192,7 @@ fn dispatch(
         Command::Mutate(arguments) => mutate::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Lsp(arguments) => lsp::run(arguments),
         Command::Completions(arguments) => completions::completions(&arguments, described()),
         Command::Man(arguments) => completions::manual(&arguments, described()),
     }
