@@ -114,7 +114,7 @@ pub fn unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic
 fn import(composed: &Composed, module: &str, name: &str) -> String {
     match composed.language {
         Language::Wesl => format!("import lamplight::{}::{name};", module.replace('/', "::")),
-        Language::Glsl => format!("#include <lamplight/{module}.glsl>"),
+        Language::Glsl => format!("#include \"lamplight/{module}.glsl\""),
     }
 }
 

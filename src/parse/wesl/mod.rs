@@ -18,7 +18,7 @@ mod trivia;
 
 pub use module::{
     Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import,
-    Item, ItemKind, Module, Operand, Origin, Path, Reference,
+    Item, ItemKind, Module, Operand, Origin, Parts, Path, Reference,
 };
 pub use name::{Name, Names, is_keyword};
 

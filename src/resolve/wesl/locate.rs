@@ -3,7 +3,7 @@
 use super::graph::{Candidate, Constant, Target};
 use super::load::Loader;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{ConditionId, Name, Origin, Path};
+use crate::parse::wesl::{ConditionId, Module, Name, Origin, Path};
 use crate::source::{LIMITS, Span};
 
 /// A path from a package's root.
@@ -21,6 +21,29 @@ const MEANINGS: usize = 64;
 /// Failures of a graph for which names are suggested.
 const SUGGESTED: usize = 100;
 
+/// What of a path an error may be about.
+#[derive(Debug, Clone, Copy)]
+struct Places {
+    whole: Span,
+    first: Span,
+    /// The whole path where its parents are not written in one piece.
+    parents: Span,
+    last: Span,
+}
+
+impl Places {
+    fn new(module: &Module, path: &Path) -> Self {
+        let whole = module.span(path.range.clone());
+        let parents = Some(path.parts.parents.clone()).filter(|range| range.start < range.end);
+        Self {
+            whole,
+            first: module.span(path.parts.first.clone()),
+            parents: parents.map_or(whole, |range| module.span(range)),
+            last: module.span(path.parts.last.clone()),
+        }
+    }
+}
+
 impl Loader<'_> {
     /// What a path of a module may mean. `import` is its index if an import has it: that one's
     /// own name does not count for its first segment, and it may lead to a module.
@@ -30,11 +53,11 @@ impl Loader<'_> {
         path: &Path,
         import: Option<usize>,
     ) -> Vec<Candidate> {
-        let span = self.nodes[node as usize].module.span(path.range.clone());
+        let places = Places::new(&self.nodes[node as usize].module, path);
         let mut visiting: Vec<usize> = import.into_iter().collect();
         let found = self.absolute(node, path, &mut visiting).and_then(|absolutes| {
             let candidate = |absolute: Absolute| {
-                let target = self.target(&absolute, span, import.is_some())?;
+                let target = self.target(&absolute, places, import.is_some())?;
                 Ok(Candidate { conditions: absolute.conditions, target })
             };
             absolutes.into_iter().map(candidate).collect()
@@ -68,8 +91,9 @@ impl Loader<'_> {
                     named.partition(|index| visiting.contains(index));
                 if through.is_empty() {
                     let cyclic = visiting.len() > 1 && !seen.is_empty();
+                    let places = Places::new(&here.module, path);
                     return self
-                        .in_package(node, &path.segments, span, cyclic)
+                        .in_package(node, &path.segments, places, cyclic)
                         .map(|absolute| vec![absolute]);
                 }
                 self.through_imports(node, path, &through, visiting)
@@ -140,7 +164,7 @@ impl Loader<'_> {
         &self,
         node: u32,
         segments: &[Name],
-        span: Span,
+        places: Places,
         in_circle: bool,
     ) -> Result<Absolute, Diagnostic> {
         let first = self.names.text(segments[0]);
@@ -151,8 +175,8 @@ impl Loader<'_> {
             Some(index) => Some(index + 1),
             None if own => Some(self.nodes[node as usize].package),
             None if segments[0] == Name::CONSTANTS => None,
-            None if in_circle => return Err(cyclic(span)),
-            None => return Err(self.unknown_package(node, first, span)),
+            None if in_circle => return Err(cyclic(places.whole)),
+            None => return Err(self.unknown_package(node, first, places.first)),
         };
         Ok(Absolute { package, segments: segments[1..].to_vec(), conditions: Vec::new() })
     }
@@ -169,7 +193,11 @@ impl Loader<'_> {
             }
             false => error.suggest(
                 first,
-                self.packages.dependencies.iter().map(|package| package.name.as_str()),
+                self.packages
+                    .dependencies
+                    .iter()
+                    .map(|package| package.name.as_str())
+                    .chain(["package", "super"]),
             ),
         }
     }
@@ -177,9 +205,10 @@ impl Loader<'_> {
     fn target(
         &mut self,
         absolute: &Absolute,
-        span: Span,
+        places: Places,
         import: bool,
     ) -> Result<Target, Diagnostic> {
+        let span = places.whole;
         let Some(package) = absolute.package else {
             return Ok(self.constant(&absolute.segments, span));
         };
@@ -199,12 +228,12 @@ impl Loader<'_> {
             Some(node) if !self.nodes[node as usize].module.errors.is_empty() => {
                 self.nodes[node as usize].module.errors[0].clone()
             }
-            Some(node) => self.missing_item(node, *last, span),
+            Some(node) => self.missing_item(node, *last, places.last),
             // The last name may be an item's or a module's: below a folder, a module's.
             None if parents.is_empty() || self.is_module(package, parents, span, false)? => {
                 self.missing_module(package, &absolute.segments, span)
             }
-            None => self.missing_module(package, parents, span),
+            None => self.missing_module(package, parents, places.parents),
         })
     }
 
