@@ -63,14 +63,15 @@ impl Reader<'_, '_> {
     fn path(&mut self, mut path: Path, start: Option<usize>) -> Result<(), Diagnostic> {
         let own = start.unwrap_or(self.at);
         loop {
-            let name = self.tokens.range(self.at, self.at + 1);
+            let name = self.tokens.identifier(self.at, "a name")?;
+            let place = self.tokens.range(self.at, self.at + 1);
             if path.segments.is_empty() {
-                path.parts.first = name.clone();
+                path.parts.first = place.clone();
             } else if self.at > own {
                 path.parts.parents = self.tokens.range(own, self.at - 1);
             }
-            path.parts.last = name;
-            path.segments.push(self.tokens.identifier(self.at, "a name")?);
+            path.parts.last = place;
+            path.segments.push(name);
             self.at += 1;
             if self.tokens.kind(self.at) != Some(Kind::Path) {
                 break;
