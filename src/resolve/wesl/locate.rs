@@ -75,7 +75,7 @@ impl Loader<'_> {
         visiting: &mut Vec<usize>,
     ) -> Result<Vec<Absolute>, Diagnostic> {
         let here = &self.nodes[node as usize];
-        let span = here.module.span(path.range.clone());
+        let places = Places::new(&here.module, path);
         match path.origin {
             Origin::Package => Ok(vec![Absolute {
                 package: Some(here.package),
@@ -83,7 +83,12 @@ impl Loader<'_> {
                 conditions: Vec::new(),
             }]),
             Origin::Super(ups) => {
-                self.above(node, ups as usize, &path.segments, span).map(|absolute| vec![absolute])
+                let place = places.whole;
+                self.above(node, ups as usize, &path.segments, place).map(|absolute| vec![absolute])
+            }
+            // The path of an import starts with a package, whatever other imports bring.
+            Origin::Scope if !visiting.is_empty() && self.is_package(node, path.segments[0]) => {
+                self.in_package(node, &path.segments, places, false).map(|absolute| vec![absolute])
             }
             Origin::Scope => {
                 let named = here.aliases.get(&path.segments[0]).into_iter().flatten();
@@ -91,7 +96,6 @@ impl Loader<'_> {
                     named.partition(|index| visiting.contains(index));
                 if through.is_empty() {
                     let cyclic = visiting.len() > 1 && !seen.is_empty();
-                    let places = Places::new(&here.module, path);
                     return self
                         .in_package(node, &path.segments, places, cyclic)
                         .map(|absolute| vec![absolute]);
@@ -158,6 +162,14 @@ impl Loader<'_> {
         let above = here.path[..depth].iter().filter_map(|part| self.names.find(part));
         let segments = above.chain(segments.iter().copied()).collect();
         Ok(Absolute { package: Some(here.package), segments, conditions: Vec::new() })
+    }
+
+    /// Whether a path may start with the name as that of a package.
+    fn is_package(&self, node: u32, name: Name) -> bool {
+        let text = self.names.text(name);
+        name == Name::CONSTANTS
+            || self.packages.dependencies.iter().any(|package| package.name == text)
+            || self.package(self.nodes[node as usize].package).name == text
     }
 
     fn in_package(
