@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use lamplight::bundle::Language;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::executors;
-use lamplight::proof::check::{Open, failures};
+use lamplight::proof::check::{Open, failures, failures_as_text};
 use lamplight::proof::library::Library;
 use lamplight::scene::Equirect;
 use lamplight::source::{Memory, SourceSet};
