@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::diagnostic::Diagnostic;
-use lamplight::execute::executors::{self, prepare};
+use lamplight::execute::executors;
 use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Pair, Session, on_thread};
@@ -138,7 +138,6 @@ impl Driver {
     fn open(target: Target) -> Result<Self, String> {
         let found = executors::shipping(target);
         let (entry, shipping) = found.ok_or_else(|| format!("nothing draws {target}"))?;
-        prepare(&[entry]);
         let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
         let (tally, failures, lacks, telling, time) = Default::default();
         Ok(Self { target, session, drawn: 0, tally, failures, lacks, telling, time })

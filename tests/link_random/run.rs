@@ -17,7 +17,7 @@ use lamplight::compose::Composed;
 use lamplight::diagnostic::{Diagnostic, codes};
 use lamplight::emit::reflect;
 use lamplight::eval::{Bounded, Function, Kind as Slot, Machine, Number, Program, Resources};
-use lamplight::execute::executors::{self, prepare};
+use lamplight::execute::executors;
 use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh, State};
 use lamplight::execute::raster::Compiled;
@@ -109,7 +109,6 @@ impl Runner {
         let session = |target: &Target| {
             let found = executors::shipping(*target);
             let (entry, shipping) = found.ok_or_else(|| format!("nothing runs {target}"))?;
-            prepare(&[entry]);
             let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
             Ok((*target, session))
         };
