@@ -46,14 +46,17 @@ mod canonical;
 mod compile;
 mod cut;
 mod mark;
+mod mixer;
 mod module;
 mod names;
 mod outline;
 mod pool;
+mod ready;
 mod reason;
 mod spirv;
 mod summary;
 mod text;
+mod texts;
 mod translate;
 mod words;
 
@@ -137,8 +140,9 @@ impl<'a> Linker<'a> {
         });
         let parts = Parts { functions: named.collect(), entry };
         let pool = self.pool.read().unwrap_or_else(PoisonError::into_inner);
-        let targets = self.targets.iter().enumerate();
-        let targets = targets.map(|(index, target)| pool.link(&parts, index, *target)).collect();
+        let (targets, mut text) = (self.targets.iter().enumerate(), String::new());
+        let targets = targets.map(|(index, target)| pool.link(&parts, index, *target, &mut text));
+        let targets = targets.collect();
         Ok(Linked { reflection, targets, suspect })
     }
 
