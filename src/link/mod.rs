@@ -173,9 +173,10 @@ impl<'a> Linker<'a> {
         unit: canonical::Unit,
         units: &[Option<Arc<Unit>>],
     ) -> Result<Arc<Unit>, Reason> {
-        let summaries: Vec<Option<&Summary>> =
-            units.iter().map(|unit| unit.as_ref().map(|unit| &unit.summary)).collect();
-        let recipe: Recipe<'_> = recipe(outline, unit, &summaries)?;
+        let summary = |function: usize| -> Option<&Summary> {
+            units.get(function)?.as_ref().map(|unit| &unit.summary)
+        };
+        let recipe: Recipe<'_> = recipe(outline, unit, &summary)?;
         let key = recipe.key(outline);
         self.asked.fetch_add(1, Ordering::Relaxed);
         let known = self.pool.read().unwrap_or_else(PoisonError::into_inner).find(&key);

@@ -9,7 +9,7 @@ use naga::valid::{ValidationFlags, Validator};
 use naga::{Constant, Expression, Literal, Module, Scalar, Span, Type, TypeInner};
 
 use super::cut::Reference;
-use super::ready::{Identifier, Ready};
+use super::ready::{Bits, Identifier, Ready};
 use super::reason::Reason;
 use super::text;
 use crate::bundle::Target;
@@ -31,8 +31,10 @@ pub struct Names {
 /// What the names of a text become.
 pub struct Chosen {
     pub renames: Renames,
+    /// The names that have others than usual.
+    pub renamed: Bits,
     /// By the number of an identifier: whether a name has it as usual.
-    taken: Vec<bool>,
+    taken: Bits,
 }
 
 /// Names that a text cannot have as usual, with what they are instead.
@@ -85,22 +87,21 @@ impl Names {
 
     /// The names of a text that cannot be as usual.
     pub fn choose(&self, fragments: &[&Ready]) -> Result<Chosen, Reason> {
-        let mut words = vec![false; self.words.len()];
-        let mut names = vec![false; self.usual.len()];
-        let mut captured = vec![false; self.usual.len()];
+        let mut words = Bits::new(self.words.len());
+        let mut names = Bits::new(self.usual.len());
+        let mut captured = Bits::new(self.usual.len());
         for ready in fragments {
-            ready.words.iter().for_each(|word| words[*word as usize] = true);
-            ready.names.iter().for_each(|name| names[*name as usize] = true);
-            ready.captured.iter().for_each(|name| captured[*name as usize] = true);
+            ready.words.add_to(&mut words);
+            ready.names.add_to(&mut names);
+            ready.captured.iter().for_each(|name| _ = captured.insert(*name as usize));
         }
-        let mut taken = vec![false; self.words.len()];
+        let mut taken = Bits::new(self.words.len());
         let (mut open, mut wanted_twice) = (Vec::new(), Vec::new());
-        let named = || (0..self.usual.len()).filter(|name| names[*name]);
-        for name in named() {
+        for name in names.numbers() {
             let word = self.usual[name].2 as usize;
-            if words[word] || captured[name] {
+            if words.has(word) || captured.has(name) {
                 open.push(name);
-            } else if std::mem::replace(&mut taken[word], true) {
+            } else if taken.insert(word) {
                 wanted_twice.push(word);
             }
         }
@@ -109,13 +110,15 @@ impl Names {
         wanted_twice.sort_unstable();
         wanted_twice.dedup();
         for word in wanted_twice {
-            let wants = |name: &usize| self.usual[*name].2 as usize == word && !captured[*name];
-            let first = named().filter(wants).min_by_key(author);
-            open.extend(named().filter(wants).filter(|name| Some(*name) != first));
+            let wants = |name: &usize| self.usual[*name].2 as usize == word && !captured.has(*name);
+            let first = names.numbers().filter(wants).min_by_key(author);
+            open.extend(names.numbers().filter(wants).filter(|name| Some(*name) != first));
         }
         open.sort_by_key(author);
-        let renames = self.numbered(&open, fragments, |word| words[word] || taken[word])?;
-        Ok(Chosen { renames, taken })
+        let renames = self.numbered(&open, fragments, |word| words.has(word) || taken.has(word))?;
+        let mut renamed = Bits::new(self.usual.len());
+        open.iter().for_each(|name| _ = renamed.insert(*name));
+        Ok(Chosen { renames, renamed, taken })
     }
 
     /// Numbers some names, so that each is new in the text.
@@ -150,7 +153,7 @@ impl Names {
             Identifier::Usual(word) => (None, Some(*word)),
             Identifier::Text(text) => (Some(text), self.words.get(text).copied()),
         };
-        word.is_some_and(|word| chosen.taken[word as usize])
+        word.is_some_and(|word| chosen.taken.has(word as usize))
             || chosen.renames.values().any(|renamed| match text {
                 Some(text) => text == renamed,
                 None => self.words.get(renamed).copied() == word,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::cut::Fragment;
-use super::names::{Names, Renames};
+use super::names::{Chosen, Names, Renames};
 use super::reason::Reason;
 use super::words::words;
 
@@ -76,15 +76,77 @@ impl Template {
 /// A fragment with numbers for names and identifiers.
 pub struct Ready {
     pub template: Template,
-    /// The author's names it has, each once, sorted.
-    pub names: Vec<u32>,
+    /// The author's names it has.
+    pub names: Numbers,
     /// Names that it cannot have as they are: it declares the same itself.
     pub captured: Vec<u32>,
     /// Identifiers that are neither references nor its own.
-    pub words: Vec<u32>,
+    pub words: Numbers,
     /// Identifiers that it declares within itself.
     pub locals: Vec<u32>,
     derived: Vec<Derived>,
+}
+
+/// A set of numbers, as bits: sets are put together often, and their numbers are neighbours.
+pub struct Numbers(Vec<(u32, u64)>);
+
+impl Numbers {
+    fn new(sorted: &[u32]) -> Self {
+        let mut blocks: Vec<(u32, u64)> = Vec::new();
+        for number in sorted {
+            let (block, bit) = (number / 64, 1 << (number % 64));
+            match blocks.last_mut() {
+                Some((last, bits)) if *last == block => *bits |= bit,
+                _ => blocks.push((block, bit)),
+            }
+        }
+        blocks.shrink_to_fit();
+        Self(blocks)
+    }
+
+    /// Whether any is in `bits`, which has room for them.
+    pub fn meets(&self, bits: &Bits) -> bool {
+        self.0.iter().any(|(block, own)| bits.0[*block as usize] & own != 0)
+    }
+
+    /// Adds all to `bits`, which has room for them.
+    pub fn add_to(&self, bits: &mut Bits) {
+        for (block, more) in &self.0 {
+            bits.0[*block as usize] |= more;
+        }
+    }
+}
+
+/// A set of numbers below a bound.
+pub struct Bits(Vec<u64>);
+
+impl Bits {
+    pub fn new(bound: usize) -> Self {
+        Self(vec![0; bound.div_ceil(64)])
+    }
+
+    pub fn has(&self, number: usize) -> bool {
+        self.0[number / 64] & 1 << (number % 64) != 0
+    }
+
+    /// Whether it was there already.
+    pub fn insert(&mut self, number: usize) -> bool {
+        let had = self.has(number);
+        self.0[number / 64] |= 1 << (number % 64);
+        had
+    }
+
+    /// All, in order.
+    pub fn numbers(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().enumerate().flat_map(|(block, bits)| {
+            let mut left = *bits;
+            std::iter::from_fn(move || {
+                let bit = left.trailing_zeros() as usize;
+                left &= left.checked_sub(1)?;
+                Some(64 * block + bit)
+            })
+        })
+    }
 }
 
 /// An identifier of the writer's own that holds references.
@@ -115,21 +177,17 @@ impl Ready {
         known.retain(|word| !is_local(word) && usual.binary_search(word).is_err());
         let plain = fragment.words().map(|word| names.word(word));
         known.extend(plain.filter(|word| !is_local(word)));
-        let words = sorted(known);
-        Ok(Self { template, names: named, captured, words, locals, derived })
+        let (names, words) = (Numbers::new(&named), Numbers::new(&sorted(known)));
+        Ok(Self { template, names, captured, words, locals, derived })
     }
 
     /// Appends the text, with names in the places of some that it usually has.
-    pub fn write(&self, renames: &Renames, out: &mut String) {
-        if self.is_renamed(renames) {
-            self.template.write(renames, out);
+    pub fn write(&self, chosen: &Chosen, out: &mut String) {
+        if self.names.meets(&chosen.renamed) {
+            self.template.write(&chosen.renames, out);
         } else {
             out.push_str(&self.template.text);
         }
-    }
-
-    fn is_renamed(&self, renames: &Renames) -> bool {
-        renames.keys().any(|name| self.names.binary_search(name).is_ok())
     }
 
     /// The identifiers that hold references, in a text with some other names.
@@ -205,4 +263,41 @@ fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Rea
         fragment.settle(&name, &free);
     }
     Ok(fragment)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bundle::Target;
+    use crate::link::mark::mark;
+
+    #[test]
+    fn sets_hold_what_was_put_in() {
+        let numbers = [0, 1, 63, 64, 127, 1000];
+        let mut bits = Bits::new(1001);
+        Numbers::new(&numbers).add_to(&mut bits);
+        assert_eq!(bits.numbers().collect::<Vec<_>>(), numbers.map(|number| number as usize));
+        assert!(Numbers::new(&[5, 64]).meets(&bits) && !Numbers::new(&[5, 999]).meets(&bits));
+        assert!(bits.insert(63) && !bits.insert(2) && bits.has(2));
+    }
+
+    /// A reference within a longer identifier is renamed with it; an identifier that the fragment
+    /// declares itself cannot be a name's.
+    #[test]
+    fn a_fragment_is_written_with_other_names() {
+        let mut names = Names::new(Target::WGSL);
+        let author = ["", "first", "second"].map(str::to_owned);
+        let text = format!("{}(own) = Make{}_1 + {1}.x;", mark(1), mark(2));
+        let mut fragment = Fragment::read(&text, &author).unwrap();
+        fragment.locals = vec!["own".to_owned()];
+        let ready = Ready::new(fragment, &mut names).unwrap();
+        assert_eq!(ready.template.text, "first(own) = Makesecond_1 + second.x;");
+        let renames = Renames::from([(names.number("second").unwrap(), "second_7".to_owned())]);
+        let mut written = String::new();
+        ready.template.write(&renames, &mut written);
+        assert_eq!(written, "first(own) = Makesecond_7_1 + second_7.x;");
+        let derived: Vec<Identifier> = ready.derived(&renames).collect();
+        assert!(matches!(&derived[..], [Identifier::Text(text)] if text == "Makesecond_7_1"));
+        assert_eq!((ready.captured.len(), ready.locals.len()), (0, 1));
+    }
 }

@@ -166,7 +166,7 @@ impl Texts {
             for (index, ready) in fragments.iter().enumerate() {
                 let before = if index > 0 { gap } else { "\n\n" };
                 text.push_str(if text.is_empty() { "" } else { before });
-                ready.write(renames, text);
+                ready.write(&chosen, text);
             }
         }
         text.push('\n');
