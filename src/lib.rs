@@ -156,6 +156,9 @@ pub mod permute;
 #[cfg(feature = "compile")]
 pub mod project;
 #[cfg(feature = "compile")]
+#[doc(hidden)]
+pub mod rehearse;
+#[cfg(feature = "compile")]
 pub mod resolve;
 #[cfg(feature = "compile")]
 pub mod source;

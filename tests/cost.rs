@@ -15,6 +15,8 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("cost::parts_add_up", parts_add_up),
         Trial::test("cost::permutations_have_their_stages", permutations),
         Trial::test("cost::shaders_of_files", files),
+        Trial::test("cost::axes_by_what_they_add", axes),
+        Trial::test("cost::gpus_named_twice_are_one", gpus_named_twice),
         Trial::test("cost::a_rise_fails", a_rise_fails),
         Trial::test("cost::functions_keep_their_budget", budget),
         Trial::test("cost::wrong_names", wrong_names),
@@ -107,6 +109,74 @@ fn permutations() -> Outcome {
     let [plain, pcss] = [0, 2].map(|index| figure(&found[index], "figures", "instructions"));
     let (plain, pcss) = (plain?, pcss?);
     if pcss < plain + 100 { Err(format!("{plain}, with PCSS {pcss}").into()) } else { Ok(()) }
+}
+
+const OWN_MANIFEST: &str = "[program.own]
+wesl = \"own.wesl\"
+
+[program.own.axis]
+warm = { values = [false, true] }
+loops = { values = [0, 9], mode = \"spec\" }
+";
+
+const OWN_SHADER: &str = "@fragment fn fs(@location(0) at: vec4f) -> @location(0) vec4f {
+    var sum = at;
+    @if(warm) { sum = sum * vec4f(1.2, 1.1, 0.9, 1.0) + at * at; }
+    for (var i = 0; i < constants::loops; i++) { sum = sin(sum * at) + sqrt(sum); }
+    return sum;
+}
+";
+
+/// A boolean axis alone is told, and one that a specialisation constant chooses: each against the
+/// default permutation too. Keys that are a boolean axis or `default` are no paths of the library.
+fn axes() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("lamplight.toml"), OWN_MANIFEST)?;
+    std::fs::write(folder.path().join("own.wesl"), OWN_SHADER)?;
+    let run = |arguments: &[&str]| -> Result<Value, Failed> {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+        let command = command.args(arguments).args(["--manifest", "lamplight.toml", "--json"]);
+        let output = command.current_dir(folder.path()).output()?;
+        let value = serde_json::from_slice(&output.stdout);
+        value.map_err(|_| said(&output).into())
+    };
+    let told = run(&["variants", "--cost", "--gpu", "navi21"])?;
+    let changes = told[0]["changes"].as_array().cloned().unwrap_or_default();
+    let of = |axis: &str| -> Result<[i64; 3], Failed> {
+        let found = changes.iter().find(|change| change["axis"] == axis);
+        let found = found.ok_or_else(|| format!("no changes of `{axis}`: {told}"))?;
+        let instructions = &found["figures"]["instructions"];
+        let numbers = [&found["pairs"], &instructions["least"], &instructions["most"]];
+        let numbers = numbers.map(|number| number.as_i64().unwrap_or(-1));
+        Ok(numbers)
+    };
+    let (warm, loops) = (of("warm")?, of("loops")?);
+    if warm[0] != 2 || warm[1] < 1 || loops[0] != 2 || loops[1] < 20 {
+        return Err(format!("warm {warm:?}, loops {loops:?}").into());
+    }
+    let keys = ["default", "warm", "loops=9"];
+    let costs = run(&[&["cost"][..], &keys, &["--gpu", "navi21"]].concat())?;
+    let counts: Vec<i64> = (0..3)
+        .map(|index| figure(&costs[index], "figures", "instructions"))
+        .collect::<Result<_, _>>()?;
+    let rises = [counts[1] - counts[0], counts[2] - counts[0]];
+    if rises[0] < warm[1] || rises[0] > warm[2] || rises[1] < loops[1] || rises[1] > loops[2] {
+        return Err(format!("{counts:?}, warm {warm:?}, loops {loops:?}").into());
+    }
+    let unused = Command::new(env!("CARGO_BIN_EXE_lamplight"))
+        .args(["variants", "--gpu", "navi21"])
+        .output()?;
+    match unused.status.code() {
+        Some(2) => Ok(()),
+        code => Err(format!("`--gpu` without `--cost` ends with {code:?}").into()),
+    }
+}
+
+fn gpus_named_twice() -> Outcome {
+    let names = "navi21,vega10,navi21";
+    let found = objects(&["brdf::fresnel::f_schlick_f82", "--gpu", names])?;
+    let gpus: Vec<&str> = found.iter().filter_map(|object| object["gpu"].as_str()).collect();
+    if gpus == ["vega10", "navi21"] { Ok(()) } else { Err(format!("{gpus:?}").into()) }
 }
 
 /// A vertex stage alone, both stages of one file, a compute shader, a feature that adds work.

@@ -13,6 +13,9 @@ use tempfile::TempDir;
 
 type Outcome = Result<(), Failed>;
 
+/// A trial and its name.
+type Case = (&'static str, fn() -> Outcome);
+
 /// Longest wait for `watch`.
 const PATIENCE: Duration = Duration::from_secs(30);
 
@@ -60,7 +63,7 @@ void main() {
 ";
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 5] = [
+    let cases: [Case; 5] = [
         ("one_permutation", one_permutation),
         ("one_target", one_target),
         ("shards_merged", shards_merged),

@@ -1,6 +1,7 @@
 //! Pictures: every preset on each driver against the reviewed picture and against the evaluator,
 //! and whole frames against closed forms.
 
+mod accounted;
 mod closed_forms;
 mod command;
 mod difference;
@@ -60,6 +61,7 @@ pub fn trials() -> Vec<Trial> {
     });
     presets
         .chain(forms)
+        .chain(accounted::trials())
         .chain(pages::trials())
         .chain(command::trials())
         .chain(needs::trials())

@@ -244,34 +244,13 @@ impl Shader<'_> {
     pub fn get(&self, key: &str, target: Target) -> Result<Found, Error> {
         let unit = self.find(key)?;
         let (reflection, artifact) = self.store.artifact(unit, target.name())?;
-        let constants = self.constants(key, &reflection)?;
+        let constants = constants(self.axes, key, &reflection)?;
         Ok(Found {
             bytes: self.store.blob(artifact.blob)?,
             reflection,
             native: artifact.native,
             constants,
         })
-    }
-
-    /// What the key says of the axes that are overrides of the shader.
-    fn constants(&self, key: &str, reflection: &Reflection) -> Result<Vec<Constant>, Error> {
-        let open = |axis: &&Axis| {
-            axis.mode == "spec"
-                && reflection
-                    .overrides
-                    .iter()
-                    .any(|constant| constant.name.as_ref() == Some(&axis.name))
-        };
-        let open: Vec<&Axis> = self.axes.iter().filter(open).collect();
-        if open.is_empty() {
-            return Ok(Vec::new());
-        }
-        let key = key::canonical(self.axes, key)?;
-        let constant = |axis: &&Axis| Constant {
-            name: axis.name.clone(),
-            value: key::value(&key, axis).to_owned(),
-        };
-        Ok(open.iter().map(constant).collect())
     }
 
     /// The number of a key's unit: equal numbers are equal shaders, in every target.
@@ -324,6 +303,34 @@ impl Shader<'_> {
         })?;
         Ok(best.map(|(_, key)| key))
     }
+}
+
+/// What a key says of the axes that are overrides of the shader.
+///
+/// # Errors
+/// [`Error::BadKey`] where the key names an axis or a value that there is not.
+pub fn constants(
+    axes: &[Axis],
+    key: &str,
+    reflection: &Reflection,
+) -> Result<Vec<Constant>, Error> {
+    let open = |axis: &&Axis| {
+        axis.mode == "spec"
+            && reflection
+                .overrides
+                .iter()
+                .any(|constant| constant.name.as_ref() == Some(&axis.name))
+    };
+    let open: Vec<&Axis> = axes.iter().filter(open).collect();
+    if open.is_empty() {
+        return Ok(Vec::new());
+    }
+    let key = key::canonical(axes, key)?;
+    let constant = |axis: &&Axis| Constant {
+        name: axis.name.clone(),
+        value: key::value(&key, axis).to_owned(),
+    };
+    Ok(open.iter().map(constant).collect())
 }
 
 fn not_found<T: AsRef<str>>(

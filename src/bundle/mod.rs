@@ -31,7 +31,7 @@ pub use directory::{BlobFile, blob_files};
 pub use directory_writer::{DirectoryWriter, write_directory};
 pub use error::{Error, Miss};
 pub use key::canonical;
-pub use loader::{Bundle, Constant, Found, Program, Shader};
+pub use loader::{Bundle, Constant, Found, Program, Shader, constants};
 pub use manifest::SCHEMA;
 pub use merge::{merge, merge_directory, merge_into, patch_directory};
 pub use pack::{pack, replace_file, write_file};

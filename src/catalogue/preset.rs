@@ -11,13 +11,19 @@
 //! scene = "casters"
 //! passes = [{ program = "depth", key = "default" }]
 //! light = { shadow_strength = 0.5 }
+//! open = ["light.color", "light.position"]
+//! deviations = ["The map is compared with linear filtering, in the recipe with the nearest texel."]
 //! ```
 //!
-//! The tables `light`, `material`, `surroundings`, `haze` and `caster` have the numbers that the
-//! source publishes, named after the fields of the uniform they go to; `depth_pass` has what the
-//! pipeline of the shadow map is set to. What a table leaves out is the scene's to choose.
+//! The tables `light`, `material`, `surroundings`, `haze`, `caster` and `moments` have the numbers
+//! that the source publishes, named after the fields of the uniform they go to. `depth_pass` has
+//! what the shadow map is drawn with: `polygon_offset`, `cull_front`, and of a spot light the whole
+//! angle `fov` in degrees and the planes `near` and `far` in scene units. `open` names the numbers
+//! that the source leaves to its reader, or to models of its own: the scene and the renderer choose
+//! them. Every number that the permutation reads is in one or the other. `deviations` says in which
+//! ways the picture differs from the example, and why; it is empty where it does not.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
@@ -49,6 +55,18 @@ pub struct Preset {
     pub passes: Vec<Pass>,
     /// Published numbers by group, then by field.
     pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
+    /// Numbers that the source leaves open, as `group.field`, sorted.
+    pub open: BTreeSet<String>,
+    /// In which ways the picture differs from the example: a sentence or more each.
+    pub deviations: Vec<String>,
+}
+
+impl Preset {
+    /// Whether the source's number of a field is known, or known to be open.
+    pub fn accounts_for(&self, group: &str, field: &str) -> bool {
+        self.numbers.get(group).is_some_and(|fields| fields.contains_key(field))
+            || self.open.contains(&format!("{group}.{field}"))
+    }
 }
 
 /// An earlier pass.
@@ -113,7 +131,12 @@ struct Entry {
     #[serde(default)]
     caster: Group,
     #[serde(default)]
+    moments: Group,
+    #[serde(default)]
     depth_pass: Group,
+    #[serde(default)]
+    open: Vec<Spanned<String>>,
+    deviations: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -180,8 +203,12 @@ impl Checker<'_> {
             ("surroundings", entry.surroundings),
             ("haze", entry.haze),
             ("caster", entry.caster),
+            ("moments", entry.moments),
             ("depth_pass", entry.depth_pass),
         ];
+        for name in &entry.open {
+            self.open(name, &groups);
+        }
         Preset {
             name,
             doc: entry.doc,
@@ -196,7 +223,29 @@ impl Checker<'_> {
                 .filter(|(_, group)| !group.is_empty())
                 .map(|(name, group)| (name.to_owned(), group))
                 .collect(),
+            open: entry.open.into_iter().map(Spanned::into_inner).collect(),
+            deviations: entry.deviations,
         }
+    }
+
+    /// A number cannot be open and given, and is in one of the groups.
+    fn open(&mut self, name: &Spanned<String>, groups: &[(&str, Group)]) {
+        let text = name.get_ref();
+        let (group, field) = text.split_once('.').unwrap_or((text, ""));
+        let problem = match groups.iter().find(|(known, _)| *known == group) {
+            _ if field.is_empty() => format!("`{text}` is no `group.field`"),
+            Some((_, fields)) if fields.contains_key(field) => {
+                format!("`{text}` is open, and has a number")
+            }
+            Some(_) => return,
+            None => {
+                let unknown = format!("there is no group `{group}`");
+                let known = groups.iter().map(|(known, _)| *known);
+                let problem = reader::invalid(self.span(name), unknown).suggest(group, known);
+                return self.problems.push(problem);
+            }
+        };
+        self.problems.push(reader::invalid(self.span(name), problem));
     }
 
     fn known<'a>(

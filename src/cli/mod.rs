@@ -30,6 +30,7 @@ mod overwrite;
 mod own;
 mod partial;
 mod progress;
+mod rehearse;
 mod render;
 mod show;
 mod stream;
@@ -82,6 +83,8 @@ enum Command {
     Cost(cost::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
+    #[command(hide = true)]
+    Rehearse(rehearse::Arguments),
     Export(export::Arguments),
     Explain(explain::Arguments),
     Completions(completions::Completions),
@@ -138,6 +141,9 @@ pub fn main() -> ExitCode {
     executors::prepare(&cli.command.executors());
     let gpus = cli.command.gpus();
     let form = cli.color.of(cli.diagnostics);
+    if !matches!(cli.command, Command::Rehearse(_)) {
+        rehearse::install();
+    }
     match dispatch(cli.command, gpus, form) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(form),
@@ -188,6 +194,7 @@ fn dispatch(
         Command::Render(arguments) => render::run(arguments, form),
         Command::Cost(arguments) => cost::run(arguments, gpus, form),
         Command::Mutate(arguments) => mutate::run(arguments),
+        Command::Rehearse(arguments) => rehearse::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
         Command::Completions(arguments) => completions::completions(&arguments, described()),

@@ -52,6 +52,9 @@ pub fn run(
     opened: cost::Opened,
     form: DiagnosticForm,
 ) -> Result<(), Failure> {
+    if arguments.gpus.are_named() && !arguments.cost {
+        return Err(Failure::usage("`--gpu` chooses what `--cost` compiles for: add `--cost`"));
+    }
     let mut sources = SourceSet::default();
     let manifest = arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
     let read = open(manifest.as_deref(), &mut sources);

@@ -10,7 +10,7 @@ use std::path::Path;
 use ash::{khr, vk};
 
 use super::gpu::Gpu;
-use super::pipeline::{Attribute, Pipeline, Slot};
+use super::pipeline::{Attribute, Pipeline, Slot, Words};
 use super::statistics::Statistics;
 use crate::bundle::{Kind, Stage};
 
@@ -251,9 +251,12 @@ impl<'d> Made<'d> {
             self.modules.push(unsafe { self.device.create_shader_module(&info, None) }?);
         }
         self.layout(&wanted.slots)?;
+        let constants: Vec<Entries> = wanted.stages.iter().map(Entries::of).collect();
+        let infos: Vec<_> = constants.iter().map(Entries::info).collect();
+        let stages = self.stages(wanted, &infos);
         self.pipeline = match wanted.stages.iter().any(|stage| stage.stage == Stage::Compute) {
-            true => self.compute(wanted)?,
-            false => self.graphics(wanted)?,
+            true => self.compute(stages)?,
+            false => self.graphics(wanted, &stages)?,
         };
         Ok(self.pipeline)
     }
@@ -282,19 +285,26 @@ impl<'d> Made<'d> {
         Ok(())
     }
 
-    fn stages<'s>(&self, wanted: &'s Pipeline) -> Vec<vk::PipelineShaderStageCreateInfo<'s>> {
-        let stages = wanted.stages.iter().zip(&self.modules);
-        let info = stages.map(|(stage, module)| {
+    fn stages<'s>(
+        &self,
+        wanted: &'s Pipeline,
+        constants: &'s [vk::SpecializationInfo<'s>],
+    ) -> Vec<vk::PipelineShaderStageCreateInfo<'s>> {
+        let stages = wanted.stages.iter().zip(constants).zip(&self.modules);
+        let info = stages.map(|((stage, constants), module)| {
             vk::PipelineShaderStageCreateInfo::default()
                 .stage(flags(stage.stage))
                 .module(*module)
                 .name(&stage.entry)
+                .specialization_info(constants)
         });
         info.collect()
     }
 
-    fn compute(&self, wanted: &Pipeline) -> Result<vk::Pipeline, vk::Result> {
-        let stages = self.stages(wanted);
+    fn compute(
+        &self,
+        stages: Vec<vk::PipelineShaderStageCreateInfo<'_>>,
+    ) -> Result<vk::Pipeline, vk::Result> {
         let infos: Vec<_> = stages
             .into_iter()
             .take(1)
@@ -311,13 +321,13 @@ impl<'d> Made<'d> {
         first(made)
     }
 
-    fn graphics(&self, wanted: &Pipeline) -> Result<vk::Pipeline, vk::Result> {
-        let stages = self.stages(wanted);
+    fn graphics(
+        &self,
+        wanted: &Pipeline,
+        stages: &[vk::PipelineShaderStageCreateInfo<'_>],
+    ) -> Result<vk::Pipeline, vk::Result> {
         let attributes: Vec<_> = wanted.attributes.iter().map(attribute).collect();
-        let strides = wanted.attributes.iter().map(|attribute| {
-            vk::VertexInputBindingDescription::default().binding(attribute.location).stride(16)
-        });
-        let strides: Vec<_> = strides.collect();
+        let strides: Vec<_> = wanted.attributes.iter().map(stride).collect();
         let vertices = vk::PipelineVertexInputStateCreateInfo::default()
             .vertex_binding_descriptions(&strides)
             .vertex_attribute_descriptions(&attributes);
@@ -330,13 +340,9 @@ impl<'d> Made<'d> {
             .rasterization_samples(vk::SampleCountFlags::TYPE_1);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default();
         let formats: Vec<_> = wanted.colors.iter().map(color).collect();
-        let blends: Vec<_> = formats
-            .iter()
-            .map(|_| {
-                vk::PipelineColorBlendAttachmentState::default()
-                    .color_write_mask(vk::ColorComponentFlags::RGBA)
-            })
-            .collect();
+        let written = vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        let blends = vec![written; formats.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
@@ -345,7 +351,7 @@ impl<'d> Made<'d> {
             .depth_attachment_format(vk::Format::D32_SFLOAT);
         let info = vk::GraphicsPipelineCreateInfo::default()
             .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
-            .stages(&stages)
+            .stages(stages)
             .vertex_input_state(&vertices)
             .input_assembly_state(&assembly)
             .viewport_state(&viewport)
@@ -376,6 +382,29 @@ impl Drop for Made<'_> {
                 self.device.destroy_shader_module(*module, None);
             }
         }
+    }
+}
+
+/// The specialisation constants of a stage, as the driver takes them.
+struct Entries {
+    places: Vec<vk::SpecializationMapEntry>,
+    bytes: Vec<u8>,
+}
+
+impl Entries {
+    fn of(stage: &Words) -> Self {
+        let place = |(index, (id, _)): (usize, &(u32, u32))| vk::SpecializationMapEntry {
+            constant_id: *id,
+            offset: index as u32 * 4,
+            size: 4,
+        };
+        let places = stage.constants.iter().enumerate().map(place).collect();
+        let bytes = stage.constants.iter().flat_map(|(_, bits)| bits.to_ne_bytes()).collect();
+        Self { places, bytes }
+    }
+
+    fn info(&self) -> vk::SpecializationInfo<'_> {
+        vk::SpecializationInfo::default().map_entries(&self.places).data(&self.bytes)
     }
 }
 
@@ -411,6 +440,11 @@ fn attribute(attribute: &Attribute) -> vk::VertexInputAttributeDescription {
         .location(attribute.location)
         .binding(attribute.location)
         .format(format(attribute.scalar, attribute.components))
+}
+
+/// Each attribute has a buffer of its own.
+fn stride(attribute: &Attribute) -> vk::VertexInputBindingDescription {
+    vk::VertexInputBindingDescription::default().binding(attribute.location).stride(16)
 }
 
 fn color(attribute: &Option<Attribute>) -> vk::Format {

@@ -40,8 +40,3 @@ const fn gpu(
 pub fn find(name: &str) -> Option<&'static Gpu> {
     GPUS.iter().find(|gpu| gpu.name == name)
 }
-
-/// One GPU for each generation.
-pub fn defaults() -> impl Iterator<Item = &'static Gpu> {
-    GPUS.iter().filter(|gpu| gpu.is_default)
-}

@@ -13,7 +13,7 @@ pub mod permutations;
 pub mod pipeline;
 pub mod statistics;
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use naga::valid::{ValidationFlags, Validator};
@@ -64,7 +64,7 @@ impl Cost {
 /// There is no such function, or it has parameters that no fragment stage can take.
 pub fn function(name: &str, module: &naga::Module, function: &str) -> Result<Subject, Diagnostic> {
     let [called, empty] = varying(module, function)?;
-    let pipeline = |module| stage_alone(module).ok_or_else(|| cannot(name));
+    let pipeline = |module| stage_alone(module).map_err(|reason| cannot(name, &reason));
     Ok(Subject {
         name: name.to_owned(),
         stages: vec![Stage::Fragment],
@@ -73,25 +73,30 @@ pub fn function(name: &str, module: &naga::Module, function: &str) -> Result<Sub
     })
 }
 
-fn stage_alone(module: naga::Module) -> Option<Pipeline> {
-    let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module).ok()?;
+fn stage_alone(module: naga::Module) -> Result<Pipeline, String> {
+    let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module);
+    let info = info.map_err(|error| error.to_string())?;
     let validated = Validated { language: Language::Wesl, module, info };
     Pipeline::new(Known::of_module(&validated, ENTRY)?, None)
 }
 
-fn cannot(name: &str) -> Diagnostic {
+fn cannot(name: &str, reason: &str) -> Diagnostic {
     Diagnostic::error(
         codes::UNTESTABLE_FUNCTION,
-        format!("`{name}` could not be put into a fragment stage"),
+        format!("`{name}` could not be put into a fragment stage: {reason}"),
     )
 }
 
 /// The subject of stages that belong together: a vertex and a fragment stage, or one of them.
-pub fn stages(name: &str, mut known: Vec<Known>) -> Option<Subject> {
+///
+/// # Errors
+/// No pipeline can be made of them: there is none of them, or a stage to go with it cannot be
+/// written.
+pub fn stages(name: &str, mut known: Vec<Known>) -> Result<Subject, String> {
     let stages = known.iter().map(|known| known.words.stage).collect();
-    let first = known.pop()?;
+    let first = known.pop().ok_or("there is no stage")?;
     let pipeline = Pipeline::new(first, known.pop())?;
-    Some(Subject { name: name.to_owned(), stages, pipeline, empty: None })
+    Ok(Subject { name: name.to_owned(), stages, pipeline, empty: None })
 }
 
 /// The cost of every subject on every device, in their order. Equal pipelines are compiled once.
@@ -103,45 +108,27 @@ pub fn measure(
     subjects: &[Subject],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Vec<Cost>, String> {
-    let mut names: BTreeMap<usize, &str> = BTreeMap::new();
-    let mut distinct: std::collections::HashMap<&Pipeline, usize> = Default::default();
-    for subject in subjects {
-        for pipeline in [Some(&subject.pipeline), subject.empty.as_ref()].into_iter().flatten() {
-            let next = distinct.len();
-            let index = *distinct.entry(pipeline).or_insert(next);
-            names.entry(index).or_insert(&subject.name);
-        }
-    }
-    let mut pipelines: Vec<(&Pipeline, usize)> =
-        distinct.iter().map(|(pipeline, index)| (*pipeline, *index)).collect();
-    pipelines.sort_by_key(|(_, index)| *index);
-    let (done, total) = (AtomicUsize::new(0), pipelines.len() * devices.len());
-    let one = |device: &Device, pipeline: &Pipeline, index: usize| {
-        let name = names.get(&index).copied().unwrap_or_default();
+    let distinct = Distinct::of(subjects);
+    let jobs: Vec<(&Device, &Pipeline, &str)> = devices
+        .iter()
+        .flat_map(|device| distinct.pipelines.iter().map(move |(of, name)| (device, *of, *name)))
+        .collect();
+    let (done, total) = (AtomicUsize::new(0), jobs.len());
+    let one = |(device, pipeline, name): &(&Device, &Pipeline, &str)| {
         let figures = device.measure(pipeline);
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
         figures.map_err(|reason| format!("`{name}` on {}: {reason}", device.gpu.name))
     };
-    let jobs: Vec<(&Device, &Pipeline, usize)> = devices
-        .iter()
-        .flat_map(|device| {
-            pipelines.iter().map(move |(pipeline, index)| (device, *pipeline, *index))
-        })
-        .collect();
-    let all = || jobs.par_iter().map(|(device, pipeline, index)| one(device, pipeline, *index));
-    let figures: Vec<Vec<(Stage, Statistics)>> =
-        on_large_stack(|| all().collect::<Result<_, String>>())?;
+    let figures: Vec<Figures> =
+        on_large_stack(|| jobs.par_iter().map(one).collect::<Result<_, String>>())?;
     let mut costs = Vec::new();
     for subject in subjects {
-        for (number, device) in devices.iter().enumerate() {
-            let of = |pipeline: &Pipeline, stage: Stage| {
-                let index = *distinct.get(pipeline)?;
-                let figures = figures.get(number * pipelines.len() + index)?;
-                figures.iter().find(|(found, _)| *found == stage).map(|(_, figures)| *figures)
-            };
+        for (device, figures) in devices.iter().zip(figures.chunks(distinct.pipelines.len())) {
             for stage in subject.stages.iter().copied() {
-                let Some(stage_figures) = of(&subject.pipeline, stage) else { continue };
-                let empty = subject.empty.as_ref().and_then(|empty| of(empty, stage));
+                let of = |pipeline: &Pipeline| distinct.figures(figures, pipeline, stage);
+                let told = |reason| format!("`{}` on {}: {reason}", subject.name, device.gpu.name);
+                let stage_figures = of(&subject.pipeline).map_err(told)?;
+                let empty = subject.empty.as_ref().map(of).transpose().map_err(told)?;
                 let net = empty.map(|empty| stage_figures.less(&empty));
                 let name = subject.name.clone();
                 costs.push(Cost { name, gpu: device.gpu, stage, stage_figures, net });
@@ -149,4 +136,45 @@ pub fn measure(
         }
     }
     Ok(costs)
+}
+
+/// The figures of a pipeline's stages on one GPU.
+type Figures = Vec<(Stage, Statistics)>;
+
+/// The pipelines of subjects, each once.
+struct Distinct<'s> {
+    /// In the order of the subjects, with the first subject's name.
+    pipelines: Vec<(&'s Pipeline, &'s str)>,
+    /// Places in `pipelines`.
+    places: HashMap<&'s Pipeline, usize>,
+}
+
+impl<'s> Distinct<'s> {
+    fn of(subjects: &'s [Subject]) -> Self {
+        let mut distinct = Self { pipelines: Vec::new(), places: HashMap::new() };
+        for subject in subjects {
+            for pipeline in [Some(&subject.pipeline), subject.empty.as_ref()].into_iter().flatten()
+            {
+                let next = distinct.pipelines.len();
+                if *distinct.places.entry(pipeline).or_insert(next) == next {
+                    distinct.pipelines.push((pipeline, &subject.name));
+                }
+            }
+        }
+        distinct
+    }
+
+    /// The figures of a stage of a pipeline, out of those of all pipelines on one GPU.
+    fn figures(
+        &self,
+        figures: &[Figures],
+        pipeline: &Pipeline,
+        stage: Stage,
+    ) -> Result<Statistics, String> {
+        let place = self.places.get(pipeline).copied();
+        let stages = place.and_then(|place| figures.get(place)).into_iter().flatten();
+        let found = stages.into_iter().find(|(found, _)| *found == stage);
+        let missing = || format!("the driver tells no figures of the {stage:?} stage");
+        found.map(|(_, figures)| *figures).ok_or_else(missing)
+    }
 }

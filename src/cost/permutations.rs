@@ -7,32 +7,74 @@ use serde::Serialize;
 use super::pipeline::Known;
 use super::statistics::{FIGURES, Figure};
 use super::{Cost, Subject, stages};
-use crate::bundle::{Axis, Language, ProgramContents, Stage, Target};
+use crate::bundle::key::{self, Part};
+use crate::bundle::{
+    self, Axis, Choice, Constant, EntryContents, Hash, Language, ProgramContents, Stage, Target,
+};
 
 /// Every permutation of a program that has its SPIR-V, by key.
-pub fn subjects(program: &ProgramContents, language: Language) -> Vec<Subject> {
-    let Some(entries) = program.languages.get(&language) else { return Vec::new() };
-    let known: Vec<BTreeMap<_, Known>> = entries
-        .values()
-        .map(|entry| {
-            let units = entry.units.iter().filter_map(|(hash, unit)| {
-                let artifact = unit.targets.get(Target::SPIRV.name())?;
-                let reflection = unit.reflection.as_ref().clone();
-                let name = &artifact.native.entry_name;
-                Some((*hash, Known::new(name, &artifact.bytes, reflection)?))
-            });
-            units.collect()
-        })
-        .collect();
+///
+/// # Errors
+/// A permutation that no pipeline can be made of, and why.
+pub fn subjects(program: &ProgramContents, language: Language) -> Result<Vec<Subject>, String> {
+    let Some(entries) = program.languages.get(&language) else { return Ok(Vec::new()) };
+    let known = entries.iter().map(|(name, entry)| known_units(name, entry));
+    let known = known.collect::<Result<Vec<_>, String>>()?;
     let keys: BTreeSet<&String> = entries.values().flat_map(|entry| entry.keys.keys()).collect();
-    let subject = |key: &&String| {
-        let units = entries
-            .values()
-            .zip(&known)
-            .filter_map(|(entry, known)| known.get(entry.keys.get(*key)?).cloned());
-        stages(key, units.collect())
+    let subject = |key: &String| {
+        let units = entries.values().zip(&known).filter_map(|(entry, known)| {
+            let stage = known.get(entry.keys.get(key)?)?;
+            Some(chosen(&program.axes, key, stage))
+        });
+        stages(key, units.collect::<Result<_, _>>()?)
     };
-    keys.iter().filter_map(subject).collect()
+    keys.into_iter()
+        .map(|key| subject(key).map_err(|reason| format!("permutation `{key}`: {reason}")))
+        .collect()
+}
+
+/// A stage in SPIR-V, and how its overrides are numbered.
+struct Unit {
+    known: Known,
+    choices: Vec<Choice>,
+}
+
+/// The units of an entry point, by hash.
+fn known_units(name: &str, entry: &EntryContents) -> Result<BTreeMap<Hash, Unit>, String> {
+    let unit = |(hash, unit): (&Hash, &bundle::Unit)| {
+        let artifact = unit.targets.get(Target::SPIRV.name()).ok_or("there is no SPIR-V")?;
+        let reflection = unit.reflection.as_ref().clone();
+        let known = Known::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
+        Ok((*hash, Unit { known, choices: artifact.native.choices.clone() }))
+    };
+    let units = entry.units.iter().map(unit).collect::<Result<_, String>>();
+    units.map_err(|reason| format!("entry point `{name}`: {reason}"))
+}
+
+/// The stage of a key, with what the key chooses for the stage's overrides.
+fn chosen(axes: &[Axis], key: &str, unit: &Unit) -> Result<Known, String> {
+    let mut known = unit.known.clone();
+    let constants =
+        bundle::constants(axes, key, &known.reflection).map_err(|error| error.to_string())?;
+    for constant in constants {
+        // An override that the stage does not use has no number.
+        let choice = unit.choices.iter().find(|choice| choice.name == constant.name);
+        let Some(id) = choice.and_then(|choice| choice.id) else { continue };
+        known.words.constants.push((id, bits(&constant)?));
+    }
+    Ok(known)
+}
+
+/// The 32 bits that a specialisation constant takes.
+fn bits(constant: &Constant) -> Result<u32, String> {
+    match constant.value.as_str() {
+        "true" => Ok(1),
+        "false" => Ok(0),
+        value => value
+            .parse::<u32>()
+            .or_else(|_| value.parse::<i32>().map(i32::cast_unsigned))
+            .map_err(|_| format!("override `{}` is `{value}`", constant.name)),
+    }
 }
 
 /// What one value of an axis changes in a stage on a GPU, against the axis's default.
@@ -95,13 +137,12 @@ fn pairs<'c>(
     value: &str,
     costs: &BTreeMap<&str, &'c Cost>,
 ) -> Vec<(&'c Cost, &'c Cost)> {
-    // `true` is written as the axis alone.
-    let written = if value == "true" { axis.to_owned() } else { format!("{axis}={value}") };
     let pair = |(key, with): (&&str, &&'c Cost)| {
-        let parts: Vec<&str> = key.split(',').collect();
-        let rest: Vec<&str> = parts.iter().copied().filter(|part| *part != written).collect();
-        let without = (rest.len() < parts.len()).then(|| rest.join(","))?;
-        costs.get(without.as_str()).map(|without| (*without, *with))
+        let (this, rest): (Vec<Part<'_>>, Vec<Part<'_>>) =
+            key::parts(key).partition(|part| part.axis.text == axis);
+        let has_value = this.iter().any(|part| part.chosen() == value);
+        let without = key::write(rest.iter().map(|part| (part.axis.text, part.chosen())));
+        costs.get(without.as_str()).filter(|_| has_value).map(|without| (*without, *with))
     };
     costs.iter().filter_map(pair).collect()
 }

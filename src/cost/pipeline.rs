@@ -1,11 +1,12 @@
 //! What one compilation takes: the SPIR-V of its stages and what lies around them.
 
+use std::collections::BTreeSet;
 use std::ffi::CString;
-use std::fmt::Write as _;
 
 use naga::ScalarKind;
 
-use crate::bundle::{Kind, Reflection, Stage, Target, Varying};
+use crate::bundle::{Binding, Kind, Language, Reflection, Stage, Target, Varying};
+use crate::diagnostic::Diagnostic;
 use crate::emit;
 use crate::validate::{CAPABILITIES, Validated};
 
@@ -15,6 +16,8 @@ pub struct Words {
     pub stage: Stage,
     pub entry: CString,
     pub words: Vec<u32>,
+    /// Specialisation constants: number, and the 32 bits of the value. Others have their defaults.
+    pub constants: Vec<(u32, u32)>,
 }
 
 /// A resource by its place.
@@ -52,17 +55,27 @@ pub struct Known {
 
 impl Known {
     /// From the bytes of a SPIR-V module.
-    pub fn new(entry: &str, bytes: &[u8], reflection: Reflection) -> Option<Self> {
-        let words = bytes.chunks_exact(4).map(|word| word.try_into().map(u32::from_le_bytes));
-        let words = words.collect::<Result<Vec<u32>, _>>().ok()?;
-        let entry = CString::new(entry).ok()?;
-        Some(Self { words: Words { stage: reflection.stage, entry, words }, reflection })
+    ///
+    /// # Errors
+    /// They are no words, or the entry point's name has a zero.
+    pub fn new(entry: &str, bytes: &[u8], reflection: Reflection) -> Result<Self, String> {
+        let (words, []) = bytes.as_chunks::<4>() else {
+            return Err(format!("{} bytes of SPIR-V are no whole words", bytes.len()));
+        };
+        let words = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        let entry = CString::new(entry).map_err(|error| error.to_string())?;
+        let stage = reflection.stage;
+        Ok(Self { words: Words { stage, entry, words, constants: Vec::new() }, reflection })
     }
 
     /// From an entry point of a module.
-    pub fn of_module(validated: &Validated, entry: &str) -> Option<Self> {
-        let reflection = emit::reflect(validated, entry).ok()?;
-        let emitted = emit::emit(validated, entry, Target::SPIRV).ok()?;
+    ///
+    /// # Errors
+    /// What the writer of SPIR-V says.
+    pub fn of_module(validated: &Validated, entry: &str) -> Result<Self, String> {
+        let told = |error: Diagnostic| error.message;
+        let reflection = emit::reflect(validated, entry).map_err(told)?;
+        let emitted = emit::emit(validated, entry, Target::SPIRV).map_err(told)?;
         Self::new(&emitted.native.entry_name, &emitted.bytes, reflection)
     }
 }
@@ -70,73 +83,86 @@ impl Known {
 impl Pipeline {
     /// The pipeline of a stage and the one that goes with it. Where a vertex or a fragment stage
     /// is alone, one is added that passes on, or uses, all that it shares with it.
-    pub fn new(stage: Known, other: Option<Known>) -> Option<Self> {
+    ///
+    /// # Errors
+    /// No stage can be added, because of a type that crosses between the two.
+    pub fn new(stage: Known, other: Option<Known>) -> Result<Self, String> {
         let other = match (stage.reflection.stage, other) {
             (Stage::Compute, _) => None,
             (_, Some(other)) => Some(other),
-            (Stage::Fragment, None) => Some(partner(&before(&stage.reflection)?)?),
+            (Stage::Fragment, None) => Some(partner(&before(&stage.reflection))?),
             (Stage::Vertex, None) => Some(partner(&after(&stage.reflection)?)?),
         };
         let mut stages: Vec<Known> = other.into_iter().chain([stage]).collect();
         stages.sort_by_key(|known| known.reflection.stage);
-        let bindings = stages.iter().flat_map(|known| &known.reflection.bindings);
-        let mut slots: Vec<Slot> = bindings
-            .map(|found| Slot { group: found.group, binding: found.binding, kind: found.kind })
-            .collect();
-        slots.sort_unstable();
-        slots.dedup();
         let of = |wanted: Stage| stages.iter().find(|known| known.reflection.stage == wanted);
         let inputs = of(Stage::Vertex).map_or(&[][..], |known| &known.reflection.inputs);
         let outputs = of(Stage::Fragment).map_or(&[][..], |known| &known.reflection.outputs);
-        let attributes = inputs.iter().filter_map(Attribute::of).collect();
-        let written: Vec<Attribute> = outputs.iter().filter_map(Attribute::of).collect();
-        let count = written.iter().map(|color| color.location + 1).max().unwrap_or(0);
-        let color = |location| written.iter().find(|color| color.location == location).copied();
-        let colors = (0..count).map(color).collect();
+        let attributes = located(inputs)?;
+        let colors = colors(&located(outputs)?);
+        let slots = slots(&stages);
         let stages = stages.into_iter().map(|known| known.words).collect();
-        Some(Self { stages, slots, attributes, colors })
+        Ok(Self { stages, slots, attributes, colors })
     }
 }
 
-impl Attribute {
-    /// Of a value with a location; `None` for what is built in.
-    fn of(varying: &Varying) -> Option<Self> {
-        let (scalar, components) = shape(&varying.ty)?;
-        Some(Self { location: varying.location?, scalar, components })
-    }
+/// What the stages bind, each once.
+fn slots(stages: &[Known]) -> Vec<Slot> {
+    let bindings = stages.iter().flat_map(|known| &known.reflection.bindings);
+    let slot =
+        |found: &Binding| Slot { group: found.group, binding: found.binding, kind: found.kind };
+    let slots: BTreeSet<Slot> = bindings.map(slot).collect();
+    slots.into_iter().collect()
+}
+
+/// The values that have a location; others are built in.
+fn located(values: &[Varying]) -> Result<Vec<Attribute>, String> {
+    let located = values.iter().filter_map(|value| Some((value.location?, &value.ty)));
+    let attribute = |(location, ty): (u32, &String)| {
+        let (scalar, components) = shape(ty)?;
+        Ok(Attribute { location, scalar, components })
+    };
+    located.map(attribute).collect()
+}
+
+fn colors(written: &[Attribute]) -> Vec<Option<Attribute>> {
+    let count = written.iter().map(|color| color.location + 1).max().unwrap_or(0);
+    let color = |location| written.iter().find(|color| color.location == location).copied();
+    (0..count).map(color).collect()
 }
 
 /// Scalar and components of a scalar or vector type, as WGSL spells it.
-fn shape(ty: &str) -> Option<(ScalarKind, u8)> {
-    let (components, scalar) = match ty.strip_prefix("vec") {
-        Some(rest) => {
-            let (count, scalar) = rest.split_at_checked(1)?;
-            (count.parse().ok()?, scalar.trim_matches(['<', '>']))
-        }
-        None => (1, ty),
-    };
+fn shape(ty: &str) -> Result<(ScalarKind, u8), String> {
+    let (components, scalar) =
+        match ty.strip_prefix("vec").and_then(|rest| rest.split_at_checked(1)) {
+            Some((count, scalar)) => (count, scalar.trim_matches(['<', '>'])),
+            None => ("1", ty),
+        };
     let scalar = match scalar {
-        "f32" | "f" => ScalarKind::Float,
-        "i32" | "i" => ScalarKind::Sint,
-        "u32" | "u" => ScalarKind::Uint,
-        _ => return None,
+        "f32" | "f" => Some(ScalarKind::Float),
+        "i32" | "i" => Some(ScalarKind::Sint),
+        "u32" | "u" => Some(ScalarKind::Uint),
+        _ => None,
     };
-    Some((scalar, components))
+    let shape = scalar.zip(components.parse().ok());
+    shape.ok_or_else(|| format!("a value of type `{ty}` at a location has no format of 32 bits"))
 }
 
 /// A stage from a text of ours.
-fn partner(text: &str) -> Option<Known> {
-    let module = naga::front::wgsl::parse_str(text).ok()?;
+fn partner(text: &str) -> Result<Known, String> {
+    let told = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
+    let module = naga::front::wgsl::parse_str(text).map_err(|error| told(&error))?;
     let flags = naga::valid::ValidationFlags::all();
-    let info = naga::valid::Validator::new(flags, CAPABILITIES).validate(&module).ok()?;
-    let validated = Validated { language: crate::bundle::Language::Wesl, module, info };
+    let info = naga::valid::Validator::new(flags, CAPABILITIES).validate(&module);
+    let info = info.map_err(|error| told(&error))?;
+    let validated = Validated { language: Language::Wesl, module, info };
     Known::of_module(&validated, PARTNER)
 }
 
 const PARTNER: &str = "lamplight_partner";
 
 /// The text of a vertex stage that gives a fragment stage its inputs, each from an attribute.
-fn before(fragment: &Reflection) -> Option<String> {
+fn before(fragment: &Reflection) -> String {
     let mut members = "@builtin(position) position: vec4f,\n".to_owned();
     let (mut parameters, mut values) = (String::new(), String::new());
     let mut next = 0;
@@ -150,30 +176,30 @@ fn before(fragment: &Reflection) -> Option<String> {
             (Some(kind), None) => format!("@interpolate({kind}) "),
             (None, _) => String::new(),
         };
-        writeln!(members, "@location({location}) {interpolation}v{location}: {ty},").ok()?;
-        write!(parameters, "@location({location}) a{location}: {ty}, ").ok()?;
-        write!(values, ", a{location}").ok()?;
+        members += &format!("@location({location}) {interpolation}v{location}: {ty},\n");
+        parameters += &format!("@location({location}) a{location}: {ty}, ");
+        values += &format!(", a{location}");
     }
-    Some(format!(
+    format!(
         "struct Passed {{\n{members}}}\n@vertex fn {PARTNER}({parameters}@location({next}) at: vec4f) \
          -> Passed {{\n    return Passed(at{values});\n}}\n"
-    ))
+    )
 }
 
 /// The text of a fragment stage that uses every output of a vertex stage.
-fn after(vertex: &Reflection) -> Option<String> {
+fn after(vertex: &Reflection) -> Result<String, String> {
     let (mut parameters, mut sum) = (String::new(), String::new());
-    for output in &vertex.outputs {
-        let Some(location) = output.location else { continue };
-        let (scalar, components) = shape(&output.ty)?;
+    for Attribute { location, scalar, components } in located(&vertex.outputs)? {
+        let ty = vertex.outputs.iter().find(|output| output.location == Some(location));
+        let ty = ty.map_or("", |output| &output.ty);
         let flat = if scalar == ScalarKind::Float { "" } else { "@interpolate(flat) " };
-        write!(parameters, "@location({location}) {flat}v{location}: {}, ", output.ty).ok()?;
+        parameters += &format!("@location({location}) {flat}v{location}: {ty}, ");
         for component in ["x", "y", "z", "w"].iter().take(usize::from(components)) {
             let part = if components == 1 { String::new() } else { format!(".{component}") };
-            write!(sum, " + f32(v{location}{part})").ok()?;
+            sum += &format!(" + f32(v{location}{part})");
         }
     }
-    Some(format!(
+    Ok(format!(
         "@fragment fn {PARTNER}({parameters}) -> @location(0) vec4f {{\n    return vec4f(0.0{sum});\n}}\n"
     ))
 }

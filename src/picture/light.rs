@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3};
 
-use super::plan::Pass;
+use super::plan::{Pass, Plan};
 use crate::scene::sets::{Lamp, LampKind, Scene};
 use crate::scene::{
     Bounds, Clip, Depth, corners, cube_projection, cube_view, depth_range, fit, look_along,
@@ -29,24 +29,45 @@ const UNIT: Bounds =
 /// Planes nearer than this share of the far one waste what precision there is.
 const NEAREST: f64 = 0.02;
 
+/// What a source publishes of the frustum of a spot light's map.
+struct Frustum {
+    /// The whole angle, radians.
+    angle: Option<f64>,
+    near: Option<f64>,
+    far: Option<f64>,
+}
+
+impl Frustum {
+    fn of(plan: &Plan, last: &Pass) -> Self {
+        let number = |field| plan.number("depth_pass", field)?.first().copied();
+        Self {
+            angle: number("fov").map(f64::to_radians),
+            near: number("near").or(last.needs.near),
+            far: number("far"),
+        }
+    }
+}
+
 impl LightView {
-    /// The view of the scene's first lamp as the last pass takes it.
-    pub fn new(scene: &Scene, lamp: &Lamp, last: &Pass, size: u32) -> Self {
+    /// The view of the scene's first lamp as the last pass of a plan takes it.
+    pub fn new(scene: &Scene, lamp: &Lamp, plan: &Plan, last: &Pass, size: u32) -> Self {
         let points = scene.points();
         match last.needs.caster.unwrap_or(LampKind::Spot) {
-            LampKind::Spot => Self::spot(lamp, &points, size, last.needs.near),
+            LampKind::Spot => Self::spot(lamp, &points, size, &Frustum::of(plan, last)),
             LampKind::Directional => Self::directional(lamp, &points, size),
             LampKind::Point => Self::point(lamp, &points, size / 2),
         }
     }
 
-    fn spot(lamp: &Lamp, points: &[DVec3], size: u32, near: Option<f64>) -> Self {
+    fn spot(lamp: &Lamp, points: &[DVec3], size: u32, frustum: &Frustum) -> Self {
         let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
         let (nearest, farthest) = depth_range(view, points).unwrap_or((0.1, 10.0));
-        let far = farthest.max(0.1) * 1.01;
-        let near = near.unwrap_or_else(|| (0.98 * nearest).clamp(NEAREST * far, 0.9 * far));
+        let far = frustum.far.unwrap_or(farthest.max(0.1) * 1.01);
+        let fitting = || (0.98 * nearest).clamp(NEAREST * far, 0.9 * far);
+        let near = frustum.near.unwrap_or_else(fitting);
         // Two texels more than the cone, so that its rim is inside.
-        let angle = (2.0 * lamp.half_angle * (1.0 + 4.0 / f64::from(size))).min(2.8);
+        let cone = || (2.0 * lamp.half_angle * (1.0 + 4.0 / f64::from(size))).min(2.8);
+        let angle = frustum.angle.unwrap_or_else(cone);
         let projection = perspective(angle, 1.0, near, far, Clip::Wgpu, Depth::Normal);
         let texel = 2.0 * (0.5 * angle).tan() / f64::from(size);
         Self { clip_from_world: vec![projection * view], near, far, size, texel }

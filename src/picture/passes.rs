@@ -74,7 +74,7 @@ pub fn prepare(
         studio.ready(last, &left)
     };
     if shot.cascades <= 1 {
-        let light = LightView::new(&scene, &key, last, size);
+        let light = LightView::new(&scene, &key, plan, last, size);
         return slice(&scene, light);
     }
     if last.needs.caster != Some(LampKind::Directional) || !last.needs.has_shadow() {

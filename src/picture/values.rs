@@ -35,7 +35,7 @@ const GROUPS: &[(&str, &str)] = &[
     ("surroundings", "surroundings"),
     ("haze", "haze"),
     ("caster", "caster"),
-    ("terms", "caster"),
+    ("terms", "moments"),
 ];
 
 /// Reach of falloffs that have one, in distances of the target.
@@ -105,10 +105,8 @@ impl Values<'_> {
 
     fn published(&self, path: &Path<'_>) -> Option<Vec<f64>> {
         let (_, group) = GROUPS.iter().find(|(block, _)| *block == path.block)?;
-        // The bias of a lookup is not that of the moments.
-        if path.block == "terms" && path.field == "bias" {
-            return None;
-        }
+        // The exponents are the same where moments are made and where they are read.
+        let group = if path.field == "exponents" { "caster" } else { group };
         self.plan.number(group, path.field)
     }
 
@@ -227,9 +225,9 @@ impl Values<'_> {
     }
 
     fn caster(&self, field: &str) -> Option<Vec<f64>> {
-        // Numbers of the depth pass are the source's way against acne: then nothing is added.
-        let is_published = self.plan.numbers.contains_key("depth_pass");
-        let offset = if is_published { 0.0 } else { 1.0 + 0.5 * self.last.needs.reach };
+        // Where the source has a way against acne of its own, nothing is added.
+        let offset =
+            if self.is_biased_by_source() { 0.0 } else { 1.0 + 0.5 * self.last.needs.reach };
         Some(match field {
             // Point lights have a matrix for each face, and read none.
             "clip_from_world" => columns(*self.light.clip_from_world.first()?),
@@ -243,11 +241,17 @@ impl Values<'_> {
 
     /// Polygon offset of the depth pass: the source's, or as much as the filter needs.
     pub fn offset(&self) -> [f32; 2] {
-        if !self.plan.numbers.contains_key("depth_pass") {
+        if !self.is_biased_by_source() {
             return [1.0 + self.last.needs.reach as f32, 4.0];
         }
         let published = self.plan.number("depth_pass", "polygon_offset").unwrap_or_default();
         [0, 1].map(|index| published.get(index).map_or(0.0, |value| *value as f32))
+    }
+
+    /// Whether the source says what its depth pass does against acne.
+    fn is_biased_by_source(&self) -> bool {
+        let has = |field| self.plan.number("depth_pass", field).is_some();
+        has("polygon_offset") || has("cull_front")
     }
 
     /// Whether the depth pass has back faces only.

@@ -10,7 +10,7 @@ use crate::scene::sets;
 /// The page: presets, scenes, light probes.
 pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
     let mut text = "# Presets\n\nOne for each published example. The numbers are those that the source gives, named after the\n\
-                    uniforms' fields; the scene chooses the rest.\n"
+                    uniforms' fields; what it leaves open, the scene chooses: `lamplight show PRESET` lists it.\n"
         .to_owned();
     let mut work = "";
     for preset in presets {
@@ -60,8 +60,15 @@ fn row(text: &mut String, preset: &Preset, place: &str) {
         preset.key,
         preset.scene,
         numbers.join("<br>"),
-        cell(&preset.doc),
+        cell(&told(preset)),
     );
+}
+
+/// What a preset shows, and how that differs from the example.
+fn told(preset: &Preset) -> String {
+    let deviations = preset.deviations.iter().map(String::as_str);
+    let sentences: Vec<&str> = std::iter::once(preset.doc.as_str()).chain(deviations).collect();
+    sentences.join(" ")
 }
 
 fn light_probes(text: &mut String, probes: &[Probe]) {

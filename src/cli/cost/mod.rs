@@ -5,6 +5,7 @@ mod subjects;
 
 pub use axes::{changes, changes_table};
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -100,13 +101,19 @@ pub struct Gpus {
 pub type Opened = Result<Vec<Device>, String>;
 
 impl Gpus {
+    /// Whether any is named.
+    pub fn are_named(&self) -> bool {
+        !self.gpu.is_empty()
+    }
+
     /// The GPUs, opened. To be called while the process has one thread.
     pub fn open(&self) -> Opened {
-        let named = self.gpu.iter().copied();
-        let mut wanted: Vec<&Gpu> =
-            if self.gpu.is_empty() { gpu::defaults().collect() } else { named.collect() };
-        wanted.dedup();
-        wanted.into_iter().map(Device::open).collect()
+        let named: BTreeSet<&Gpu> = self.gpu.iter().copied().collect();
+        let is_wanted = |gpu: &&Gpu| match named.is_empty() {
+            true => gpu.is_default,
+            false => named.contains(gpu),
+        };
+        GPUS.iter().filter(is_wanted).map(Device::open).collect()
     }
 }
 

@@ -8,8 +8,9 @@ use super::super::input::{Context, Ready};
 use super::super::progress::Bar;
 use super::super::variants;
 use super::Arguments;
+use crate::bundle::key::DEFAULT;
 use crate::bundle::{Axis, Clip, Language, Stage, Target};
-use crate::catalogue::{self, Kind};
+use crate::catalogue::{self, Item, Kind};
 use crate::cost::pipeline::Known;
 use crate::cost::{self, Subject, permutations};
 use crate::diagnostic::nearest;
@@ -27,8 +28,7 @@ pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subje
     let mut subjects = Vec::new();
     let (files, named): (Vec<&String>, Vec<&String>) =
         arguments.subjects.iter().partition(|name| is_file(name));
-    let (keys, paths): (Vec<&String>, Vec<&String>) =
-        named.into_iter().partition(|name| name.contains(['=', ',']));
+    let (paths, keys) = parted(arguments, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
         functions(&paths, language(arguments), &mut subjects)?;
     }
@@ -39,6 +39,44 @@ pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subje
         subjects.extend(shaders(arguments, Path::new(file), form)?);
     }
     Ok(subjects)
+}
+
+/// Paths of the library, and keys: what has a sign of a key in it, or is no path of the library
+/// and the name of an axis of the program.
+fn parted<'a>(
+    arguments: &Arguments,
+    named: Vec<&'a String>,
+) -> Result<(Vec<&'a String>, Vec<&'a String>), Failure> {
+    let modules = catalogue::library();
+    let items: Vec<String> =
+        modules.iter().flat_map(|module| &module.items).map(Item::path).collect();
+    let is_path = |name: &str| items.iter().any(|path| is_below(path, name));
+    let is_plain = |name: &str| !name.contains(['=', ',']);
+    let axes = match named.iter().any(|name| is_plain(name) && !is_path(name)) {
+        true => axes(arguments)?,
+        false => Vec::new(),
+    };
+    let is_key = |name: &str| {
+        !is_plain(name) || !is_path(name) && (name == DEFAULT || axes.iter().any(|a| a == name))
+    };
+    Ok(named.into_iter().partition(|name| !is_key(name)))
+}
+
+/// Names of the axes of the program that keys are of.
+fn axes(arguments: &Arguments) -> Result<Vec<String>, Failure> {
+    let mut sources = SourceSet::default();
+    let (manifest, _) = variants::open(arguments.manifest.as_deref(), &mut sources)
+        .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+    let name = program(arguments, &manifest)?;
+    let program = manifest.programs.iter().find(|program| program.name == name);
+    let axes = program.into_iter().flat_map(|program| program.space.axes());
+    Ok(axes.map(|axis| axis.name.clone()).collect())
+}
+
+/// Whether a path is what is named, or in it.
+fn is_below(path: &str, named: &str) -> bool {
+    let named = named.strip_prefix("lamplight::").unwrap_or(named);
+    path == named || path.strip_prefix(named).is_some_and(|rest| rest.starts_with("::"))
 }
 
 /// Whether a name is that of a shader's file: it ends as one does.
@@ -66,24 +104,26 @@ fn shaders(
         .entries(&composed)
         .and_then(|entries| root.compile(&entries, &[Target::SPIRV]))
         .map_err(|errors| Failure::Input(sources, context.explain(errors)))?;
-    let known = shaders.iter().filter_map(|shader| {
-        let artifact = shader.made.unit.targets.get(Target::SPIRV.name())?;
+    let known = shaders.iter().map(|shader| {
+        let artifact = shader.made.unit.targets.get(Target::SPIRV.name());
+        let artifact = artifact.ok_or("there is no SPIR-V")?;
         let reflection = shader.made.unit.reflection.as_ref().clone();
         let known = Known::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
-        Some((shader.entry.as_str(), known))
+        Ok((shader.entry.as_str(), known))
     });
-    let known: Vec<(&str, Known)> = known.collect();
     let name = file.display();
+    let told = |reason: String| Failure::input(format!("{name}: {reason}"));
+    let known = known.collect::<Result<Vec<(&str, Known)>, String>>().map_err(told)?;
     let of = |stage| known.iter().filter(move |(_, known)| known.words.stage == stage).count();
     let is_pair = (of(Stage::Vertex), of(Stage::Fragment), known.len()) == (1, 1, 2);
     if is_pair {
         let pair = known.into_iter().map(|(_, known)| known).collect();
-        return Ok(cost::stages(&name.to_string(), pair).into_iter().collect());
+        return Ok(vec![cost::stages(&name.to_string(), pair).map_err(told)?]);
     }
     let each = known
         .into_iter()
-        .filter_map(|(entry, known)| cost::stages(&format!("{name} {entry}"), vec![known]));
-    Ok(each.collect())
+        .map(|(entry, known)| cost::stages(&format!("{name} {entry}"), vec![known]));
+    each.collect::<Result<_, _>>().map_err(told)
 }
 
 /// The subjects of functions, modules and folders; of all functions where none is named.
@@ -96,11 +136,7 @@ fn functions(
     let modules = catalogue::library();
     let items = || modules.iter().flat_map(|module| &module.items);
     let functions: Vec<_> = items().filter(|item| item.kind == Kind::Function).collect();
-    let is_below = |path: &str, named: &str| {
-        path == named || path.strip_prefix(named).is_some_and(|rest| rest.starts_with("::"))
-    };
     for named in paths {
-        let named = named.strip_prefix("lamplight::").unwrap_or(named);
         if !functions.iter().any(|item| is_below(&item.path(), named)) {
             let known: Vec<String> = functions.iter().map(|item| item.path()).collect();
             let hint = nearest(named, known.iter().map(String::as_str))
@@ -109,7 +145,7 @@ fn functions(
         }
     }
     let is_wanted = |path: &str| {
-        let named = |named: &&String| is_below(path, named.trim_start_matches("lamplight::"));
+        let named = |named: &&String| is_below(path, named);
         paths.is_empty() || paths.iter().any(named)
     };
     let sources = Mutex::new(SourceSet::default());
@@ -168,10 +204,9 @@ pub fn permutations_of(
     let mut contents = generated.contents;
     memory.fill(&mut contents);
     let program = contents.programs.into_values().next();
-    Ok(program.map_or_else(Default::default, |program| {
-        let subjects = permutations::subjects(&program, language);
-        (program.axes, subjects)
-    }))
+    let Some(program) = program else { return Ok(Default::default()) };
+    let subjects = permutations::subjects(&program, language).map_err(Failure::input)?;
+    Ok((program.axes, subjects))
 }
 
 /// The program that a key is of.

@@ -28,6 +28,14 @@ pub fn preset(preset: &Preset) -> Shown {
     if !numbers.is_empty() {
         text += &format!("\nNumbers\n{}", rows(&numbers, 2));
     }
+    if !preset.open.is_empty() {
+        let open: Vec<&str> = preset.open.iter().map(String::as_str).collect();
+        text += &format!("\nLeft open by the source\n{}", wrapped(&open.join(", "), 2));
+    }
+    if !preset.deviations.is_empty() {
+        let deviations = preset.deviations.iter().map(|deviation| wrapped(deviation, 2));
+        text += &format!("\nDifferences from the source\n{}", deviations.collect::<String>());
+    }
     Shown { text, json: preset_json(preset) }
 }
 
@@ -43,6 +51,8 @@ pub fn preset_json(preset: &Preset) -> Value {
         "probe": preset.probe,
         "passes": preset.passes,
         "numbers": preset.numbers,
+        "open": preset.open,
+        "deviations": preset.deviations,
     })
 }
 

@@ -141,6 +141,11 @@ impl Walk<'_, '_, '_> {
     fn everything(&mut self) {
         for index in 0..self.graph.nodes[0].module.items.len() as u32 {
             self.item_if(0, index);
+            let name = self.graph.nodes[0].module.items[index as usize].name;
+            // Only one of each name may be left, whether anything uses it or not.
+            if self.graph.nodes[0].sets.get(&name).is_some_and(|set| set.first() == Some(&index)) {
+                self.chosen(0, name);
+            }
         }
     }
 
@@ -188,9 +193,13 @@ impl Walk<'_, '_, '_> {
 
     fn constant(&mut self, index: u32) {
         let constant = &self.graph.constants[index as usize];
+        if let Some(literal) = self.evaluator.given(constant.name) {
+            self.reached.constants[index as usize] = Some(("const", format!(" = {literal}")));
+            return;
+        }
         let open = self.evaluator.open(constant.name);
         let Some(value) =
-            open.clone().or_else(|| self.evaluator.setting(constant.name, constant.span))
+            open.clone().or_else(|| self.evaluator.number(constant.name, constant.span))
         else {
             return;
         };

@@ -56,6 +56,9 @@ fn article(text: &mut String, exhibit: &Exhibit, first: &Card) -> Result<(), Str
         "src=\"data:image/png;base64,{picture}\">\n<div>\n<h2>{name}</h2>\n<p>{}</p>\n<ul>\n",
         prose(&preset.doc)
     );
+    for deviation in &preset.deviations {
+        let _ = writeln!(text, "<li>differs from the source: {}</li>", prose(deviation));
+    }
     let _ = writeln!(text, "<li>{}</li>", escaped(&preset.source));
     for pass in exhibit.card.passes() {
         let _ = writeln!(text, "<li><code>{}</code></li>", escaped(&pass));

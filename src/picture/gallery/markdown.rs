@@ -37,6 +37,9 @@ fn section(text: &mut String, card: &Card, first: &Card) {
     let preset = &card.preset;
     let name = &preset.name;
     let _ = write!(text, "\n### {name}\n\n![{name}]({name}.png)\n\n{}\n\n", preset.doc);
+    for deviation in &preset.deviations {
+        let _ = writeln!(text, "- differs from the source: {deviation}");
+    }
     let _ = writeln!(text, "- source: {}", preset.source);
     for pass in card.passes() {
         let _ = writeln!(text, "- `{pass}`");

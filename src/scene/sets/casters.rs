@@ -14,6 +14,9 @@ pub const SET: Set = Set {
     make: scene,
 };
 
+/// Which of the objects is the floor.
+pub const FLOOR: usize = 0;
+
 /// The scene itself.
 pub fn scene() -> Scene {
     let floor = tiles(10, 1.4, [CHALK, CHALK * 0.8], 2);

@@ -25,11 +25,23 @@ pub const SET: Set =
 
 /// The scene itself.
 pub fn scene() -> Scene {
+    let eye = Eye {
+        position: DVec3::new(3.2, 6.6, 10.5),
+        target: DVec3::new(0.0, -0.3, -1.0),
+        fov_y: 0.72,
+        near: 0.5,
+        far: 60.0,
+    };
+    field(120, eye)
+}
+
+/// The field with a number of cells along each side.
+pub fn field(cells: u32, eye: Eye) -> Scene {
     let at = |u: f64, v: f64| {
         let (x, z) = (SIDE * (u - 0.5), SIDE * (0.5 - v));
         DVec3::new(x, height(x, z), z)
     };
-    let land = Shape::surface(120, 120, at).map(|vertex| {
+    let land = Shape::surface(cells, cells, at).map(|vertex| {
         let (grass, rock, snow) =
             (DVec3::new(0.2, 0.32, 0.1), DVec3::new(0.36, 0.31, 0.26), DVec3::new(0.8, 0.82, 0.86));
         let steep = ((0.93 - vertex.normal.y) * 6.0).clamp(0.0, 1.0);
@@ -41,13 +53,6 @@ pub fn scene() -> Scene {
         Object::new(land, DMat4::IDENTITY, DVec3::ONE)
             .of(Material::default().glossy(0.04).shiny(12.0), 12),
     ];
-    let eye = Eye {
-        position: DVec3::new(3.2, 6.6, 10.5),
-        target: DVec3::new(0.0, -0.3, -1.0),
-        fov_y: 0.72,
-        near: 0.5,
-        far: 60.0,
-    };
     let key = Lamp {
         color: DVec3::new(1.25, 1.08, 0.85),
         position: DVec3::new(-8.0, 6.5, 4.5),

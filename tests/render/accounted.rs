@@ -1,0 +1,137 @@
+//! Every number that a preset's picture depends on is the source's, or is marked as left open.
+
+use std::collections::BTreeSet;
+
+use lamplight::bundle::Language;
+use lamplight::catalogue::preset::Preset;
+use lamplight::picture::frame::Stages;
+use libtest_mimic::{Failed, Trial};
+use naga::proc::TypeResolution;
+use naga::{Expression, Function, Module, TypeInner};
+
+use super::{library, plan, said};
+
+/// Structures of uniforms, the group of a preset's numbers, and fields that are no numbers of a
+/// source: how a program is told of the scene.
+const STRUCTURES: &[(&str, &str, &[&str])] = &[
+    ("Light", "light", &["kind", "shadow_layer"]),
+    ("Material", "material", &[]),
+    ("Surroundings", "surroundings", &["sh"]),
+    ("Haze", "haze", &[]),
+    ("Caster", "caster", &["clip_from_world", "light", "texel", "near", "far"]),
+    ("Moments", "moments", &[]),
+];
+
+/// What a flat shadow map from a place is drawn with.
+const FRUSTUM: &[&str] = &["fov", "near", "far"];
+/// What can be done against acne where the map is drawn.
+const BIAS: &[&str] = &["polygon_offset", "cull_front"];
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("render/numbers_are_accounted_for", all_accounted),
+        Trial::test("render/a_missing_number_is_noticed", missing_is_noticed),
+    ]
+}
+
+/// Numbers that the passes of a preset read, as `group.field`.
+fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, String> {
+    let (library, plan) = (library(), plan(preset)?);
+    let mut found = BTreeSet::new();
+    for pass in &plan.passes {
+        let program = library.programs.manifest().program(&pass.program).ok_or("no program")?;
+        let stages = library.programs.stages(program, &pass.settings, Language::Wesl);
+        let Stages { vertex, fragment } = stages.map_err(said)?;
+        for composed in [Some(vertex), fragment].into_iter().flatten() {
+            read_by(&composed.validated, &mut found);
+        }
+    }
+    let has_map = plan.passes.iter().any(|pass| ["depth", "moments"].contains(&&*pass.program));
+    let is_of_spot = !preset.key.contains("shadow_light=");
+    let of_map = BIAS.iter().filter(|_| has_map && !preset.key.contains("shadow=vsm"));
+    let of_spot = FRUSTUM.iter().filter(|_| has_map && is_of_spot);
+    found.extend(of_map.chain(of_spot).map(|field| ("depth_pass", (*field).to_owned())));
+    Ok(found)
+}
+
+/// Fields of the structures that any function of the module reads by themselves.
+fn read_by(
+    validated: &lamplight::validate::Validated,
+    found: &mut BTreeSet<(&'static str, String)>,
+) {
+    let module = &validated.module;
+    for (handle, function) in module.functions.iter() {
+        fields(module, function, &validated.info[handle], found);
+    }
+    for (index, point) in module.entry_points.iter().enumerate() {
+        fields(module, &point.function, validated.info.get_entry_point(index), found);
+    }
+}
+
+fn fields(
+    module: &Module,
+    function: &Function,
+    info: &naga::valid::FunctionInfo,
+    found: &mut BTreeSet<(&'static str, String)>,
+) {
+    for (_, expression) in function.expressions.iter() {
+        let Expression::AccessIndex { base, index } = *expression else { continue };
+        let ty = match &info[base].ty {
+            TypeResolution::Handle(ty) => match module.types[*ty].inner {
+                TypeInner::Pointer { base, .. } => base,
+                _ => *ty,
+            },
+            TypeResolution::Value(TypeInner::Pointer { base, .. }) => *base,
+            TypeResolution::Value(_) => continue,
+        };
+        let TypeInner::Struct { members, .. } = &module.types[ty].inner else { continue };
+        let name = module.types[ty].name.as_deref().unwrap_or_default();
+        let known = STRUCTURES.iter().find(|(structure, _, _)| *structure == name);
+        let field = members[index as usize].name.as_deref().unwrap_or_default();
+        if let Some((_, group, _)) = known.filter(|(_, _, not)| !not.contains(&field)) {
+            found.insert((group, field.to_owned()));
+        }
+    }
+}
+
+/// What is neither given nor left open, and what is left open and not read.
+fn unaccounted(preset: &Preset) -> Result<(Vec<String>, Vec<String>), String> {
+    let read = numbers_read(preset)?;
+    let missing = read.iter().filter(|(group, field)| !preset.accounts_for(group, field));
+    let missing = missing.map(|(group, field)| format!("{group}.{field}")).collect();
+    let read: BTreeSet<String> =
+        read.iter().map(|(group, field)| format!("{group}.{field}")).collect();
+    let unread = preset.open.difference(&read).cloned().collect();
+    Ok((missing, unread))
+}
+
+fn all_accounted() -> Result<(), Failed> {
+    let mut wrong = String::new();
+    for preset in &library().presets {
+        let (missing, unread) = unaccounted(preset)?;
+        if !missing.is_empty() {
+            wrong += &format!("{}: neither given nor open: {missing:?}\n", preset.name);
+        }
+        if !unread.is_empty() {
+            wrong += &format!("{}: open, and not read: {unread:?}\n", preset.name);
+        }
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(wrong.into()) }
+}
+
+/// A preset that loses a number, or the mark that it is open, is told.
+fn missing_is_noticed() -> Result<(), Failed> {
+    let known = library().presets.iter().find(|preset| preset.name == "hpg_5_shadow");
+    let mut preset = known.ok_or("no such preset")?.clone();
+    preset.numbers.remove("caster");
+    preset.open.remove("light.color");
+    preset.open.insert("haze.density".to_owned());
+    let (missing, unread) = unaccounted(&preset)?;
+    match (
+        missing.contains(&"caster.min_w".to_owned()),
+        missing.contains(&"light.color".to_owned()),
+    ) {
+        (true, true) if unread == ["haze.density"] => Ok(()),
+        _ => Err(format!("missing {missing:?}, unread {unread:?}").into()),
+    }
+}
