@@ -184,6 +184,9 @@ pub mod cost;
 pub mod execute;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
+pub mod lsp;
+#[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod picture;
 #[cfg(feature = "harness")]
 #[doc(hidden)]

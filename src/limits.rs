@@ -116,6 +116,8 @@ limits! {
     PERMUTATIONS: usize = 1_000_000, Count, "permutations of a program", "time, and your disk",
         "`too-many-permutations`";
     PACKAGES: usize = 1000, Count, "packages in `wesl.toml`", "time", "`wesl-toml`";
+    MESSAGE_BYTES: u64 = 64 << 20, Bytes, "bytes of one message to the language server", "memory",
+        "skipped, and answered with an error";
     DIAGNOSTICS: usize = 100, Count, "diagnostics of one run", "your eyes", "`not-shown`";
     MANIFEST_BYTES: u64 = 1 << 30, Bytes, "bytes of a bundle's `manifest.json`", "memory",
         "the bundle cannot be read";

@@ -24,6 +24,7 @@ mod judged;
 mod keys;
 mod lint;
 mod list;
+mod lsp;
 mod merge;
 mod mutate;
 mod overwrite;
@@ -87,6 +88,7 @@ enum Command {
     Rehearse(rehearse::Arguments),
     Export(export::Arguments),
     Explain(explain::Arguments),
+    Lsp(lsp::Arguments),
     Completions(completions::Completions),
     Man(completions::Manual),
 }
@@ -197,6 +199,7 @@ fn dispatch(
         Command::Rehearse(arguments) => rehearse::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Lsp(arguments) => lsp::run(arguments),
         Command::Completions(arguments) => completions::completions(&arguments, described()),
         Command::Man(arguments) => completions::manual(&arguments, described()),
     }

@@ -89,8 +89,7 @@ pub fn duplicates(loader: &mut Loader<'_>, node: u32) {
     }
     for (condition, error) in found {
         if let Target::Failed(index) = loader.fail(error) {
-            let conditions = condition.into_iter().collect();
-            loader.nodes[node as usize].broken_imports.push((conditions, index));
+            loader.nodes[node as usize].duplicates.push((condition, index));
         }
     }
 }

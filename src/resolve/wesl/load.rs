@@ -218,6 +218,7 @@ impl<'a> Loader<'a> {
             imports: Vec::new(),
             bindings: Vec::new(),
             broken_imports: Vec::new(),
+            duplicates: Vec::new(),
             lints: Vec::new(),
             importer,
             bases: Bases::default(),
