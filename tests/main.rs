@@ -54,6 +54,7 @@ mod shaderlib;
 mod shadow;
 mod snapshot;
 mod specialise;
+mod tables;
 mod traps;
 
 use std::process::ExitCode;
@@ -103,6 +104,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     shaderlib::trials,
     shadow::trials,
     specialise::trials,
+    tables::trials,
     traps::trials,
 ];
 

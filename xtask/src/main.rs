@@ -12,6 +12,7 @@ mod generate;
 mod machine;
 mod mutate;
 mod new;
+mod tables;
 mod test;
 mod validate;
 
@@ -74,6 +75,11 @@ const COMMANDS: &[Command] = &[
         "bench",
         "measure, beside peers where there are any: compose, eval, gen, load or scale",
         bench::run,
+    ),
+    (
+        "tables",
+        "make the tables that techniques read: blue noise, DFG, LTC, sheen (a minute): [NAME]...",
+        tables::run,
     ),
     (
         "faults",
