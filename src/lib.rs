@@ -156,6 +156,9 @@ pub mod permute;
 #[cfg(feature = "compile")]
 pub mod project;
 #[cfg(feature = "compile")]
+#[doc(hidden)]
+pub mod rehearse;
+#[cfg(feature = "compile")]
 pub mod resolve;
 #[cfg(feature = "compile")]
 pub mod source;
@@ -179,6 +182,9 @@ pub mod cost;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
 pub mod execute;
+#[cfg(feature = "harness")]
+#[doc(hidden)]
+pub mod lsp;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
 pub mod picture;

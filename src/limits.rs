@@ -85,7 +85,7 @@ limits! {
         "`limit-exceeded`";
     ENTRY_POINTS: usize = 128, Count, "entry points in it", "time: each is compiled from all of it",
         "`limit-exceeded`";
-    STATEMENTS: usize = 8192, Count, "statements and cases of one function in it",
+    STATEMENTS: usize = 8192, Count, "statements, cases and their values of one function in it",
         "time: naga's grows with their square", "`limit-exceeded`";
     CONSTANT_PARTS: u64 = 1 << 16, Count, "parts of one constant, those that it names included",
         "memory: naga copies them", "`limit-exceeded`";
@@ -97,15 +97,27 @@ limits! {
         "memory: HLSL has a member for each four", "`limit-exceeded`";
     TYPE_NESTING: usize = 64, Count, "types within each other", "the stack of naga",
         "`limit-exceeded`";
+    LINKED_BYTES: usize = 8 << 20, Bytes,
+        "bytes of functions with all that they name, of one text that is put together from them",
+        "time: naga reads each", "compiled as a whole";
+    CALM_PART: usize = 8, Count,
+        "part of a bound on composed texts, beyond which another process tries them first",
+        "the process, where others' code would end it", "`naga-exhausted`";
+    REHEARSAL_BYTES: u64 = 1 << 30, Bytes, "memory of that process", "memory",
+        "`naga-exhausted`";
+    REHEARSAL_SECONDS: u64 = 5, Seconds, "its time on a processor", "time", "`naga-exhausted`";
     AXES: usize = 128, Count, "axes of a program, values of an axis",
         "counting a space of permutations at once", "`axis-limit`";
     CONSTRAINT_NESTING: usize = 64, Count, "levels of a constraint", "the stack",
         "`nesting-too-deep`";
+    CONSTRAINTS: usize = 4096, Count, "constraints of a program", "time", "`space-too-complex`";
     SPACE_STEPS: usize = 1 << 22, Count, "steps to count a program's permutations", "time",
         "`space-too-complex`";
     PERMUTATIONS: usize = 1_000_000, Count, "permutations of a program", "time, and your disk",
         "`too-many-permutations`";
     PACKAGES: usize = 1000, Count, "packages in `wesl.toml`", "time", "`wesl-toml`";
+    MESSAGE_BYTES: u64 = 64 << 20, Bytes, "bytes of one message to the language server", "memory",
+        "skipped, and answered with an error";
     DIAGNOSTICS: usize = 100, Count, "diagnostics of one run", "your eyes", "`not-shown`";
     MANIFEST_BYTES: u64 = 1 << 30, Bytes, "bytes of a bundle's `manifest.json`", "memory",
         "the bundle cannot be read";

@@ -38,7 +38,7 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// `settings.txt`: `set NAME = VALUE`, `enum NAME = A, B`, `integer NAME`, `keep all|A,B`,
+/// `settings.txt`: `set NAME = VALUE`, `constant NAME = LITERAL`, `enum NAME = A, B`, `integer NAME`, `keep all|A,B`,
 /// `mangle underscore`, `root FILE`, `reads`, `unparsed` (naga need not accept the text).
 #[derive(Default)]
 struct Case {
@@ -60,6 +60,10 @@ impl Case {
             let list =
                 |text: &str| text.split(',').map(|part| part.trim().to_owned()).collect::<Vec<_>>();
             match word {
+                "constant" => {
+                    let literal = lamplight::permute::constant::parse(value).unwrap();
+                    drop(case.settings.constants.insert(name.to_owned(), literal));
+                }
                 "set" => drop(case.settings.values.insert(name.to_owned(), Setting::parse(value))),
                 "enum" => drop(case.settings.enums.insert(name.to_owned(), list(value))),
                 "integer" => drop(case.settings.integers.insert(name.to_owned())),

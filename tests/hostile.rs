@@ -3,6 +3,9 @@
 
 mod bundles;
 mod cases;
+mod isolated;
+mod manifests;
+mod pictures;
 mod printed;
 mod shaders;
 
@@ -18,12 +21,13 @@ pub type Outcome = Result<(), Failed>;
 const MEMORY_KIB: u64 = 4 << 20;
 
 pub fn trials() -> Vec<Trial> {
-    let tables = [cases::CASES, shaders::CASES];
+    let tables = [cases::CASES, manifests::CASES, pictures::CASES, shaders::CASES];
     let rows = tables
         .into_iter()
         .flatten()
         .map(|case| Trial::test(format!("hostile::{}", case.name), move || case.check()));
-    rows.chain(bundles::trials()).chain(printed::trials()).collect()
+    let others = [bundles::trials(), isolated::trials(), printed::trials()];
+    rows.chain(others.into_iter().flatten()).collect()
 }
 
 /// Files, a command over them, and what it says.
@@ -39,7 +43,9 @@ impl Hostile {
     fn check(&self) -> Outcome {
         let folder = tempfile::tempdir()?;
         for (name, text) in (self.files)() {
-            fs::write(folder.path().join(name), text)?;
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap_or(folder.path()))?;
+            fs::write(path, text)?;
         }
         let arguments: Vec<&str> = self.arguments.split(' ').collect();
         fails(&run(&folder, &arguments)?, self.code, self.words)
@@ -48,11 +54,17 @@ impl Hostile {
 
 /// Runs the command line in a folder with little memory.
 pub fn run(folder: &TempDir, arguments: &[&str]) -> Result<Output, Failed> {
-    let limited = format!("ulimit -v {MEMORY_KIB}; exec \"$@\"");
+    run_within(MEMORY_KIB, folder, arguments)
+}
+
+/// The same with so many KiB of address space.
+pub fn run_within(kib: u64, folder: &TempDir, arguments: &[&str]) -> Result<Output, Failed> {
+    let limited = format!("ulimit -v {kib}; exec \"$@\"");
     Ok(Command::new("sh")
         .args(["-c", &limited, "sh", env!("CARGO_BIN_EXE_lamplight")])
         .args(arguments)
         .current_dir(folder.path())
+        .env("RAYON_NUM_THREADS", "2")
         .stdin(Stdio::null())
         .output()?)
 }

@@ -35,6 +35,7 @@ mod library;
 mod link;
 mod link_compare;
 mod link_random;
+mod lsp;
 mod metal;
 mod mutate;
 mod new;
@@ -86,6 +87,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     library::trials,
     link::trials,
     link_random::trials,
+    lsp::trials,
     metal::trials,
     mutate::trials,
     new::trials,

@@ -2,7 +2,9 @@
 //! found them, or a person did. Each must have one answer, without a panic, in a moment.
 
 #[path = "../fuzz/src/kinds.rs"]
-mod kinds;
+pub mod kinds;
+#[path = "../fuzz/src/proofs.rs"]
+mod proofs;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -14,12 +16,15 @@ use libtest_mimic::{Failed, Trial};
 const LONGEST: Duration = Duration::from_secs(10);
 
 pub fn trials() -> Vec<Trial> {
-    let seeds = KINDS
-        .iter()
-        .map(|kind| Trial::test(format!("regressions::{}", kind.name), || seeded(kind)));
+    let seeds =
+        all().map(|kind| Trial::test(format!("regressions::{}", kind.name), || seeded(kind)));
     seeds
-        .chain(KINDS.iter().flat_map(|kind| files(kind).into_iter().map(|file| trial(kind, file))))
+        .chain(all().flat_map(|kind| files(kind).into_iter().map(move |file| trial(kind, file))))
         .collect()
+}
+
+fn all() -> impl Iterator<Item = &'static Kind> {
+    KINDS.iter().chain(proofs::KINDS)
 }
 
 /// A kind without valid inputs to start from would be fuzzed in vain.

@@ -8,6 +8,7 @@ mod eval;
 mod generate;
 mod library;
 mod load;
+mod lsp;
 mod scale;
 
 use std::error::Error;
@@ -22,6 +23,7 @@ const BENCHMARKS: &[Benchmark] = &[
     ("eval", eval::run),
     ("gen", generate::run),
     ("load", load::run),
+    ("lsp", lsp::run),
     ("scale", scale::run),
 ];
 

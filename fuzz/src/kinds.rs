@@ -4,9 +4,11 @@
 //! `cargo xtask fuzz`, the tests of `tests/regressions/` and the targets of cargo-fuzz share this.
 
 #[path = "seal.rs"]
-mod seal;
+pub mod seal;
 #[path = "stores.rs"]
 mod stores;
+
+use std::sync::OnceLock;
 
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::compose::{self, Keep, Options};
@@ -197,7 +199,7 @@ fn manifest(bytes: &[u8]) -> String {
     let id = sources.add("lamplight.toml", String::from_utf8_lossy(bytes).into_owned());
     match manifest::parse(&sources, id) {
         Err(problems) => told(&sources, &problems),
-        Ok(Manifest { programs, warnings }) => {
+        Ok(Manifest { programs, warnings, .. }) => {
             let spaces = programs
                 .iter()
                 .map(|program| format!("{}: {}\n", program.name, space(&program.space)));
@@ -216,16 +218,21 @@ fn space(space: &Space) -> String {
     format!("{counts} {} {}", keys.join(";"), cover::pairwise(space).points.len())
 }
 
-fn forward() -> Option<Space> {
-    let (_, manifest) = project::library_manifest().ok()?;
-    Some(manifest.programs.into_iter().find(|program| program.name == "forward")?.space)
+/// The largest program of the library, read once.
+fn forward() -> Option<&'static Space> {
+    static SPACE: OnceLock<Option<Space>> = OnceLock::new();
+    let read = || {
+        let (_, manifest) = project::library_manifest().ok()?;
+        Some(manifest.programs.into_iter().find(|program| program.name == "forward")?.space)
+    };
+    SPACE.get_or_init(read).as_ref()
 }
 
 fn key(bytes: &[u8]) -> String {
     let Some(space) = forward() else { return String::new() };
     let mut sources = SourceSet::default();
     let id = sources.add("key", String::from_utf8_lossy(bytes).into_owned());
-    let text = match key::parse(&space, &Quoted::whole(&sources, id)) {
+    let text = match key::parse(space, &Quoted::whole(&sources, id)) {
         Ok(point) => space.key(&point).to_string(),
         Err(problems) => told(&sources, &problems),
     };
@@ -249,14 +256,14 @@ fn lock(bytes: &[u8]) -> String {
     let mut sources = SourceSet::default();
     let id = sources.add("lock", String::from_utf8_lossy(bytes).into_owned());
     let lock = match lock::parse(&sources, id) {
-        Ok(lock) => lock.extended("forward", &space),
+        Ok(lock) => lock.extended("forward", space),
         Err(problems) => return told(&sources, &problems),
     };
-    let dense = lock.dense("forward", &space, &space.default_assignment());
+    let dense = lock.dense("forward", space, &space.default_assignment());
     let points: Vec<_> = [0, 1, 7, u128::MAX]
         .into_iter()
         .chain(dense)
-        .map(|dense| lock.point("forward", &space, dense))
+        .map(|dense| lock.point("forward", space, dense))
         .collect();
     format!("{lock}{dense:?} {points:?}")
 }

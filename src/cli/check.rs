@@ -88,6 +88,7 @@ impl Arguments {
         }
         settings.values.extend(self.set.iter().chain(&self.feature).cloned());
         settings.undeclared = self.features.undeclared(settings.undeclared);
+        settings.constants = self.features.constants();
         Ok(settings)
     }
 

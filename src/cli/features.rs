@@ -1,14 +1,34 @@
-//! `--features-default`: what an undeclared feature is.
+//! `--features-default`: what an undeclared feature is; `--constant`: numbers from outside.
+
+use std::collections::BTreeMap;
 
 use clap::{Args, ValueEnum};
 
+use crate::permute::constant;
+
 /// The option, for every command that composes.
-#[derive(Args, Clone, Copy, Default)]
+#[derive(Args, Clone, Default)]
 pub struct Arguments {
     /// What a feature is that nothing chooses [default: the manifest's `features_default`, else
     /// `error`].
     #[arg(long, value_name = "on|off|error", value_enum)]
     features_default: Option<Undeclared>,
+    /// The value of `constants::NAME` where no axis has the name: a literal of WGSL, whose suffix
+    /// is its type, such as `4u`, `0.5f` or `true`.
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', value_parser = named,
+        allow_hyphen_values = true)]
+    constant: Vec<(String, String)>,
+}
+
+/// A constant as the option has it.
+fn named(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let fits = |c: char| c == '_' || c.is_ascii_alphanumeric();
+    if name.is_empty() || !name.chars().all(fits) || name.starts_with(|c: char| c.is_ascii_digit())
+    {
+        return Err(format!("`{name}` is not a name of letters, digits and `_`"));
+    }
+    Ok((name.to_owned(), constant::parse(value)?))
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -19,8 +39,13 @@ enum Undeclared {
 }
 
 impl Arguments {
+    /// The constants by name.
+    pub fn constants(&self) -> BTreeMap<String, String> {
+        self.constant.iter().cloned().collect()
+    }
+
     /// What was asked for, or else what the manifest says.
-    pub fn undeclared(self, of_manifest: Option<bool>) -> Option<bool> {
+    pub fn undeclared(&self, of_manifest: Option<bool>) -> Option<bool> {
         match self.features_default {
             None => of_manifest,
             Some(Undeclared::On) => Some(true),

@@ -94,6 +94,7 @@ const ENTRIES: &[Entry] = &[
         "Troubleshooting by diagnostic",
         &["lamplight explain missing-module", "lamplight explain"],
     ),
+    entry("lsp", "In an editor", &["lamplight lsp < /dev/null"]),
     entry("completions", FIRST, &["lamplight completions bash > lamplight.bash"]),
     entry("man", FIRST, &["lamplight man -o man", "lamplight man gen"]),
     entry("cost", "Cost on GPUs", &["lamplight cost lighting::spot --gpu navi21"]),

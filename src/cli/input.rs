@@ -9,6 +9,7 @@ use super::{features, stream};
 use crate::bundle::{Clip, Language, Stage};
 use crate::compose::{self, Composed, Keep, Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
+use crate::permute::manifest::Features;
 use crate::permute::{Assignment, Program, Quoted, Setting, Settings, key};
 use crate::project::{self, Project};
 use crate::resolve::{self, Graph};
@@ -283,12 +284,14 @@ impl Input {
 
     /// Settings of the command line that are no axes and that nothing can ask for.
     fn unused(&self, graph: &Graph, axes: &[String]) -> Diagnostics {
-        let unused = self.chosen().filter(|(name, _)| !axes.contains(name) && !graph.may_ask(name));
-        unused
-            .map(|(name, _)| {
-                Diagnostic::warning(codes::UNUSED_SETTING, format!("nothing asks for `{name}`"))
-            })
-            .collect()
+        let unused = self.chosen().map(|(name, _)| name);
+        let unused = unused.filter(|name| !axes.contains(name) && !graph.may_ask(name)).cloned();
+        let constants = self.features.constants().into_keys();
+        let constants = constants.filter(|name| !graph.has_constant(name));
+        let warning = |name: String| {
+            Diagnostic::warning(codes::UNUSED_SETTING, format!("nothing asks for `{name}`"))
+        };
+        unused.chain(constants).map(warning).collect()
     }
 
     fn options(&self) -> Options {
@@ -312,29 +315,39 @@ impl Input {
             manifest.programs.iter().find(|program| program.files().any(|file| file.path == path))
         });
         match program {
-            Some(program) => self.of_program(program, &mut project.sources),
-            None => Ok(self.free()),
+            Some(program) => {
+                let features = manifest.as_ref().map(|manifest| &manifest.features);
+                self.of_program(program, features, &mut project.sources)
+            }
+            None => self.free(root, &mut project.sources),
         }
     }
 
-    fn free(&self) -> Chosen {
-        let settings = Settings {
+    fn free(&self, root: &Path, sources: &mut SourceSet) -> Result<Chosen, Diagnostics> {
+        let mut settings = Settings {
             values: self.chosen().cloned().collect(),
             undeclared: self.features.undeclared(None),
+            constants: self.features.constants(),
             ..Settings::default()
         };
         let parts: Vec<String> =
             settings.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let declared = match project::manifest(root, sources)? {
+            Some(manifest) => manifest.features,
+            None => project::features(root, sources)?,
+        };
+        declared.complete(&mut settings);
+        let warnings = declared.broken(&settings);
         let permutation =
             (!parts.is_empty()).then(|| format!("with the settings `{}`", parts.join(",")));
-        Chosen {
+        Ok(Chosen {
             settings,
             clip: Clip::default(),
             permutation,
             declared: false,
             axes: Vec::new(),
-            warnings: Vec::new(),
-        }
+            warnings,
+        })
     }
 
     /// The point of the program's space that the options name; broken constraints are warnings,
@@ -342,16 +355,13 @@ impl Input {
     fn of_program(
         &self,
         program: &Program,
+        features: Option<&Features>,
         sources: &mut SourceSet,
     ) -> Result<Chosen, Diagnostics> {
         let is_axis = |name: &str| program.space.axis(name).is_some();
-        let features = self.feature.iter().filter(|(name, _)| is_axis(name));
-        let parts: Vec<String> = self
-            .set
-            .iter()
-            .chain(features)
-            .map(|(axis, value)| format!("{axis}={value}"))
-            .collect();
+        let of_axes = self.feature.iter().filter(|(name, _)| is_axis(name));
+        let parts: Vec<String> =
+            self.set.iter().chain(of_axes).map(|(axis, value)| format!("{axis}={value}")).collect();
         let id = sources.add("--set", parts.join(","));
         let point = key::parse(&program.space, &Quoted::whole(sources, id))?;
         let broken = broken(program, &point, sources, id)
@@ -360,13 +370,15 @@ impl Input {
         let mut settings = program.space.settings(&point);
         settings.undeclared = self.features.undeclared(settings.undeclared);
         settings.values.extend(self.feature.iter().filter(|(name, _)| !is_axis(name)).cloned());
+        settings.constants = self.features.constants();
+        let both = features.map(|features| features.broken(&settings)).unwrap_or_default();
         let permutation = Some(format!(
             "in permutation `{}` of program `{}`",
             program.space.key(&point),
             program.name
         ));
         let axes = program.space.axes().iter().map(|axis| axis.name.clone()).collect();
-        let (clip, warnings) = (program.clip, broken.collect());
+        let (clip, warnings) = (program.clip, broken.chain(both).collect());
         Ok(Chosen { settings, clip, permutation, declared: true, axes, warnings })
     }
 }

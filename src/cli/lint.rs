@@ -35,6 +35,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let settings = Settings {
         values: arguments.set.iter().chain(&arguments.feature).cloned().collect(),
         undeclared: arguments.features.undeclared(None),
+        constants: arguments.features.constants(),
         ..Settings::default()
     };
     let mut last = SourceSet::default();
@@ -101,6 +102,10 @@ fn one(
 ) -> Result<lint::Found, Diagnostics> {
     let packages = project::packages(root, sources)?;
     let manifest = project::manifest(root, sources)?;
+    let mut settings = settings.clone();
+    if manifest.is_none() {
+        project::features(root, sources)?.complete(&mut settings);
+    }
     let all = packages.root.files.list(EXTENSIONS);
     let mut paths: Vec<String> = Vec::new();
     for path in asked {
@@ -115,8 +120,12 @@ fn one(
     paths.dedup();
     let warnings =
         manifest.iter().flat_map(|manifest| manifest.warnings.clone()).collect::<Vec<_>>();
-    let request =
-        Request { packages: &packages, manifest: manifest.as_ref(), settings, paths: &paths };
+    let request = Request {
+        packages: &packages,
+        manifest: manifest.as_ref(),
+        settings: &settings,
+        paths: &paths,
+    };
     let mut found = lint::lint(sources, &request);
     found.diagnostics.splice(0..0, warnings);
     Ok(found)

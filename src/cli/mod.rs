@@ -24,12 +24,14 @@ mod judged;
 mod keys;
 mod lint;
 mod list;
+mod lsp;
 mod merge;
 mod mutate;
 mod overwrite;
 mod own;
 mod partial;
 mod progress;
+mod rehearse;
 mod render;
 mod show;
 mod stream;
@@ -82,8 +84,11 @@ enum Command {
     Cost(cost::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
+    #[command(hide = true)]
+    Rehearse(rehearse::Arguments),
     Export(export::Arguments),
     Explain(explain::Arguments),
+    Lsp(lsp::Arguments),
     Completions(completions::Completions),
     Man(completions::Manual),
 }
@@ -138,6 +143,9 @@ pub fn main() -> ExitCode {
     executors::prepare(&cli.command.executors());
     let gpus = cli.command.gpus();
     let form = cli.color.of(cli.diagnostics);
+    if !matches!(cli.command, Command::Rehearse(_)) {
+        rehearse::install();
+    }
     match dispatch(cli.command, gpus, form) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(form),
@@ -188,8 +196,10 @@ fn dispatch(
         Command::Render(arguments) => render::run(arguments, form),
         Command::Cost(arguments) => cost::run(arguments, gpus, form),
         Command::Mutate(arguments) => mutate::run(arguments),
+        Command::Rehearse(arguments) => rehearse::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Lsp(arguments) => lsp::run(arguments),
         Command::Completions(arguments) => completions::completions(&arguments, described()),
         Command::Man(arguments) => completions::manual(&arguments, described()),
     }

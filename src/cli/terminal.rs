@@ -52,6 +52,11 @@ pub fn data(bytes: &[u8]) -> io::Result<()> {
     }
 }
 
+/// Sends what was written to standard output on its way.
+pub fn flush() -> io::Result<()> {
+    io::stdout().flush()
+}
+
 /// Writes what a terminal would obey as `\u001b`, which is the same character in JSON.
 #[derive(Debug)]
 pub struct Escaping<W: Write> {

@@ -54,7 +54,9 @@ impl Compiler<'_> {
             Ok(link::Made { unit, warnings, whole }) => (Ok(Made { unit, warnings }), whole),
             Err(errors) => (Err(errors), Vec::new()),
         };
-        self.cache.into_iter().for_each(|cache| cache.keep(job, &made));
+        if !is_of_this_machine(&made) {
+            self.cache.into_iter().for_each(|cache| cache.keep(job, &made));
+        }
         self.pass_on(made?, whole)
     }
 
@@ -65,4 +67,10 @@ impl Compiler<'_> {
             .map_err(|error| vec![Diagnostic::error(codes::BUNDLE_FAILED, error.to_string())])?;
         Ok(Compiled { digest, warnings: made.warnings, whole })
     }
+}
+
+/// Whether another machine, or this one at another time, might do what this one could not.
+fn is_of_this_machine(made: &Result<Made, Diagnostics>) -> bool {
+    let is_exhausted = |error: &Diagnostic| error.code == codes::NAGA_EXHAUSTED;
+    made.as_ref().is_err_and(|errors| errors.iter().any(is_exhausted))
 }

@@ -134,6 +134,13 @@ impl Recipe<'_> {
         hash(parts.iter().map(Vec::as_slice))
     }
 
+    /// Bytes of the declarations that the text is made of.
+    pub fn bytes(&self, outline: &Outline<'_>) -> usize {
+        let whole = self.others.iter().chain(&self.variables).chain(&self.function);
+        let heads = self.stubs.iter().map(|(stub, _)| outline.declarations[*stub].head.len());
+        whole.map(|index| outline.declarations[*index].text.len()).chain(heads).sum()
+    }
+
     /// The text.
     pub fn text(&self, outline: &Outline<'_>) -> Result<String, Reason> {
         let mut text = outline.header.clone();

@@ -9,7 +9,7 @@ use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::{self, targets};
 use crate::limits::GROUP_BYTES;
-use crate::validate::{self, Validated, validate};
+use crate::validate::{self, Validated, on_large_stack, validate, validate_rehearsed};
 
 /// A text as its author reads it, for errors, and without comments and layout, to compile.
 #[derive(Debug, Clone, Copy)]
@@ -65,6 +65,46 @@ pub fn compile(
     Ok(Made { unit, warnings, whole })
 }
 
+/// Validates a text once it is known that naga survives it, in all that is asked for.
+fn rehearsed(
+    text: &Text<'_>,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<Validated, Diagnostics> {
+    let outputs = || {
+        let targets = targets.iter().map(|target| target.name().to_owned()).collect();
+        let clip = linker.clip.name().to_owned();
+        Some(validate::Outputs { entry: entry.to_owned(), targets, clip })
+    };
+    match validate::rehearse(text.lean, text.composed, outputs) {
+        // The lean text is quick to read; the whole one knows where its mistakes are.
+        Ok(()) => validate_rehearsed(text.lean).or_else(|_| validate(text.composed)),
+        Err(error) if error.code == codes::NAGA_EXHAUSTED => Err(vec![error]),
+        // Aliases that are written out can be too large where the text is not.
+        Err(_) => {
+            let tried = validate::rehearse(text.composed, text.composed, outputs);
+            tried.map_err(|error| vec![error])?;
+            validate_rehearsed(text.composed)
+        }
+    }
+}
+
+/// Does what [`compile`] and [`validate()`] would do over a large text, in a process of its own.
+/// What comes of it does not matter, only that the process survives.
+pub fn perform(job: &validate::Job) {
+    let composed = Composed::of_text(job.language, job.stage, job.text.clone());
+    let Some(outputs) = &job.outputs else {
+        let _ = validate(&composed);
+        return;
+    };
+    let targets: Vec<Target> =
+        outputs.targets.iter().filter_map(|name| Target::find(name)).collect();
+    let text = Text { composed: &composed, lean: &composed };
+    let linker = Linker::for_clip(&targets, Clip::find(&outputs.clip).unwrap_or_default());
+    let _ = on_large_stack(|| compile_whole(&text, &outputs.entry, &targets, &linker));
+}
+
 /// Refuses an output that no bundle takes.
 fn bounded(unit: &Unit) -> Result<(), Diagnostic> {
     match unit.targets.iter().find(|(_, artifact)| artifact.bytes.len() > GROUP_BYTES) {
@@ -92,8 +132,7 @@ fn compile_whole(
     linker: &Linker<'_>,
 ) -> Result<(Unit, Diagnostics), Diagnostics> {
     let whole = || validate(text.composed);
-    // The lean text is quick to read; the whole one knows where its mistakes are.
-    let validated = validate(text.lean).or_else(|_| whole())?;
+    let validated = rehearsed(text, entry, targets, linker)?;
     emit::check(text.lean, &validated, targets)
         .or_else(|_| emit::check(text.composed, &whole()?, targets))?;
     let unit = unit(text, &validated, entry, targets, linker)

@@ -57,7 +57,7 @@ mod text;
 mod translate;
 mod words;
 
-pub use compile::{Made, Text, compile};
+pub use compile::{Made, Text, compile, perform};
 pub use module::compile_module;
 pub use reason::Reason;
 
@@ -68,6 +68,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 use crate::bundle::Language;
 use crate::bundle::{Artifact, Clip, Reflection, Target};
 use crate::compose::Composed;
+use crate::limits::LINKED_BYTES;
 use canonical::{Recipe, recipe};
 use outline::Outline;
 use pool::{Parts, Pool, Unit};
@@ -125,11 +126,13 @@ impl<'a> Linker<'a> {
         if outline.language == Language::Wesl {
             functions.pop();
         }
+        // What several functions name is read once for each of them.
+        let mut left = LINKED_BYTES;
         for function in &functions {
-            units[*function] =
-                Some(self.unit(&outline, canonical::Unit::Function(*function), &units)?);
+            let unit = canonical::Unit::Function(*function);
+            units[*function] = Some(self.unit(&outline, unit, &units, &mut left)?);
         }
-        let entry = self.unit(&outline, canonical::Unit::Entry, &units)?;
+        let entry = self.unit(&outline, canonical::Unit::Entry, &units, &mut left)?;
         let suspect = entry.summary.parted;
         let reflection = entry.reflection.clone().ok_or(Reason::EntryPoint)?;
         let named = functions.iter().filter_map(|function| {
@@ -150,9 +153,11 @@ impl<'a> Linker<'a> {
         let mut units: Vec<Option<Arc<Unit>>> = vec![None; outline.declarations.len()];
         let is_wesl = outline.language == Language::Wesl;
         let count = outline.functions.len() - usize::from(is_wesl);
+        let mut left = LINKED_BYTES;
         for function in &outline.functions[..count] {
             let name = || Some(outline.declarations[*function].name().to_owned());
-            match self.unit(&outline, canonical::Unit::Function(*function), &units) {
+            let unit = canonical::Unit::Function(*function);
+            match self.unit(&outline, unit, &units, &mut left) {
                 Ok(unit) if unit.is_refused(index) => return name(),
                 Ok(unit) => units[*function] = Some(unit),
                 Err(Reason::Refused) => return name(),
@@ -162,16 +167,19 @@ impl<'a> Linker<'a> {
         None
     }
 
-    /// A unit, translated now if it never was.
+    /// A unit, translated now if it never was. `left` is how many bytes may still be read, whether
+    /// or not they were read before.
     fn unit(
         &self,
         outline: &Outline<'_>,
         unit: canonical::Unit,
         units: &[Option<Arc<Unit>>],
+        left: &mut usize,
     ) -> Result<Arc<Unit>, Reason> {
         let summaries: Vec<Option<&Summary>> =
             units.iter().map(|unit| unit.as_ref().map(|unit| &unit.summary)).collect();
         let recipe: Recipe<'_> = recipe(outline, unit, &summaries)?;
+        *left = left.checked_sub(recipe.bytes(outline)).ok_or(Reason::Large)?;
         let key = recipe.key(outline);
         self.asked.fetch_add(1, Ordering::Relaxed);
         let known = self.pool.read().unwrap_or_else(PoisonError::into_inner).find(&key);

@@ -25,6 +25,8 @@ pub enum Reason {
     MarkedName,
     /// Functions call each other in a circle, or are nested too deeply.
     Recursion,
+    /// Functions name so much, or are so large, that reading each by itself takes longer.
+    Large,
     /// naga refused a function by itself: the whole text tells what is wrong.
     Refused,
     /// A stub does not show its callers what the function does.
@@ -57,6 +59,7 @@ impl Reason {
             Self::Initialiser => "a variable is initialised from another variable",
             Self::MarkedName => "an identifier looks like a mark of the linker",
             Self::Recursion => "functions call each other in a circle or nest too deeply",
+            Self::Large => "a function is too large, or functions name too much",
             Self::Refused => "naga refuses a function by itself",
             Self::Stub => "a stub cannot stand for a function",
             Self::Sampling => "a texture is sampled in a way that a stub cannot repeat",

@@ -20,7 +20,7 @@ use crate::bundle::Language;
 use crate::bundle::{Clip, Native, Reflection, Target};
 use crate::compose::Composed;
 use crate::emit::{self, type_name};
-use crate::validate::{CAPABILITIES, Validated, check_limits, guard, is_bounded, on_large_stack};
+use crate::validate::{CAPABILITIES, Validated, guard, is_bounded, is_calm, on_large_stack};
 
 /// A unit in every target.
 pub struct Translated {
@@ -64,7 +64,9 @@ pub fn translate(
         _ => crate::bundle::Stage::Fragment,
     });
     let composed = Composed::of_text(outline.language, stage, text);
-    check_limits(&composed).map_err(|_| Reason::Refused)?;
+    if !is_calm(&composed).map_err(|_| Reason::Refused)? {
+        return Err(Reason::Large);
+    }
     on_large_stack(|| guard(&composed.text, || inner(outline, recipe, &composed, targets, clip)))
         .unwrap_or(Err(Reason::Refused))
 }

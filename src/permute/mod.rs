@@ -5,6 +5,7 @@
 //! as [`Settings`]. Nothing here reads files or prints.
 
 pub mod axis;
+pub mod constant;
 pub mod constraint;
 pub mod cover;
 pub mod key;

@@ -51,6 +51,9 @@ pub struct Settings {
     pub open: BTreeMap<String, Setting>,
     /// What a feature is that has no value here; where there is nothing, to ask for it is an error.
     pub undeclared: Option<bool>,
+    /// `constants::NAME` that no axis has: literals of WGSL, as [`super::constant::parse`] takes
+    /// them.
+    pub constants: BTreeMap<String, String>,
 }
 
 impl Settings {

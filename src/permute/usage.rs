@@ -47,6 +47,7 @@ pub fn narrow(
     };
     let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
     let undeclared = program.space.undeclared;
+    let features = program.space.features.clone();
     program.space = Space::new(axes.to_vec(), program.space.constraints().to_vec(), lists)
         .map_err(|_| {
             let message =
@@ -57,6 +58,7 @@ pub fn narrow(
             ]
         })?;
     program.space.undeclared = undeclared;
+    program.space.features = features;
     let what = format!("program `{}`", program.name);
     warnings.extend(lint::nothing_wanted(&program.space, &what, program.span));
     Ok(warnings)

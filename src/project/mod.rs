@@ -2,6 +2,7 @@
 //!
 //! This is the input end of the pipeline; the stages after it read through [`Packages`] only.
 
+mod managers;
 mod place;
 mod wesl_toml;
 
@@ -11,6 +12,7 @@ pub use wesl_toml::declared_name;
 use std::path::{Component, Path, PathBuf};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::permute::manifest::Features;
 use crate::permute::{Lock, Manifest, lock, manifest, usage};
 use crate::resolve::Packages;
 use crate::source::{self, Disk, Embedded, Package, SourceId, SourceSet};
@@ -115,7 +117,15 @@ pub const MANIFEST: &str = "lamplight.toml";
 /// The manifest of the package with that root folder, if there is one: in the root, or beside the
 /// `wesl.toml` that declares the root.
 pub fn manifest(root: &Path, sources: &mut SourceSet) -> Result<Option<Manifest>, Diagnostics> {
-    place::manifest_of(root).map(|path| read_manifest(&path, sources)).transpose()
+    let Some(path) = place::manifest_of(root) else { return Ok(None) };
+    let mut manifest = read_manifest(&path, sources)?;
+    manifest.adopt(features(root, sources)?);
+    Ok(Some(manifest))
+}
+
+/// The features that the package's `wesl.toml` declares, and those of its dependencies.
+pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagnostics> {
+    wesl_toml::features(root, sources)
 }
 
 /// Reads a manifest by its path. Its files are named from the package's root.
@@ -138,9 +148,11 @@ pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, D
 /// A manifest by its path, and the package that it belongs to: the one whose root the `wesl.toml`
 /// beside the manifest declares, or else the manifest's folder.
 pub fn declared(path: &Path, sources: &mut SourceSet) -> Result<(Manifest, Packages), Diagnostics> {
-    let manifest = read_manifest(path, sources)?;
+    let mut manifest = read_manifest(path, sources)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    Ok((manifest, packages(&place::root_beside(folder), sources)?))
+    let root = place::root_beside(folder);
+    manifest.adopt(features(&root, sources)?);
+    Ok((manifest, packages(&root, sources)?))
 }
 
 /// File name of the lock that lies beside a manifest.

@@ -3,10 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use toml::Table;
+use toml::{Table, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::input;
+use crate::permute::manifest::{self, Features};
+use crate::project::managers::Manager;
 use crate::source::{
     self, Disk, Files, LIMITS, Package, ReadError, SourceId, SourceSet, Span, is_inside,
 };
@@ -15,6 +17,8 @@ const NAME: &str = "wesl.toml";
 /// Packages that one `wesl.toml` may list.
 const DEPENDENCIES: usize = crate::limits::PACKAGES;
 const DEFAULT_ROOT: &str = "shaders";
+/// The word for all that the package manager installed.
+const AUTO: &str = "auto";
 
 /// The root that the `wesl.toml` of `folder` declares, if it has one.
 pub fn declared_root(folder: &Path) -> Option<PathBuf> {
@@ -33,14 +37,32 @@ pub fn declared_name(root: &Path) -> Option<String> {
     Some(table_of(&home(root)?)?.get("package")?.get("name")?.as_str()?.to_owned())
 }
 
-/// The packages that the root's `wesl.toml` lists by path, those they list in turn included.
+/// The packages that the root's `wesl.toml` lists, those they list in turn included.
 pub fn dependencies(root: &Path, sources: &mut SourceSet) -> Result<Vec<Package>, Diagnostics> {
+    found(root, sources).map(|found| found.packages)
+}
+
+/// The features that the root's `wesl.toml` declares, and those of its dependencies.
+pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagnostics> {
+    let mut apart = SourceSet::default();
+    let Ok(found) = found(root, &mut apart) else { return Ok(Features::default()) };
+    let mut features = Features::default();
+    for folder in found.folders {
+        let Ok((table, id)) = parse(&folder, &folder, sources) else { continue };
+        if table.contains_key("features") {
+            features.extend(manifest::read_features(sources, id)?);
+        }
+    }
+    Ok(features)
+}
+
+fn found(root: &Path, sources: &mut SourceSet) -> Result<Found, Diagnostics> {
     broken(root, sources)?;
-    let Some(folder) = home(root) else { return Ok(Vec::new()) };
+    let Some(folder) = home(root) else { return Ok(Found::default()) };
     let shown = shown_home(root, &folder);
-    let mut found = Found { packages: Vec::new(), visited: vec![folder], diagnostics: Vec::new() };
+    let mut found = Found { visited: vec![folder], ..Found::default() };
     found.collect(&shown, sources);
-    if found.diagnostics.is_empty() { Ok(found.packages) } else { Err(found.diagnostics) }
+    if found.diagnostics.is_empty() { Ok(found) } else { Err(found.diagnostics) }
 }
 
 /// The folder of the `wesl.toml` that declares `root`.
@@ -131,8 +153,11 @@ fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
         return wrong("`root`", "a path below the file's folder", "root");
     }
     let Some(dependencies) = table.get("dependencies") else { return Ok(()) };
+    if dependencies.as_str() == Some(AUTO) {
+        return Ok(());
+    }
     let Some(dependencies) = dependencies.as_table() else {
-        return wrong("`dependencies`", "a table", "dependencies");
+        return wrong("`dependencies`", "a table or `\"auto\"`", "dependencies");
     };
     if dependencies.len() > DEPENDENCIES {
         return wrong(
@@ -141,13 +166,23 @@ fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
             "dependencies",
         );
     }
-    match dependencies
-        .iter()
-        .find(|(_, entry)| entry.get("path").is_some_and(|path| !path.is_str()))
-    {
-        Some((name, _)) => wrong(&format!("`path` of dependency `{name}`"), "a string", name),
-        None => Ok(()),
+    for (name, entry) in dependencies {
+        if !entry.is_table() {
+            return wrong(&format!("dependency `{name}`"), "a table", name);
+        }
+        let is_odd = |key: &&&str| entry.get(**key).is_some_and(|value| !value.is_str());
+        if let Some(key) = ["path", "package"].iter().find(is_odd) {
+            return wrong(&format!("`{key}` of dependency `{name}`"), "a string", name);
+        }
     }
+    Ok(())
+}
+
+/// What the file says of who installs packages.
+fn manager_of(table: &Table) -> Option<&str> {
+    const KEY: &str = "package-manager";
+    let packaged = table.get("package").and_then(|package| package.get(KEY));
+    packaged.or_else(|| table.get(KEY)).and_then(Value::as_str)
 }
 
 /// A folder under the name that the user gave it.
@@ -184,8 +219,11 @@ fn declared_in(table: &Table) -> &str {
     declared.unwrap_or(DEFAULT_ROOT)
 }
 
+#[derive(Default)]
 struct Found {
     packages: Vec<Package>,
+    /// Those with a `wesl.toml`, as they are shown; the root's first.
+    folders: Vec<PathBuf>,
     visited: Vec<PathBuf>,
     diagnostics: Diagnostics,
 }
@@ -200,14 +238,52 @@ impl Found {
             Ok(found) => found,
             Err(error) => return self.diagnostics.push(error),
         };
+        self.folders.push(folder.to_owned());
         let text = sources.get(id).text.clone();
-        let Some(dependencies) = table.get("dependencies").and_then(|entry| entry.as_table())
-        else {
-            return;
+        let section = Span::new(id, key_range(&text, ""));
+        let listed = match table.get("dependencies") {
+            Some(Value::Table(listed)) => listed,
+            Some(Value::String(auto)) if auto == AUTO => {
+                return self.installed(folder, &table, section, sources);
+            }
+            _ => return,
         };
-        for (name, entry) in dependencies {
-            let Some(path) = entry.get("path").and_then(|path| path.as_str()) else { continue };
-            self.add(name, &folder.join(path), Span::new(id, key_range(&text, name)), sources);
+        for (name, entry) in listed {
+            let span = Span::new(id, key_range(&text, name));
+            if let Some(path) = entry.get("path").and_then(Value::as_str) {
+                self.add(name, &folder.join(path), span, sources);
+                continue;
+            }
+            let package = entry.get("package").and_then(Value::as_str).unwrap_or(name);
+            let place = Manager::of(folder, manager_of(&table))
+                .and_then(|manager| manager.find(folder, package));
+            match place {
+                Ok(place) => self.add(name, &place, span, sources),
+                Err(reason) => self.diagnostics.push(
+                    Diagnostic::error(
+                        codes::WESL_TOML,
+                        format!("cannot find dependency `{name}`: {reason}"),
+                    )
+                    .at(span, "declared here"),
+                ),
+            }
+        }
+    }
+
+    /// `dependencies = "auto"`: what the package manager's file lists and has a `wesl.toml`.
+    fn installed(&mut self, folder: &Path, table: &Table, span: Span, sources: &mut SourceSet) {
+        let manager = match Manager::of(folder, manager_of(table)) {
+            Ok(manager) => manager,
+            Err(reason) => {
+                let error = Diagnostic::error(codes::WESL_TOML, reason);
+                return self.diagnostics.push(error.at(span, "asked for here"));
+            }
+        };
+        for (name, package) in manager.listed(folder).into_iter().take(DEPENDENCIES) {
+            let place = manager.find(folder, &package);
+            if let Some(place) = place.ok().filter(|place| place.join(NAME).is_file()) {
+                self.add(&name, &place, span, sources);
+            }
         }
     }
 

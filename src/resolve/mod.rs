@@ -72,6 +72,16 @@ impl Graph {
         named.map(|item| graph.names.text(item.name).to_owned()).collect()
     }
 
+    /// Whether anything names `constants::NAME`; never in GLSL, which has macros.
+    pub fn has_constant(&self, name: &str) -> bool {
+        match self {
+            Self::Wesl(graph) => {
+                graph.constants.iter().any(|constant| graph.names.text(constant.name) == name)
+            }
+            Self::Glsl(_) => false,
+        }
+    }
+
     /// Whether any condition, macro or constant of the graph may ask for the axis or feature.
     pub fn may_ask(&self, name: &str) -> bool {
         match self {

@@ -6,6 +6,7 @@ use image::codecs::hdr::HdrDecoder;
 
 use super::sky::Equirect;
 use crate::limits::ENVIRONMENT_PIXELS;
+use crate::rehearse::rehearse;
 
 /// Radiance by unit direction.
 pub type Environment = fn(DVec3) -> DVec3;
@@ -64,11 +65,15 @@ fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// The stage of [`rehearse`] that is the decoder's.
+pub const DECODER: &str = "picture";
+
 impl Equirect {
     /// The image of a Radiance file (`.hdr`).
     ///
     /// # Errors
-    /// In words: bytes that are no such file, or one that is too large.
+    /// In words: bytes that are no such file, one that is too large, or one that its decoder needs
+    /// too much for.
     pub fn from_radiance(bytes: &[u8]) -> Result<Self, String> {
         let decoder =
             HdrDecoder::new(std::io::Cursor::new(bytes)).map_err(|error| error.to_string())?;
@@ -76,6 +81,10 @@ impl Equirect {
         // The header alone decides how much is allocated, whatever the file holds.
         if u64::from(width) * u64::from(height) > ENVIRONMENT_PIXELS {
             return Err(format!("{width} x {height} pixels are more than {ENVIRONMENT_PIXELS}"));
+        }
+        // An environment of 4096 x 2048 is read at once.
+        if u64::from(width) * u64::from(height) > ENVIRONMENT_PIXELS / 2 {
+            rehearse(DECODER, bytes).map_err(|how| format!("its decoder {how}"))?;
         }
         let mut read =
             vec![0; usize::try_from(decoder.total_bytes()).map_err(|error| error.to_string())?];

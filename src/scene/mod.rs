@@ -18,6 +18,8 @@ mod shape;
 mod sky;
 mod view;
 
+#[doc(hidden)]
+pub use environment::DECODER;
 pub use environment::{ENVIRONMENTS, Environment, environment};
 pub use frustum::{Bounds, cascade_splits, corners, depth_range, fit};
 pub use kernel::gaussian;

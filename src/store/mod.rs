@@ -6,9 +6,8 @@
 
 use std::time::Duration;
 
-use opendal::blocking::Operator;
 use opendal::services::{Fs, Redis};
-use opendal::{ErrorKind, Operator as AsyncOperator};
+use opendal::{ErrorKind, Operator};
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::timeout;
 
@@ -16,6 +15,10 @@ use crate::cache::Storage;
 
 /// How long a server may take for its first answer.
 const PATIENCE: Duration = Duration::from_secs(5);
+
+/// How long it may take for each answer after that. A server that is slower is no help, and one
+/// that never answers is left alone after a few.
+const SHORT_PATIENCE: Duration = Duration::from_secs(2);
 
 /// Names within the store begin with it, so that others can use the same server.
 const ROOT: &str = "/lamplight";
@@ -41,19 +44,15 @@ pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
         }
         Ok(_) => {}
     }
-    let blocking = {
-        let _inside = runtime.enter();
-        Operator::new(operator).map_err(|error| error.to_string())?
-    };
-    Ok(Box::new(Store { operator: blocking, _runtime: runtime }))
+    Ok(Box::new(Store { operator, runtime }))
 }
 
-fn operator(address: &str) -> Result<AsyncOperator, String> {
+fn operator(address: &str) -> Result<Operator, String> {
     let operator = match address.split_once(':') {
         Some(("fs", path)) => {
-            AsyncOperator::new(Fs::default().root(path).atomic_write_dir(&format!("{path}/.tmp")))
+            Operator::new(Fs::default().root(path).atomic_write_dir(&format!("{path}/.tmp")))
         }
-        Some(("redis", _)) => AsyncOperator::new(Redis::default().endpoint(address).root(ROOT)),
+        Some(("redis", _)) => Operator::new(Redis::default().endpoint(address).root(ROOT)),
         _ => {
             return Err(format!(
                 "`{address}` is no store: write `fs:/path` or `redis://host:port`"
@@ -66,12 +65,23 @@ fn operator(address: &str) -> Result<AsyncOperator, String> {
 struct Store {
     operator: Operator,
     /// Carries the operator's work; stops with it.
-    _runtime: Runtime,
+    runtime: Runtime,
+}
+
+impl Store {
+    /// An answer, or that there was none in time.
+    fn asked<T>(
+        &self,
+        answer: impl Future<Output = opendal::Result<T>>,
+    ) -> Result<opendal::Result<T>, String> {
+        let within = self.runtime.block_on(async { timeout(SHORT_PATIENCE, answer).await });
+        within.map_err(|_| format!("no answer within {} s", SHORT_PATIENCE.as_secs()))
+    }
 }
 
 impl Storage for Store {
     fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
-        match self.operator.read(name) {
+        match self.asked(self.operator.read(name))? {
             Ok(bytes) => Ok(Some(bytes.to_vec())),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error.to_string()),
@@ -79,6 +89,7 @@ impl Storage for Store {
     }
 
     fn put(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
-        self.operator.write(name, bytes.to_vec()).map(|_| ()).map_err(|error| error.to_string())
+        let written = self.asked(self.operator.write(name, bytes.to_vec()))?;
+        written.map(|_| ()).map_err(|error| error.to_string())
     }
 }

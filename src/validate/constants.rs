@@ -20,57 +20,58 @@ struct Constant<'a> {
     is_global: bool,
 }
 
-/// The first place where constants grow too large.
-pub fn scan(text: &str, language: Language) -> Option<Excess> {
+/// The first place where constants grow beyond a part of their bounds.
+pub fn scan(text: &str, language: Language, part: u64) -> Option<Excess> {
+    let (most_parts, most_uses) = (CONSTANT_PARTS / part, CONSTANT_USES / part);
     let constants = constants(text, language);
     // One name alone cannot multiply.
     if constants.len() < 2 {
         return None;
     }
-    let costs = match costs(&constants) {
+    let costs = match costs(&constants, most_parts) {
         Ok(costs) => costs,
-        Err(offset) => return Some(too_large(offset)),
+        Err(offset) => {
+            let limit = most_parts as usize;
+            return Some(Excess { offset, what: "parts in one constant", limit });
+        }
     };
     let mut uses = 0u64;
     for (offset, word) in words(text) {
         let cost = costs.get(word).copied().unwrap_or(0);
         uses = uses.saturating_add(if cost > 1 { cost } else { 0 });
-        if uses > CONSTANT_USES {
-            return Some(Excess {
-                offset,
-                what: "parts of constants, wherever they are named",
-                limit: CONSTANT_USES as usize,
-            });
+        if uses > most_uses {
+            let what = "parts of constants, wherever they are named";
+            return Some(Excess { offset, what, limit: most_uses as usize });
         }
     }
     None
 }
 
-fn too_large(offset: usize) -> Excess {
-    Excess { offset, what: "parts in one constant", limit: CONSTANT_PARTS as usize }
-}
-
 /// The parts of every constant by name; the place of one that has too many.
-fn costs<'a>(constants: &[Constant<'a>]) -> Result<HashMap<&'a str, u64>, usize> {
+fn costs<'a>(constants: &[Constant<'a>], most: u64) -> Result<HashMap<&'a str, u64>, usize> {
     let mut costs: HashMap<&str, u64> = HashMap::new();
     let globals: HashMap<&str, usize> = (0..constants.len())
         .filter(|index| constants[*index].is_global)
         .map(|index| (constants[index].name, index))
         .collect();
     for index in order(constants, &globals) {
-        add(&constants[index], &mut costs)?;
+        add(&constants[index], &mut costs, most)?;
     }
     for constant in constants.iter().filter(|constant| !constant.is_global) {
-        add(constant, &mut costs)?;
+        add(constant, &mut costs, most)?;
     }
     Ok(costs)
 }
 
 /// The name of a local constant may be that of another: the larger one counts.
-fn add<'a>(constant: &Constant<'a>, costs: &mut HashMap<&'a str, u64>) -> Result<(), usize> {
+fn add<'a>(
+    constant: &Constant<'a>,
+    costs: &mut HashMap<&'a str, u64>,
+    most: u64,
+) -> Result<(), usize> {
     let used = constant.uses.iter().map(|name| costs.get(name).copied().unwrap_or(0));
     let cost = used.fold(constant.own, u64::saturating_add);
-    if cost > CONSTANT_PARTS {
+    if cost > most {
         return Err(constant.offset);
     }
     let known = costs.entry(constant.name).or_default();

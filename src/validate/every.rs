@@ -1,16 +1,20 @@
 //! Several mistakes of one text: naga stops at the first, so each declaration is also looked at
 //! with nothing but what it needs.
 
-use super::{Validated, validate};
+use super::{Validated, is_calm, validate};
 use crate::bundle::Language;
 use crate::compose::{Composed, PartKind};
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes};
 
 /// Declarations of a text from which on only the first mistake is looked for.
 const PARTS: usize = 500;
 
 /// Mistakes after which no more are looked for.
 const MOST: usize = 20;
+
+/// Errors of a text as a whole.
+const STOPPING: [&Code; 4] =
+    [codes::NAGA_INTERNAL, codes::NAGA_EXHAUSTED, codes::LIMIT_EXCEEDED, codes::NO_ENTRY_POINT];
 
 /// As [`validate`], but goes on after the first mistake. For a text that is known or feared to be
 /// wrong: a mistake costs a run of naga for each declaration.
@@ -22,10 +26,10 @@ pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
         Ok(validated) => return Ok(validated),
         Err(errors) => errors,
     };
-    let stops = |error: &Diagnostic| {
-        [codes::NAGA_INTERNAL, codes::LIMIT_EXCEEDED, codes::NO_ENTRY_POINT].contains(&error.code)
-    };
-    if composed.parts.len() > PARTS || first.iter().any(stops) {
+    let stops = |error: &Diagnostic| STOPPING.contains(&error.code);
+    // A large text is tried in a process of its own, and so would be each of its parts.
+    let is_calm = is_calm(composed).unwrap_or(false);
+    if !is_calm || composed.parts.len() > PARTS || first.iter().any(stops) {
         return Err(first);
     }
     let mut found = first;

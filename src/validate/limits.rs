@@ -33,8 +33,9 @@ pub const LIMITS: Limits = Limits {
     bodies: limits::BODIES,
 };
 
-/// Refuses a text that might exhaust naga's stack.
-pub fn check(composed: &Composed) -> Result<(), Diagnostic> {
+/// Refuses a text that might exhaust naga's stack; gives the place where a text that is let pass
+/// is beyond the calm part of a limit.
+pub fn check(composed: &Composed) -> Result<Option<Excess>, Diagnostic> {
     let text = &composed.text;
     if text.len() > LIMITS.bytes {
         let message = format!(
@@ -44,25 +45,44 @@ pub fn check(composed: &Composed) -> Result<(), Diagnostic> {
         );
         return Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message));
     }
-    let excess = scan(text.as_bytes()).or_else(|| constants::scan(text, composed.language));
-    excess.map_or(Ok(()), |excess| Err(report(composed, &excess)))
+    // Nearly every text is calm, and read once.
+    let Some(large) = beyond(composed, limits::CALM_PART) else { return Ok(None) };
+    beyond(composed, 1).map_or(Ok(Some(large)), |excess| Err(report(composed, &excess)))
 }
 
-pub(super) struct Excess {
+/// The first place beyond a part of any limit.
+fn beyond(composed: &Composed, part: usize) -> Option<Excess> {
+    let text = &composed.text;
+    let limit = LIMITS.bytes / part;
+    let long = (text.len() > limit).then_some(Excess { offset: limit, what: "bytes", limit });
+    scan(text.as_bytes(), part)
+        .or_else(|| constants::scan(text, composed.language, part as u64))
+        .or(long)
+}
+
+/// What a text has more of than a bound, or a part of it.
+pub struct Excess {
     pub offset: usize,
     pub what: &'static str,
     pub limit: usize,
 }
 
 fn report(composed: &Composed, excess: &Excess) -> Diagnostic {
-    let error = Diagnostic::error(
-        codes::LIMIT_EXCEEDED,
-        format!("more than {} {}", excess.limit, excess.what),
-    );
+    let message = format!("more than {} {}", excess.limit, excess.what);
+    let error = Diagnostic::error(codes::LIMIT_EXCEEDED, message);
+    place(composed, error, excess, "the limit is reached")
+}
+
+/// An error with the place of an excess, and what happens there.
+pub(super) fn place(
+    composed: &Composed,
+    error: Diagnostic,
+    excess: &Excess,
+    what: &str,
+) -> Diagnostic {
     match composed.map.lookup(excess.offset..excess.offset + 1) {
-        Some(span) => error.at(span, "the limit is reached here"),
-        None => error
-            .note(format!("the limit is reached at byte {} of the composed text", excess.offset)),
+        Some(span) => error.at(span, format!("{what} here")),
+        None => error.note(format!("{what} at byte {} of the composed text", excess.offset)),
     }
 }
 
@@ -90,11 +110,13 @@ struct Scan<'a> {
     overrides: usize,
     /// Attributes of entry points.
     entries: usize,
-    /// Statements and cases since the last brace at that level.
+    /// Statements, cases and their values since the last brace at that level.
     statements: usize,
+    /// Between `case` and its colon or brace.
+    in_case: bool,
 }
 
-fn scan(bytes: &[u8]) -> Option<Excess> {
+fn scan(bytes: &[u8], part: usize) -> Option<Excess> {
     let mut scan = Scan {
         bytes,
         at: 0,
@@ -106,11 +128,12 @@ fn scan(bytes: &[u8]) -> Option<Excess> {
         overrides: 0,
         entries: 0,
         statements: 0,
+        in_case: false,
     };
     while scan.at < bytes.len() {
         let offset = scan.at;
         scan.step();
-        if let Some((what, limit)) = scan.excess() {
+        if let Some((what, limit)) = scan.excess(part) {
             return Some(Excess { offset, what, limit });
         }
     }
@@ -118,9 +141,9 @@ fn scan(bytes: &[u8]) -> Option<Excess> {
 }
 
 impl Scan<'_> {
-    /// What there is too much of so far.
+    /// What there is more of so far than a part of its bound.
     #[inline]
-    fn excess(&self) -> Option<(&'static str, usize)> {
+    fn excess(&self, part: usize) -> Option<(&'static str, usize)> {
         let counts = [
             (self.levels.len(), "brackets within each other", LIMITS.nesting),
             (self.open, "operators in one expression", LIMITS.operators),
@@ -128,10 +151,10 @@ impl Scan<'_> {
             (self.declarations, "variables, constants and aliases", limits::DECLARATIONS),
             (self.overrides, "overrides", limits::OVERRIDES),
             (self.entries, "entry points", limits::ENTRY_POINTS),
-            (self.statements, "statements and cases in one function", limits::STATEMENTS),
+            (self.statements, "statements and values of cases in one function", limits::STATEMENTS),
         ];
-        let found = counts.into_iter().find(|(count, _, limit)| count > limit);
-        found.map(|(_, what, limit)| (what, limit))
+        let found = counts.into_iter().find(|(count, _, limit)| *count > limit / part);
+        found.map(|(_, what, limit)| (what, limit / part))
     }
 
     fn step(&mut self) {
@@ -146,6 +169,7 @@ impl Scan<'_> {
         }
         match byte {
             b'(' | b'[' | b'{' => {
+                self.in_case &= byte != b'{';
                 if byte == b'{' && self.levels.len() == 1 {
                     self.bodies += 1;
                     self.statements = 0;
@@ -157,16 +181,23 @@ impl Scan<'_> {
                 self.close();
                 self.after_block = true;
             }
-            b',' => self.separate(),
+            b',' => {
+                self.statements += usize::from(self.in_case);
+                self.separate();
+            }
             b';' => {
                 let is_outside = self.levels.len() == 1;
                 self.declarations += usize::from(is_outside);
                 self.statements += usize::from(!is_outside);
                 self.reset();
             }
+            b':' => {
+                self.in_case = false;
+                self.count(1);
+            }
             b'.' if self.peek().is_none_or(|next| !next.is_ascii_alphabetic()) => {}
             b'+' | b'-' | b'*' | b'/' | b'%' | b'<' | b'>' | b'=' | b'!' | b'~' | b'&' | b'|'
-            | b'^' | b'?' | b':' | b'.' => self.count(1),
+            | b'^' | b'?' | b'.' => self.count(1),
             _ => {}
         }
     }
@@ -192,7 +223,10 @@ impl Scan<'_> {
                 usize::from(is_attribute && matches!(word, b"vertex" | b"fragment" | b"compute"));
             self.overrides += usize::from(word == b"override");
         }
-        self.statements += usize::from(word == b"case");
+        if word == b"case" {
+            self.statements += 1;
+            self.in_case = true;
+        }
         if matches!(word, b"if" | b"else" | b"for" | b"while" | b"do" | b"switch") {
             self.count(1);
         }

@@ -8,6 +8,7 @@ mod every;
 mod guard;
 mod hints;
 mod limits;
+mod rehearsal;
 mod report;
 mod sizes;
 mod uniformity;
@@ -16,6 +17,8 @@ mod words;
 pub use every::every;
 pub use guard::{guard, on_large_stack};
 pub use limits::{LIMITS, Limits};
+#[doc(hidden)]
+pub use rehearsal::{Job, Outputs, STAGE, rehearse};
 pub use uniformity::{has_lints, lint};
 
 use naga::front::{glsl, wgsl};
@@ -45,9 +48,20 @@ pub const CAPABILITIES: Capabilities =
 ///
 /// # Errors
 /// `limit-exceeded` before naga sees the text; `wgsl-error` or `glsl-error` from its parser or
-/// validator, in the author's places; `naga-internal` where it panicked.
+/// validator, in the author's places; `naga-internal` where it panicked, `naga-exhausted` where it
+/// would have ended the process.
 pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
+    rehearse(composed, composed, || None).map_err(|error| vec![error])?;
+    read(composed)
+}
+
+/// As [`validate`], of a text that was rehearsed with what is done to it afterwards.
+pub(crate) fn validate_rehearsed(composed: &Composed) -> Result<Validated, Diagnostics> {
     limits::check(composed).map_err(|error| vec![error])?;
+    read(composed)
+}
+
+fn read(composed: &Composed) -> Result<Validated, Diagnostics> {
     on_large_stack(|| {
         guard(&composed.text, || parse(composed).and_then(|module| analyse(composed, module)))
     })
@@ -55,12 +69,12 @@ pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
     .and_then(|result| result)
 }
 
-/// Refuses a text that naga should not see.
+/// Whether a text is below the calm part of every limit.
 ///
 /// # Errors
-/// `limit-exceeded`.
-pub fn check_limits(composed: &Composed) -> Result<(), Diagnostics> {
-    limits::check(composed).map_err(|error| vec![error])
+/// `limit-exceeded` where naga should not see it at all.
+pub fn is_calm(composed: &Composed) -> Result<bool, Diagnostic> {
+    limits::check(composed).map(|large| large.is_none())
 }
 
 fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {

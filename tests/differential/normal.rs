@@ -4,10 +4,10 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write as _;
 
-use naga::Module;
 use naga::back::wgsl::WriterFlags;
 use naga::compact::{KeepUnused, compact};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Block, Module, Statement};
 
 /// The canonical texts of every entry point, sorted by name.
 pub fn normal(text: &str) -> Result<String, String> {
@@ -28,6 +28,7 @@ pub fn normal_functions(text: &str, names: &[String]) -> Result<String, String> 
             module.functions.iter().position(|(_, function)| function.name.as_ref() == Some(name));
         roots.push(global("fn", found.ok_or_else(|| format!("no function `{name}`"))?));
     }
+    flatten_all(&mut module);
     rename(&mut module);
     let info = validate(&module)?;
     let text = naga::back::wgsl::write_string(&module, &info, WriterFlags::empty())
@@ -35,6 +36,48 @@ pub fn normal_functions(text: &str, names: &[String]) -> Result<String, String> 
     Ok(ordered(&text, |declaration| {
         roots.iter().position(|root| defined(declaration) == Some(root))
     }))
+}
+
+/// Takes away braces that are only a scope: names differ in any case once [`rename`] ran, and this
+/// version of `wesl` keeps the braces of `@if(...) { }`, which the specification takes away.
+fn flatten_all(module: &mut Module) {
+    for (_, function) in module.functions.iter_mut() {
+        flatten(&mut function.body);
+    }
+    for entry in &mut module.entry_points {
+        flatten(&mut entry.function.body);
+    }
+}
+
+fn flatten(block: &mut Block) {
+    for (mut statement, span) in std::mem::take(block).span_into_iter() {
+        match &mut statement {
+            Statement::Block(inner) => {
+                flatten(inner);
+                block.extend_block(std::mem::take(inner));
+            }
+            Statement::If { accept, reject, .. } => [accept, reject].into_iter().for_each(flatten),
+            Statement::Switch { cases, .. } => {
+                cases.iter_mut().for_each(|case| flatten(&mut case.body));
+            }
+            Statement::Loop { body, continuing, .. } => {
+                [body, continuing].into_iter().for_each(flatten);
+            }
+            _ => {}
+        }
+        if !matches!(statement, Statement::Block(_)) {
+            block.push(statement, span);
+        }
+        // What follows is never reached.
+        if matches!(
+            block.last(),
+            Some(
+                Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue
+            )
+        ) {
+            return;
+        }
+    }
 }
 
 fn validate(module: &Module) -> Result<naga::valid::ModuleInfo, String> {
@@ -46,6 +89,7 @@ fn validate(module: &Module) -> Result<naga::valid::ModuleInfo, String> {
 fn entry(module: &Module, index: usize) -> Result<String, String> {
     let mut module = module.clone();
     module.entry_points = vec![module.entry_points.swap_remove(index)];
+    flatten_all(&mut module);
     compact(&mut module, KeepUnused::No);
     rename(&mut module);
     let info = validate(&module)?;

@@ -109,12 +109,18 @@ pub const CASES: &[Hostile] = &[
         let one = |i| format!("@fragment fn m{i}() -> @location(0) vec4f {{ return vec4f(); }}\n");
         vec![("m.wgsl", repeated(200, one))]
     }),
-    compile("statements", "statements and cases", || {
+    compile("statements", "statements and values of cases", || {
         let lets = repeated(9000, |i| format!("let l{i} = x * 2.0;\n"));
         let head = "@fragment fn m(@location(0) x: f32) -> @location(0) vec4f {";
         vec![("m.wgsl", format!("{head}\n{lets}return vec4f(x); }}"))]
     }),
-    compile("cases", "statements and cases", || {
+    compile("case_lists", "statements and values of cases", || {
+        let list: Vec<String> = (0..9000).map(|i| i.to_string()).collect();
+        let head = "@fragment fn m(@location(0) @interpolate(flat) i: i32) -> @location(0) vec4f {";
+        let case = format!("case {}: {{ return vec4f(1.0); }}", list.join(", "));
+        vec![("m.wgsl", format!("{head} switch i {{\n{case} default: {{ return vec4f(); }} }} }}"))]
+    }),
+    compile("cases", "statements and values of cases", || {
         let cases = repeated(9000, |i| format!("case {i}: {{ return vec4f(1.0); }}\n"));
         let head = "@fragment fn m(@location(0) @interpolate(flat) i: i32) -> @location(0) vec4f {";
         vec![("m.wgsl", format!("{head} switch i {{\n{cases}default: {{ return vec4f(); }} }} }}"))]

@@ -39,6 +39,11 @@ const NEEDS: &[Need] = &[
         found: || program("glslangValidator"),
     },
     Need { package: "clang", what: "clang++, for MSL", found: || program("clang++") },
+    Need {
+        package: "neovim",
+        what: "nvim, a client of the language server",
+        found: || program("nvim"),
+    },
     Need { package: "parallel", what: "GNU parallel, for shards", found: || program("parallel") },
     Need {
         package: "redis-server",

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl::{Comparison, ConditionId, Event, Expression, ExpressionId, Name, Operand};
 use crate::permute::{Setting, Settings};
-use crate::resolve::wesl::Graph;
+use crate::resolve::wesl::{Graph, places_of, shown_at};
 use crate::source::Span;
 
 /// What is known of a condition.
@@ -56,6 +56,7 @@ impl<'a> Evaluator<'a> {
             let condition = &here.module.conditions[id as usize];
             let before = condition.after.map(|before| state(self, before));
             let answer = match (before, condition.expression) {
+                _ if condition.within.is_some_and(|block| !self.holds(node, block)) => State::False,
                 (Some(State::True | State::Passed), _) => State::Passed,
                 (_, Some(expression)) if !self.value(node, expression) => State::False,
                 _ => State::True,
@@ -110,6 +111,28 @@ impl<'a> Evaluator<'a> {
             .cloned()
     }
 
+    /// The literal of a constant that was given from outside.
+    pub fn given(&self, name: Name) -> Option<&str> {
+        self.settings.constants.get(self.graph.names.text(name)).map(String::as_str)
+    }
+
+    /// The value of an axis that is used as a constant. What undeclared features are says nothing
+    /// of numbers.
+    pub fn number(&mut self, name: Name, span: Span) -> Option<Setting> {
+        let text = self.graph.names.text(name);
+        if self.settings.values.contains_key(text) {
+            return self.setting(name, span);
+        }
+        if self.unknown.insert(name) {
+            let error = Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value"))
+                .at(span, "asked for here")
+                .note(format!("help: give it one with `--constant {text}=VALUE`"));
+            let known = self.settings.constants.keys().chain(self.settings.values.keys());
+            self.errors.push(error.suggest(text, known.map(String::as_str)));
+        }
+        None
+    }
+
     /// The value of a setting, recorded; an error at `span` if it has none.
     pub fn setting(&mut self, name: Name, span: Span) -> Option<Setting> {
         let text = self.graph.names.text(name);
@@ -118,6 +141,8 @@ impl<'a> Evaluator<'a> {
                 let error =
                     Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value"))
                         .at(span, "asked for here");
+                let others = places_of(self.graph, name).into_iter().filter(|place| *place != span);
+                let error = shown_at(error, others.collect(), "and here");
                 self.errors
                     .push(error.suggest(text, self.settings.values.keys().map(String::as_str)));
             }

@@ -14,6 +14,7 @@ use std::collections::BTreeSet;
 use super::{Composed, Options};
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::parse::wesl::ConditionId;
 use crate::permute::Settings;
 use crate::resolve::wesl::Graph;
 
@@ -46,6 +47,21 @@ pub fn compose(
         warnings,
         decisions: Vec::new(),
     })
+}
+
+/// Answers to the conditions of a graph's modules under some settings.
+pub struct Conditions<'a>(evaluate::Evaluator<'a>);
+
+impl<'a> Conditions<'a> {
+    /// Nothing is asked yet.
+    pub fn new(graph: &'a Graph, settings: &'a Settings) -> Self {
+        Self(evaluate::Evaluator::new(graph, settings))
+    }
+
+    /// Whether a condition of a node's module holds.
+    pub fn holds(&mut self, node: u32, condition: ConditionId) -> bool {
+        self.0.holds(node, condition)
+    }
 }
 
 fn traced(graph: &Graph, errors: Diagnostics) -> Diagnostics {

@@ -103,8 +103,8 @@ pub fn reach(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Options) ->
         dependencies: Vec::new(),
         free: Vec::new(),
     };
-    let mut walk =
-        Walk { graph, evaluator, all: options.keep == Keep::All, reached, queue: Vec::new() };
+    let (all, some) = (options.keep == Keep::All, matches!(options.keep, Keep::Items(_)));
+    let mut walk = Walk { graph, evaluator, all, some, reached, queue: Vec::new() };
     walk.node(0);
     match &options.keep {
         Keep::EntryPoints => walk.entry_points(),
@@ -122,6 +122,8 @@ struct Walk<'a, 'b, 'c> {
     graph: &'a Graph,
     evaluator: &'c mut Evaluator<'b>,
     all: bool,
+    /// Items were asked for by name: what is wrong elsewhere in their module does not matter.
+    some: bool,
     reached: Reached,
     queue: Vec<(u32, u32)>,
 }
@@ -141,6 +143,11 @@ impl Walk<'_, '_, '_> {
     fn everything(&mut self) {
         for index in 0..self.graph.nodes[0].module.items.len() as u32 {
             self.item_if(0, index);
+            let name = self.graph.nodes[0].module.items[index as usize].name;
+            // Only one of each name may be left, whether anything uses it or not.
+            if self.graph.nodes[0].sets.get(&name).is_some_and(|set| set.first() == Some(&index)) {
+                self.chosen(0, name);
+            }
         }
     }
 
@@ -188,9 +195,13 @@ impl Walk<'_, '_, '_> {
 
     fn constant(&mut self, index: u32) {
         let constant = &self.graph.constants[index as usize];
+        if let Some(literal) = self.evaluator.given(constant.name) {
+            self.reached.constants[index as usize] = Some(("const", format!(" = {literal}")));
+            return;
+        }
         let open = self.evaluator.open(constant.name);
         let Some(value) =
-            open.clone().or_else(|| self.evaluator.setting(constant.name, constant.span))
+            open.clone().or_else(|| self.evaluator.number(constant.name, constant.span))
         else {
             return;
         };
@@ -220,6 +231,11 @@ impl Walk<'_, '_, '_> {
         self.evaluator.errors.extend(here.module.errors.iter().cloned());
         for (conditions, failure) in &here.broken_imports {
             if self.evaluator.all_hold(node, conditions) {
+                self.evaluator.errors.push(graph.failures[*failure as usize].clone());
+            }
+        }
+        for (condition, failure) in here.duplicates.iter().filter(|_| !self.some) {
+            if condition.is_none_or(|condition| self.evaluator.holds(node, condition)) {
                 self.evaluator.errors.push(graph.failures[*failure as usize].clone());
             }
         }

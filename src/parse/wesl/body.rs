@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::block;
 use super::condition::{self, Chain};
 use super::cursor::Tokens;
 use super::import::origin;
 use super::item::{Place, after_template};
-use super::module::{ConditionId, Event, ItemKind, Module, Origin, Path, Reference};
+use super::module::{ConditionId, Event, ItemKind, LocalUse, Module, Origin, Path, Reference};
 use super::name::{Name, Names};
 use super::scope::{Meaning, Scopes};
 use super::token::{Kind, Token};
@@ -19,7 +20,15 @@ const EXPRESSION_ATTRIBUTES: &[&str] =
     &["align", "binding", "blend_src", "group", "id", "location", "size", "workgroup_size"];
 
 /// Fills the events, locals and free names of the items at `places`.
-pub fn scan(module: &mut Module, tokens: &[Token], names: &Names, places: Vec<Place>) {
+///
+/// Where they are traced also the places that name a parameter or a local.
+pub fn scan(
+    module: &mut Module,
+    tokens: &[Token],
+    names: &Names,
+    places: Vec<Place>,
+    traced: bool,
+) {
     let text = Arc::clone(&module.text);
     let tokens = Tokens { tokens, text: &text, names, source: module.source };
     let mut global = vec![false; names.len()];
@@ -34,9 +43,11 @@ pub fn scan(module: &mut Module, tokens: &[Token], names: &Names, places: Vec<Pl
         events: Vec::new(),
         locals: Vec::new(),
         free: Vec::new(),
+        traced,
         module,
     };
     for (index, place) in places.into_iter().enumerate() {
+        scanner.events = std::mem::take(&mut scanner.module.items[index].events);
         let outcome = scanner.item(place, scanner.module.items[index].kind);
         scanner.scopes.leave(0);
         let item = &mut scanner.module.items[index];
@@ -63,9 +74,10 @@ pub(super) struct Scanner<'a, 'b> {
     global: Vec<bool>,
     named: HashMap<Name, u32>,
     paths: HashMap<(Origin, Vec<Name>), u32>,
-    events: Vec<Event>,
+    pub(super) events: Vec<Event>,
     locals: Vec<Name>,
     free: Vec<Name>,
+    traced: bool,
 }
 
 impl Scanner<'_, '_> {
@@ -103,8 +115,8 @@ impl Scanner<'_, '_> {
         let parameters = self.fields(open, close)?;
         let body = self.brace(close + 1, end)?;
         self.uses(close + 1, body)?;
-        for (name, condition) in parameters {
-            self.declare(name, condition);
+        for (at, condition) in parameters {
+            self.declare(at, condition)?;
         }
         self.block(body)
     }
@@ -121,7 +133,7 @@ impl Scanner<'_, '_> {
         &mut self,
         open: usize,
         close: usize,
-    ) -> Result<Vec<(Name, Option<ConditionId>)>, Diagnostic> {
+    ) -> Result<Vec<(usize, Option<ConditionId>)>, Diagnostic> {
         let mut fields = Vec::new();
         let mut chain = Chain::default();
         let mut at = open + 1;
@@ -130,7 +142,8 @@ impl Scanner<'_, '_> {
             let attributes = condition::attributes(self.module, self.tokens, at, &mut chain);
             let node = self.open_node(attributes.condition);
             self.attributes(start, attributes.end)?;
-            fields.push((self.tokens.identifier(attributes.end, "a name")?, attributes.condition));
+            self.tokens.identifier(attributes.end, "a name")?;
+            fields.push((attributes.end, attributes.condition));
             let colon = self.tokens.expect(attributes.end + 1, b':', "`:` and a type")?;
             let end = self.type_end(colon, close);
             self.uses(colon, end)?;
@@ -161,9 +174,25 @@ impl Scanner<'_, '_> {
         self.tokens.find(from, limit, b'{').ok_or_else(|| self.tokens.expected(limit, "`{`"))
     }
 
-    pub(super) fn declare(&mut self, name: Name, condition: Option<ConditionId>) {
+    /// A parameter or a local whose name is at a token.
+    pub(super) fn declare(
+        &mut self,
+        at: usize,
+        condition: Option<ConditionId>,
+    ) -> Result<(), Diagnostic> {
+        let name = self.tokens.identifier(at, "a name")?;
         self.locals.push(name);
-        self.scopes.declare(self.module, name, condition);
+        self.scopes.declare(self.module, (name, self.tokens.start(at)), condition);
+        self.trace(at, name);
+        Ok(())
+    }
+
+    /// Notes a place that names a local, where that was asked for.
+    fn trace(&mut self, at: usize, name: Name) {
+        if let Some(declared) = self.scopes.place(name).filter(|_| self.traced) {
+            let Token { start, end, .. } = self.tokens.tokens[at];
+            self.module.local_uses.push(LocalUse { declared, start, end });
+        }
     }
 
     /// Starts a conditional node; to be closed with what this gives.
@@ -255,6 +284,12 @@ impl Scanner<'_, '_> {
     }
 
     fn name(&mut self, at: usize, name: Name) {
+        if self.scopes.is_behind_block(name) {
+            self.module.warnings.push(block::used_behind(self.tokens, at));
+        }
+        if self.traced {
+            self.trace(at, name);
+        }
         let Meaning::Global(guard) = self.scopes.meaning(name) else { return };
         if !self.global[name.0 as usize] {
             self.free.push(name);

@@ -15,6 +15,15 @@ use crate::source::LIMITS;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Chain {
     last: Option<ConditionId>,
+    /// The condition of the block that the siblings are in.
+    pub within: Option<ConditionId>,
+}
+
+impl Chain {
+    /// For the siblings in a block under that condition.
+    pub fn within(block: Option<ConditionId>) -> Self {
+        Self { last: None, within: block }
+    }
 }
 
 /// The attributes before a node.
@@ -22,7 +31,10 @@ pub struct Chain {
 pub struct Attributes {
     /// Past the last token.
     pub end: usize,
+    /// Its own condition, or else that of the block that it is in.
     pub condition: Option<ConditionId>,
+    /// Has a translate-time attribute itself.
+    pub conditional: bool,
     /// Has `@vertex`, `@fragment` or `@compute`.
     pub entry: bool,
 }
@@ -35,7 +47,7 @@ pub fn attributes(
     at: usize,
     chain: &mut Chain,
 ) -> Attributes {
-    let mut found = Attributes { end: at, condition: None, entry: false };
+    let mut found = Attributes { end: at, condition: None, conditional: false, entry: false };
     let mut first: Option<usize> = None;
     while tokens.is(found.end, b'@') {
         let name_at = found.end + 1;
@@ -56,7 +68,7 @@ pub fn attributes(
                     Ok(id) => found.condition = Some(id),
                     Err(error) => {
                         module.errors.push(error);
-                        found.condition = (word == Name::IF).then(|| stand_in(module));
+                        found.condition = (word == Name::IF).then(|| literal(module, true, chain));
                     }
                 }
             }
@@ -66,6 +78,7 @@ pub fn attributes(
             None => {
                 module.errors.push(tokens.expected(name_at, "the name of an attribute"));
                 found.end = name_at;
+                found.condition = found.condition.or(chain.within);
                 return found;
             }
         }
@@ -73,6 +86,8 @@ pub fn attributes(
     }
     let closed = first.is_some_and(|name_at| tokens.is_word(name_at, Name::ELSE));
     chain.last = found.condition.filter(|_| !closed);
+    found.conditional = first.is_some();
+    found.condition = found.condition.or(chain.within);
     found
 }
 
@@ -86,11 +101,12 @@ pub fn illegal(tokens: Tokens<'_>, name_at: usize, message: &str, label: &str) -
     Diagnostic::error(codes::ILLEGAL_CONDITION, message).at(tokens.span(name_at), label)
 }
 
-/// A condition in place of one that is wrong, so that an `@else` after it is not an error too.
-fn stand_in(module: &mut Module) -> ConditionId {
-    module.expressions.push(Expression::Literal(true));
+/// A condition that nobody wrote: in place of one that is wrong, so that an `@else` after it is not
+/// an error too, or of braces that have none.
+pub fn literal(module: &mut Module, value: bool, chain: &Chain) -> ConditionId {
+    module.expressions.push(Expression::Literal(value));
     let expression = Some(module.expressions.len() as u32 - 1);
-    module.conditions.push(Condition { expression, after: None });
+    module.conditions.push(Condition { expression, after: None, within: chain.within });
     module.conditions.len() as u32 - 1
 }
 
@@ -125,9 +141,8 @@ fn condition(
             "the sibling before has no `@if` or `@elif`",
         ));
     }
-    module
-        .conditions
-        .push(Condition { expression, after: chain.last.filter(|_| word != Name::IF) });
+    let after = chain.last.filter(|_| word != Name::IF);
+    module.conditions.push(Condition { expression, after, within: chain.within });
     Ok(module.conditions.len() as u32 - 1)
 }
 

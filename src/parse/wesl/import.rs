@@ -4,7 +4,7 @@ use super::cursor::Tokens;
 use super::module::{ConditionId, Import, Module, Origin, Path};
 use super::name::Name;
 use super::token::Kind;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, codes};
 
 /// Reads the statement whose `import` is at `at`; returns the index past its semicolon.
 pub fn import(
@@ -47,6 +47,20 @@ pub fn origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnost
     Ok((origin, end))
 }
 
+/// The error for `as` where a path has a name.
+fn misplaced_as(tokens: Tokens<'_>, at: usize) -> Diagnostic {
+    let is_path = |at: usize| tokens.kind(at) == Some(Kind::Path);
+    let error = Diagnostic::error(codes::SYNTAX_ERROR, "`as` is no name of a path")
+        .at(tokens.span(at), "a keyword");
+    match at > 1 && is_path(at - 1) && is_path(at + 1) && tokens.word(at + 2).is_some() {
+        true => {
+            let (from, to) = (tokens.text(at - 2), tokens.text(at + 2));
+            error.note(format!("help: without `::` around it: `{from} as {to}`"))
+        }
+        false => error,
+    }
+}
+
 struct Reader<'a, 'b> {
     module: &'a mut Module,
     tokens: Tokens<'b>,
@@ -60,6 +74,9 @@ impl Reader<'_, '_> {
     /// `start` is where it starts, unless in a collection.
     fn path(&mut self, mut path: Path, start: Option<usize>) -> Result<(), Diagnostic> {
         loop {
+            if self.tokens.is_word(self.at, Name::AS) {
+                return Err(misplaced_as(self.tokens, self.at));
+            }
             path.segments.push(self.tokens.identifier(self.at, "a name")?);
             self.at += 1;
             if self.tokens.kind(self.at) != Some(Kind::Path) {

@@ -1,9 +1,10 @@
 //! Splits a file into directives, imports and global declarations.
 
+use super::block;
 use super::condition::{self, Attributes, Chain};
 use super::cursor::Tokens;
 use super::import;
-use super::module::{Directive, Item, ItemKind, Module};
+use super::module::{Directive, Event, Item, ItemKind, Module};
 use super::name::{Name, Names};
 use super::token::Token;
 use super::trivia;
@@ -33,27 +34,23 @@ const KINDS: &[(Name, ItemKind)] = &[
 pub fn split(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place> {
     let text = std::sync::Arc::clone(&module.text);
     let tokens = Tokens { tokens, text: &text, names, source: module.source };
-    let mut splitter =
-        Splitter { module, tokens, chain: Chain::default(), places: Vec::new(), behind: 0 };
-    let mut at = 0;
-    while at < tokens.len() {
-        let end = match splitter.node(at) {
-            Ok(end) => end,
-            Err(error) => {
-                splitter.module.errors.push(error);
-                recover(tokens, at)
-            }
-        };
-        splitter.behind = trivia::trailing(&text, tokens.range(at, end).end, tokens.start(end));
-        at = end;
-    }
+    let mut splitter = Splitter {
+        module,
+        tokens,
+        chain: Chain::default(),
+        places: Vec::new(),
+        behind: 0,
+        limit: tokens.len(),
+        declared: false,
+    };
+    splitter.nodes(0);
     splitter.places
 }
 
 /// Past the next semicolon or braces outside brackets.
-fn recover(tokens: Tokens<'_>, from: usize) -> usize {
+fn recover(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
     let mut at = from;
-    while at < tokens.len() {
+    while at < limit {
         if tokens.is(at, b';') {
             return at + 1;
         }
@@ -73,15 +70,40 @@ struct Splitter<'a, 'b> {
     places: Vec<Place>,
     /// The byte where what came before ended.
     behind: u32,
+    /// The end of the file, or the brace that ends the block.
+    limit: usize,
+    /// A declaration stood before in the file or the block.
+    declared: bool,
 }
 
 impl Splitter<'_, '_> {
+    /// The nodes from a token up to the limit.
+    fn nodes(&mut self, from: usize) {
+        let mut at = from;
+        while at < self.limit {
+            let end = match self.node(at) {
+                Ok(end) => end,
+                Err(error) => {
+                    self.module.errors.push(error);
+                    recover(self.tokens, at, self.limit)
+                }
+            };
+            let tokens = self.tokens;
+            self.behind =
+                trivia::trailing(tokens.text, tokens.range(at, end).end, tokens.start(end));
+            at = end;
+        }
+    }
+
     fn node(&mut self, at: usize) -> Result<usize, Diagnostic> {
         if self.tokens.is(at, b';') {
             return Ok(at + 1);
         }
         let attributes = condition::attributes(self.module, self.tokens, at, &mut self.chain);
         let keyword = attributes.end;
+        if self.tokens.is(keyword, b'{') {
+            return self.block(at, attributes);
+        }
         match self.tokens.word(keyword) {
             Some(Name::IMPORT) => self.import(keyword, attributes),
             Some(word @ (Name::ENABLE | Name::REQUIRES | Name::DIAGNOSTIC)) => {
@@ -94,8 +116,39 @@ impl Splitter<'_, '_> {
         }
     }
 
+    /// Declarations in braces, all under the condition before them. The braces go, and the
+    /// comments above them stay with the first declaration.
+    fn block(&mut self, start: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
+        let (tokens, open) = (self.tokens, attributes.end);
+        block::check_attributes(tokens, start, attributes)?;
+        let condition = match attributes.condition {
+            Some(condition) if attributes.conditional => condition,
+            _ => {
+                self.module.warnings.push(block::unreachable(tokens, open));
+                condition::literal(self.module, false, &self.chain)
+            }
+        };
+        let (close, first) = (tokens.partner(open), self.module.items.len());
+        let head = tokens.range(start, open + 1);
+        let above = trivia::leading(tokens.text, self.behind, head.start);
+        let chain = std::mem::replace(&mut self.chain, Chain::within(Some(condition)));
+        let limit = std::mem::replace(&mut self.limit, close);
+        let declared = std::mem::replace(&mut self.declared, false);
+        self.behind = trivia::trailing(tokens.text, head.end, tokens.start(open + 1));
+        self.nodes(open + 1);
+        (self.chain, self.limit, self.declared) = (chain, limit, declared || self.declared);
+        if let Some(item) = self.module.items.get_mut(first).filter(|_| above < head.start) {
+            item.events.insert(0, Event::Cut { start: head.start, end: item.range.start });
+            item.range.start = above;
+        }
+        Ok(close + 1)
+    }
+
     fn import(&mut self, keyword: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
-        if !self.places.is_empty() {
+        if self.chain.within.is_some() {
+            self.module.warnings.push(block::import_inside(self.tokens, keyword));
+        }
+        if self.declared {
             let error = Diagnostic::error(codes::SYNTAX_ERROR, "an `import` after a declaration");
             self.module
                 .errors
@@ -112,7 +165,7 @@ impl Splitter<'_, '_> {
     ) -> Result<usize, Diagnostic> {
         let end = self
             .tokens
-            .find(keyword, self.tokens.len(), b';')
+            .find(keyword, self.limit, b';')
             .ok_or_else(|| self.unended(keyword, "the directive"))?;
         let range = self.tokens.range(keyword, end + 1);
         let names = (keyword + 1..end).filter(|at| !self.tokens.is(*at, b'(')).collect::<Vec<_>>();
@@ -142,7 +195,12 @@ impl Splitter<'_, '_> {
         let end = self.end(keyword, kind)?;
         let text = self.tokens.text;
         let bytes = self.tokens.range(start, end);
-        let first = trivia::leading(text, self.behind, bytes.start);
+        let mut first = trivia::leading(text, self.behind, bytes.start);
+        if self.chain.within.is_some() {
+            // All lines of what is in a block keep their indentation, the first among them.
+            first = block::line_start(text, first).max(self.behind);
+        }
+        self.declared = true;
         let last = trivia::trailing(text, bytes.end, self.tokens.start(end));
         self.module.items.push(Item {
             kind,
@@ -171,7 +229,7 @@ impl Splitter<'_, '_> {
     fn end(&self, keyword: usize, kind: ItemKind) -> Result<usize, Diagnostic> {
         let braced = matches!(kind, ItemKind::Function | ItemKind::Struct);
         let mut at = keyword;
-        while at < self.tokens.len() {
+        while at < self.limit {
             match (self.tokens.is(at, b';'), self.tokens.is(at, b'{')) {
                 (true, _) if !braced => return Ok(at + 1),
                 (_, true) if braced => return Ok(self.tokens.partner(at) + 1),
@@ -183,7 +241,7 @@ impl Splitter<'_, '_> {
     }
 
     fn unended(&self, keyword: usize, what: &str) -> Diagnostic {
-        let limit = self.tokens.len();
+        let limit = self.limit;
         let mark = if what == "the body" { "{" } else { ";" };
         let stop = (keyword + 1..limit).find(|at| self.starts_node(*at)).unwrap_or(limit);
         let label = if stop > keyword + 1 { stop - 1 } else { keyword };

@@ -4,6 +4,7 @@
 //! composed text anyway.
 
 pub(crate) mod blank;
+mod block;
 mod body;
 mod condition;
 mod cursor;
@@ -18,7 +19,7 @@ mod trivia;
 
 pub use module::{
     Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import,
-    Item, ItemKind, Module, Operand, Origin, Path, Reference,
+    Item, ItemKind, LocalUse, Module, Operand, Origin, Path, Reference,
 };
 pub use name::{Name, Names, is_keyword};
 
@@ -32,6 +33,15 @@ const ERRORS: usize = 50;
 /// Parses a file. Its errors are in [`Module::errors`]. What follows an error may be missing from
 /// the rest.
 pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
+    parsed(source, text, names, false)
+}
+
+/// The same with [`Module::local_uses`], which editors ask for and composing does not.
+pub fn parse_for_editor(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
+    parsed(source, text, names, true)
+}
+
+fn parsed(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool) -> Module {
     let mut module = Module {
         source,
         text: Arc::clone(&text),
@@ -42,15 +52,18 @@ pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
         expressions: Vec::new(),
         references: Vec::new(),
         guards: Vec::new(),
+        local_uses: Vec::new(),
         errors: Vec::new(),
+        warnings: Vec::new(),
     };
     match token::tokenise(&text, source, names) {
         Ok(tokens) => {
             let found = item::split(&mut module, &tokens, names);
-            body::scan(&mut module, &tokens, names, found);
+            body::scan(&mut module, &tokens, names, found, locals);
         }
         Err(error) => module.errors.push(error),
     }
     module.errors.truncate(ERRORS);
+    module.warnings.truncate(ERRORS);
     module
 }

@@ -19,8 +19,12 @@ pub struct Module {
     pub expressions: Vec<Expression>,
     pub references: Vec<Reference>,
     pub guards: Vec<Guard>,
+    /// Parameters and locals at each place that names them; only where they were asked for.
+    pub local_uses: Vec<LocalUse>,
     /// What kept parts of the file from being understood.
     pub errors: Vec<Diagnostic>,
+    /// What is understood, but not by every tool or not as it looks.
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Module {
@@ -40,6 +44,8 @@ pub struct Condition {
     pub expression: Option<ExpressionId>,
     /// The `@if` or `@elif` of the sibling before, for `@elif` and `@else`.
     pub after: Option<ConditionId>,
+    /// The condition of the block around it, without which this one is neither asked nor true.
+    pub within: Option<ConditionId>,
 }
 
 /// Index into [`Module::expressions`].
@@ -187,6 +193,15 @@ pub enum Reference {
     Name(Name),
     /// A path written in place.
     Path(Path),
+}
+
+/// A place that declares or uses a parameter or a local.
+#[derive(Debug, Clone, Copy)]
+pub struct LocalUse {
+    /// The first byte of the name where it is declared.
+    pub declared: u32,
+    pub start: u32,
+    pub end: u32,
 }
 
 /// A conditional local declaration: while its condition holds, the name means the local.

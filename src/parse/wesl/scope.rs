@@ -26,6 +26,10 @@ struct Declaration {
     meaning: Meaning,
     /// What `innermost` had for the name before.
     outer: u32,
+    /// Declared in the braces of a condition that ended since; told at its first use.
+    behind_block: bool,
+    /// First byte of the name.
+    place: u32,
 }
 
 impl Scopes {
@@ -47,7 +51,12 @@ impl Scopes {
         }
     }
 
-    pub fn declare(&mut self, module: &mut Module, name: Name, condition: Option<ConditionId>) {
+    pub fn declare(
+        &mut self,
+        module: &mut Module,
+        (name, place): (Name, u32),
+        condition: Option<ConditionId>,
+    ) {
         let meaning = match (condition, self.meaning(name)) {
             (None, _) | (_, Meaning::Local) => Meaning::Local,
             (Some(condition), Meaning::Global(next)) => {
@@ -59,7 +68,25 @@ impl Scopes {
             &mut self.innermost[name.0 as usize],
             self.declarations.len() as u32 + 1,
         );
-        self.declarations.push(Declaration { name, meaning, outer });
+        self.declarations.push(Declaration { name, meaning, outer, behind_block: false, place });
+    }
+
+    /// The braces of a condition end: what was declared in them stays in scope.
+    pub fn end_block(&mut self, mark: usize) {
+        self.declarations[mark..].iter_mut().for_each(|found| found.behind_block = true);
+    }
+
+    /// Whether a name means a local of a conditional block that ended; true only once for each.
+    pub fn is_behind_block(&mut self, name: Name) -> bool {
+        let index = self.innermost[name.0 as usize].checked_sub(1);
+        let found = index.and_then(|index| self.declarations.get_mut(index as usize));
+        found.is_some_and(|found| std::mem::take(&mut found.behind_block))
+    }
+
+    /// Where the local of a name is declared.
+    pub fn place(&self, name: Name) -> Option<u32> {
+        let index = self.innermost[name.0 as usize].checked_sub(1)?;
+        Some(self.declarations[index as usize].place)
     }
 
     pub fn meaning(&self, name: Name) -> Meaning {

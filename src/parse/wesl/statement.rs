@@ -1,8 +1,9 @@
 //! Statements: how far each reaches, what it declares, and for how long.
 
+use super::block;
 use super::body::Scanner;
-use super::condition::{self, Chain};
-use super::module::ConditionId;
+use super::condition::{self, Attributes, Chain};
+use super::module::{ConditionId, Event};
 use super::name::Name;
 use crate::diagnostic::Diagnostic;
 
@@ -23,11 +24,33 @@ impl Scanner<'_, '_> {
     /// A statement with its attributes.
     fn node(&mut self, at: usize, limit: usize, chain: &mut Chain) -> Result<usize, Diagnostic> {
         let attributes = condition::attributes(self.module, self.tokens, at, chain);
-        let node = self.open_node(attributes.condition);
-        self.attributes(at, attributes.end)?;
-        let end = self.statement(attributes.end, limit, attributes.condition)?;
+        let node = self.open_node(attributes.condition.filter(|_| attributes.conditional));
+        let end = if node.is_some() && self.tokens.is(attributes.end, b'{') {
+            self.flat_block(at, attributes)?
+        } else {
+            self.attributes(at, attributes.end)?;
+            self.statement(attributes.end, limit, attributes.condition)?
+        };
         self.close_node(node, at, end);
         Ok(end)
+    }
+
+    /// Statements in braces under a condition: no scope of their own.
+    fn flat_block(&mut self, start: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
+        let open = attributes.end;
+        block::check_attributes(self.tokens, start, attributes)?;
+        let head = block::head(self.tokens, start, open);
+        self.events.push(Event::Cut { start: head.start, end: head.end });
+        let (close, mark) = (self.tokens.partner(open), self.scopes.enter());
+        let mut chain = Chain::within(attributes.condition);
+        let mut at = open + 1;
+        while at < close {
+            at = self.node(at, close, &mut chain)?;
+        }
+        self.scopes.end_block(mark);
+        let tail = block::tail(self.tokens, close);
+        self.events.push(Event::Cut { start: tail.start.max(head.end), end: tail.end });
+        Ok(close + 1)
     }
 
     fn statement(
@@ -130,10 +153,10 @@ impl Scanner<'_, '_> {
         condition: Option<ConditionId>,
     ) -> Result<usize, Diagnostic> {
         let name_at = self.var_template(at + 1);
-        let name = self.tokens.identifier(name_at, "a name")?;
+        self.tokens.identifier(name_at, "a name")?;
         let end = self.semicolon(name_at, limit)?;
         self.uses(name_at + 1, end)?;
-        self.declare(name, condition);
+        self.declare(name_at, condition)?;
         Ok(end + 1)
     }
 

@@ -3,6 +3,7 @@
 use super::names;
 use super::reader::{Name, Reader, Value};
 use crate::diagnostic::{Diagnostic, codes};
+use crate::limits::CONSTRAINTS;
 use crate::permute::Setting;
 use crate::permute::axis::{Axis, Kind, MAX, Mode};
 use crate::permute::constraint;
@@ -33,6 +34,15 @@ pub fn axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
 /// The constraints over the axes, in the order declared.
 pub fn constraints(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Constraint> {
     let Some(array) = reader.array(value, "`constraint`") else { return Vec::new() };
+    if array.len() > CONSTRAINTS {
+        let message = format!("a program may have {CONSTRAINTS} constraints, not {}", array.len());
+        let last = array.last().map_or(0..0, |last| last.span());
+        reader.problems.push(
+            Diagnostic::error(codes::SPACE_TOO_COMPLEX, message)
+                .at(reader.span(last), "the last of them"),
+        );
+        return Vec::new();
+    }
     array.iter().filter_map(|value| constraint(reader, axes, value)).collect()
 }
 

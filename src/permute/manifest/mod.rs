@@ -20,6 +20,11 @@
 //! [[program.forward.constraint]]
 //! require = "shadow != none => lights != none"
 //! doc = "A shadow needs a light."
+//!
+//! [features]                              # what conditions may name beside axes
+//! FOG = true                              # on, unless it is turned off
+//! MSAA = { doc = "Several samples.", default = false, excludes = ["WEBGL2"] }
+//! WEBGL2 = false
 //! ```
 //!
 //! Each entry of `only` is a slice of the space, and their union is wanted: an axis has the
@@ -30,11 +35,13 @@
 //! a bundle's loader recorded, nothing is wanted but its keys and those of `include`.
 
 mod axes;
+mod features;
 mod lists;
 mod names;
 mod program;
 mod reader;
 
+pub use features::{Feature, Features, read_file as read_features};
 pub use program::{File, Glsl, Program};
 
 use toml::de::DeTable;
@@ -48,11 +55,21 @@ use reader::Reader;
 pub struct Manifest {
     /// By name.
     pub programs: Vec<Program>,
+    /// What it declares, and what the `wesl.toml` of its package does.
+    pub features: Features,
     /// Lints.
     pub warnings: Vec<Diagnostic>,
 }
 
 impl Manifest {
+    /// Adds the features of the package; what the manifest says of one is not changed.
+    pub fn adopt(&mut self, features: Features) {
+        self.features.extend(features);
+        for program in &mut self.programs {
+            program.space.features = self.features.defaults().collect();
+        }
+    }
+
     /// The program of that name.
     pub fn program(&self, name: &str) -> Option<&Program> {
         self.programs.iter().find(|program| program.name == name)
@@ -68,17 +85,23 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics>
     }
     let mut reader = Reader::new(sources, id);
     let programs = programs(&mut reader, document.get_ref());
+    let features = features::read(&mut reader, document.get_ref());
     let mut problems = reader.problems;
     problems.sort_by_key(|problem| problem.labels.first().map(|label| label.span));
     if problems.iter().any(|problem| problem.severity == Severity::Error) {
         return Err(problems);
     }
-    Ok(Manifest { programs, warnings: problems })
+    let mut manifest = Manifest { programs, features: Features::default(), warnings: problems };
+    manifest.adopt(features);
+    Ok(manifest)
 }
 
 fn programs(reader: &mut Reader, document: &DeTable) -> Vec<Program> {
-    reader.check_keys(document, &["program"], "a manifest");
+    reader.check_keys(document, &["program", "features"], "a manifest");
     let Some(found) = document.get("program") else {
+        if document.contains_key("features") {
+            return Vec::new();
+        }
         let message = "the manifest declares no program";
         let start = Span::new(reader.id, 0..0);
         reader.problems.push(

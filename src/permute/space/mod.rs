@@ -5,6 +5,8 @@ mod formula;
 
 pub use formula::Formula;
 
+use std::collections::BTreeMap;
+
 use super::axis::{Axis, Kind, Mode, ValueSet};
 use super::key::{Assignment, Key};
 use super::{Setting, Settings};
@@ -78,6 +80,8 @@ pub struct Space {
     wanted: Diagram,
     /// [`Settings::undeclared`] at every point.
     pub undeclared: Option<bool>,
+    /// The values of features that are no axes, at every point.
+    pub features: BTreeMap<String, Setting>,
 }
 
 impl Space {
@@ -95,7 +99,15 @@ impl Space {
         } else {
             diagram(&axes, &constraints, &lists, order)?
         };
-        Ok(Self { axes, constraints, lists, valid, wanted, undeclared: None })
+        Ok(Self {
+            axes,
+            constraints,
+            lists,
+            valid,
+            wanted,
+            undeclared: None,
+            features: BTreeMap::new(),
+        })
     }
 
     /// The axes, by name.
@@ -212,13 +224,10 @@ impl Space {
     /// What a composition is asked for at a point: every axis with its value, dynamic ones too.
     pub fn settings(&self, point: &Assignment) -> Settings {
         let of_kind = |kind| self.axes.iter().filter(move |axis| axis.kind == kind);
+        let axes = self.axes.iter().enumerate();
+        let axes = axes.map(|(index, axis)| (axis.name.clone(), self.value(index, point).clone()));
         Settings {
-            values: self
-                .axes
-                .iter()
-                .enumerate()
-                .map(|(index, axis)| (axis.name.clone(), self.value(index, point).clone()))
-                .collect(),
+            values: self.features.clone().into_iter().chain(axes).collect(),
             enums: of_kind(Kind::Enum)
                 .map(|axis| (axis.name.clone(), axis.value_names()))
                 .collect(),
@@ -230,6 +239,7 @@ impl Space {
                 .map(|axis| (axis.name.clone(), axis.values[axis.default].clone()))
                 .collect(),
             undeclared: self.undeclared,
+            constants: BTreeMap::new(),
         }
     }
 

@@ -94,10 +94,15 @@ pub struct Node {
     pub sets: HashMap<Name, Vec<u32>>,
     /// Import indices by the name they bring.
     pub aliases: HashMap<Name, Vec<usize>>,
+    /// By import: where it may lead.
+    pub imports: Vec<Vec<Target>>,
     /// By reference: what it may mean, the first whose conditions hold.
     pub bindings: Vec<Vec<Candidate>>,
     /// Imports that lead nowhere: they count if the module is reached and the conditions hold.
     pub broken_imports: Vec<(Vec<ConditionId>, u32)>,
+    /// Declarations of a name that another one has too under the same condition: failures that
+    /// count if the module is reached as a whole.
+    pub duplicates: Vec<(Option<ConditionId>, u32)>,
     /// Warnings, for modules of the root package.
     pub lints: Vec<Diagnostic>,
     /// What led here first; nothing for the root module.

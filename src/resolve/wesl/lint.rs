@@ -5,15 +5,17 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use super::graph::{Candidate, Graph, Node, Target};
 use super::load::Loader;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::parse::wesl::{Expression, Name, Names, Origin, Path, Reference};
+use crate::parse::wesl::{ConditionId, Expression, Name, Origin, Path, Reference};
 use crate::permute::Settings;
+use crate::source::Span;
 
 /// Warnings about a module's imports. Modules of dependencies have none: their users cannot mend them.
-pub fn lints(names: &Names, node: &Node) -> Vec<Diagnostic> {
+pub fn lints(loader: &Loader<'_>, node: &Node) -> Vec<Diagnostic> {
     if node.package != 0 {
         return Vec::new();
     }
-    let mut found = Vec::new();
+    let names = &loader.names;
+    let mut found = node.module.warnings.clone();
     let used = used(node);
     for import in &node.module.imports {
         let (text, span) = (names.text(import.alias), node.module.span(import.alias_range.clone()));
@@ -32,18 +34,64 @@ pub fn lints(names: &Names, node: &Node) -> Vec<Diagnostic> {
                 .at(node.module.span(item.name_range.clone()), "the declaration wins"),
             ),
             _ if !used.contains(&import.alias) => {
-                found.push(
-                    Diagnostic::warning(
-                        codes::UNUSED_IMPORT,
-                        format!("`{text}` is imported but never used"),
-                    )
-                    .at(span, "not used"),
-                );
+                let message = format!("`{text}` is imported but never used");
+                let warning =
+                    Diagnostic::warning(codes::UNUSED_IMPORT, message).at(span, "not used");
+                found.push(match absent_package(loader, node, &import.path) {
+                    Some(package) => warning.note(format!("there is no package `{package}`")),
+                    None => warning,
+                });
             }
             _ => {}
         }
     }
     found
+}
+
+/// The package of an import's path, where there is no such package.
+fn absent_package<'l>(loader: &'l Loader<'_>, node: &Node, path: &Path) -> Option<&'l str> {
+    let is_there = |name: Name| {
+        let text = loader.names.text(name);
+        name == Name::CONSTANTS
+            || loader.package(node.package).name == text
+            || loader.packages.dependency(text).is_some()
+            || node.aliases.contains_key(&name)
+    };
+    let first = path.segments.first().copied().filter(|_| path.origin == Origin::Scope)?;
+    (!is_there(first)).then(|| loader.names.text(first))
+}
+
+/// Whether an import that leads nowhere may stay: nothing uses it, and its package is not here.
+/// The warning about what is unused says so.
+pub fn is_harmless(loader: &Loader<'_>, node: u32, import: usize, failure: u32) -> bool {
+    let here = &loader.nodes[node as usize];
+    loader.failures[failure as usize].code == codes::UNKNOWN_PACKAGE
+        && !used(here).contains(&here.module.imports[import].alias)
+}
+
+/// Fails declarations of one name that the same settings keep, whether anything reaches them or
+/// not: those without a condition, and those of one block.
+pub fn duplicates(loader: &mut Loader<'_>, node: u32) {
+    let here = &loader.nodes[node as usize];
+    let mut first: HashMap<(Name, Option<ConditionId>), usize> = HashMap::new();
+    let mut found = Vec::new();
+    for (index, item) in here.module.items.iter().enumerate() {
+        let earlier = *first.entry((item.name, item.condition)).or_insert(index);
+        if earlier != index && item.name != Name::UNDERSCORE {
+            let earlier = here.module.items[earlier].name_range.clone();
+            let message =
+                format!("`{}` is declared twice in `{}`", loader.names.text(item.name), here.label);
+            let error = Diagnostic::error(codes::DUPLICATE_ITEM, message)
+                .at(here.module.span(item.name_range.clone()), "declared again")
+                .at(here.module.span(earlier), "declared first");
+            found.push((item.condition, error));
+        }
+    }
+    for (condition, error) in found {
+        if let Target::Failed(index) = loader.fail(error) {
+            loader.nodes[node as usize].duplicates.push((condition, index));
+        }
+    }
 }
 
 /// Fails unconditional imports of different things under one name.
@@ -110,26 +158,52 @@ fn used(node: &Node) -> HashSet<Name> {
     named.chain(passed).collect()
 }
 
-/// Warnings about flags of the root package's conditions that no axis declares, each once. Where
-/// one is asked for, that is an error of the composition; these are hidden behind other conditions.
+/// Places of one diagnostic that are shown; the others are counted.
+const PLACES: usize = 12;
+
+/// Every place of a condition that names a flag, dependencies' included.
+pub fn places_of(graph: &Graph, flag: Name) -> Vec<Span> {
+    let of_node = |node: &Node| {
+        let found = node.module.expressions.iter().filter_map(|expression| match expression {
+            Expression::Flag(name, range) if *name == flag => Some(node.module.span(range.clone())),
+            _ => None,
+        });
+        found.collect::<Vec<_>>()
+    };
+    graph.nodes.iter().flat_map(of_node).collect()
+}
+
+/// The diagnostic with labels at the first places, and a note that counts the others.
+pub fn shown_at(error: Diagnostic, mut places: Vec<Span>, label: &str) -> Diagnostic {
+    places.sort_unstable();
+    places.dedup();
+    let hidden = places.len().saturating_sub(PLACES);
+    let error = places.into_iter().take(PLACES).fold(error, |error, span| error.at(span, label));
+    match hidden {
+        0 => error,
+        more => error.note(format!("and at {more} more places")),
+    }
+}
+
+/// Warnings about flags of the root package's conditions that no axis declares, each once with its
+/// places. Where one is asked for, that is an error of the composition; these are hidden behind
+/// other conditions.
 pub fn undeclared(graph: &Graph, settings: &Settings) -> Diagnostics {
-    let mut found: BTreeMap<&str, Diagnostic> = BTreeMap::new();
+    let mut found: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
     for node in graph.nodes.iter().filter(|node| node.package == 0) {
         for expression in &node.module.expressions {
             let Expression::Flag(name, range) = expression else { continue };
             let text = graph.names.text(*name);
             if settings.value(text).is_none() {
-                let warning = Diagnostic::warning(
-                    codes::UNDECLARED_FLAG,
-                    format!("no axis declares the flag `{text}`"),
-                );
-                let warning =
-                    warning.at(node.module.span(range.clone()), "no permutation has asked for it");
-                found.entry(text).or_insert_with(|| {
-                    warning.suggest(text, settings.values.keys().map(String::as_str))
-                });
+                found.entry(text).or_default().push(node.module.span(range.clone()));
             }
         }
     }
-    found.into_values().collect()
+    let warning = |(text, places): (&str, Vec<Span>)| {
+        let message = format!("no axis declares the flag `{text}`");
+        let warning = Diagnostic::warning(codes::UNDECLARED_FLAG, message);
+        let warning = shown_at(warning, places, "no permutation has asked for it");
+        warning.suggest(text, settings.values.keys().map(String::as_str))
+    };
+    found.into_iter().map(warning).collect()
 }

@@ -17,6 +17,8 @@ pub struct Loader<'a> {
     pub(super) nodes: Vec<Node>,
     pub(super) constants: Vec<Constant>,
     pub(super) failures: Vec<Diagnostic>,
+    /// Modules are read for an editor.
+    pub(super) for_editor: bool,
     /// By package and path: the node of a file, nothing, or why it cannot be read.
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
     /// By package: its files, once something is missing.
@@ -32,6 +34,7 @@ impl<'a> Loader<'a> {
             nodes: Vec::new(),
             constants: Vec::new(),
             failures: Vec::new(),
+            for_editor: false,
             known: HashMap::new(),
             listings: HashMap::new(),
         }
@@ -64,6 +67,30 @@ impl<'a> Loader<'a> {
         let graph = self.graph();
         let errors = certain_errors(&graph);
         if errors.is_empty() { Ok(graph) } else { Err(errors) }
+    }
+
+    /// Everything that the modules at some paths of the root package lead to, errors and all;
+    /// those that cannot be read are left out.
+    pub fn every(mut self, paths: &[String]) -> Option<Graph> {
+        self.for_editor = true;
+        for path in paths {
+            let stem = path.rsplit_once('.').map_or(path.as_str(), |(stem, _)| stem);
+            if self.known.contains_key(&(0, stem.to_owned())) || self.nodes.len() >= LIMITS.files {
+                continue;
+            }
+            let Ok(Some(source)) = source::read(self.sources, &self.packages.root, path) else {
+                continue;
+            };
+            let node = self.nodes.len() as u32;
+            self.known.insert((0, stem.to_owned()), Ok(Some(node)));
+            self.add(source, 0, stem.split('/').map(str::to_owned).collect(), None);
+        }
+        let mut at = 0;
+        while at < self.nodes.len() {
+            self.resolve(at as u32);
+            at += 1;
+        }
+        (!self.nodes.is_empty()).then(|| self.graph())
     }
 
     fn graph(self) -> Graph {
@@ -164,7 +191,8 @@ impl<'a> Loader<'a> {
         asker: Option<Span>,
     ) -> u32 {
         let text = self.sources.get(source).text.clone();
-        let module = wesl::parse(source, text, &mut self.names);
+        let parse = if self.for_editor { wesl::parse_for_editor } else { wesl::parse };
+        let module = parse(source, text, &mut self.names);
         let mut sets: HashMap<Name, Vec<u32>> = HashMap::new();
         for (index, item) in
             module.items.iter().enumerate().filter(|(_, item)| item.name != Name::UNDERSCORE)
@@ -187,8 +215,10 @@ impl<'a> Loader<'a> {
             label,
             sets,
             aliases,
+            imports: Vec::new(),
             bindings: Vec::new(),
             broken_imports: Vec::new(),
+            duplicates: Vec::new(),
             lints: Vec::new(),
             importer,
             bases: Bases::default(),
@@ -227,22 +257,28 @@ impl<'a> Loader<'a> {
             .collect();
         let mut imported: HashMap<Name, Vec<Candidate>> = HashMap::new();
         for (index, (condition, path, alias)) in imports.iter().enumerate() {
+            let mut targets = Vec::new();
             for mut candidate in self.candidates(node, path, Some(index)) {
                 candidate.conditions.extend(*condition);
-                if let Target::Failed(failure) = candidate.target {
+                targets.push(candidate.target);
+                if let Target::Failed(failure) = candidate.target
+                    && !lint::is_harmless(self, node, index, failure)
+                {
                     self.nodes[node as usize]
                         .broken_imports
                         .push((candidate.conditions.clone(), failure));
                 }
                 imported.entry(*alias).or_default().push(candidate);
             }
+            self.nodes[node as usize].imports.push(targets);
         }
         let references = self.nodes[node as usize].module.references.clone();
         let bindings =
             references.iter().map(|reference| self.binding(node, reference, &imported)).collect();
         self.nodes[node as usize].bindings = bindings;
         lint::clashes(self, node, &imported);
-        self.nodes[node as usize].lints = lint::lints(&self.names, &self.nodes[node as usize]);
+        lint::duplicates(self, node);
+        self.nodes[node as usize].lints = lint::lints(self, &self.nodes[node as usize]);
     }
 
     fn binding(

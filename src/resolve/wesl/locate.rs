@@ -62,6 +62,10 @@ impl Loader<'_> {
             Origin::Super(ups) => {
                 self.above(node, ups as usize, &path.segments, span).map(|absolute| vec![absolute])
             }
+            // The path of an import starts with a package, whatever other imports bring.
+            Origin::Scope if !visiting.is_empty() && self.is_package(node, path.segments[0]) => {
+                self.in_package(node, &path.segments, span, false).map(|absolute| vec![absolute])
+            }
             Origin::Scope => {
                 let named = here.aliases.get(&path.segments[0]).into_iter().flatten();
                 let (seen, through): (Vec<usize>, Vec<usize>) =
@@ -134,6 +138,14 @@ impl Loader<'_> {
         let above = here.path[..depth].iter().filter_map(|part| self.names.find(part));
         let segments = above.chain(segments.iter().copied()).collect();
         Ok(Absolute { package: Some(here.package), segments, conditions: Vec::new() })
+    }
+
+    /// Whether a path may start with the name as that of a package.
+    fn is_package(&self, node: u32, name: Name) -> bool {
+        let text = self.names.text(name);
+        name == Name::CONSTANTS
+            || self.packages.dependencies.iter().any(|package| package.name == text)
+            || self.package(self.nodes[node as usize].package).name == text
     }
 
     fn in_package(

@@ -7,7 +7,7 @@ mod load;
 mod locate;
 
 pub use graph::{Candidate, Constant, Graph, Node, Target};
-pub use lint::undeclared;
+pub use lint::{places_of, shown_at, undeclared};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;
@@ -29,6 +29,12 @@ pub fn load(
         Ok(false) => Err(vec![missing_root(packages, root)]),
         Err(error) => Err(vec![error]),
     }
+}
+
+/// Every module of the root package at one of the paths, and all that they lead to: for editors,
+/// which ask who uses what. What is wrong is in the graph; nothing where no module can be read.
+pub fn load_all(sources: &mut SourceSet, packages: &Packages, paths: &[String]) -> Option<Graph> {
+    load::Loader::new(sources, packages).every(paths)
 }
 
 fn missing_root(packages: &Packages, root: &str) -> Diagnostic {

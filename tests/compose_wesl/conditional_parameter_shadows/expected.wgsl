@@ -6,5 +6,5 @@ const x = 2.0;
 
 fn f() -> f32 { return x; }
 @fragment fn main() -> @location(0) vec4f {
-    { return vec4f(f()); }
+    return vec4f(f());
 }

@@ -17,7 +17,7 @@ struct S {
 }
 fn params(foo: u32, baz: u32) {}
 fn statements() -> i32 {
-    { let a = 1; }
+    let a = 1;
     if foo > 0 { let a = 2; } else if foo < 0 { } else { }
     switch foo { default { let a = 3; } }
     switch foo { case 1 { let a = 4; } default { } }

@@ -1,6 +1,4 @@
 fn main() {
-    {
-        { inner(); }
-    }
+        inner();
 }
 fn inner() { }

@@ -1,0 +1,104 @@
+//! `lamplight lsp`: a language server on standard input and output.
+
+use std::io::{BufReader, stdin};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use clap::Args;
+use serde_json::Value;
+
+use super::failure::Failure;
+use super::terminal;
+use crate::lsp::Server;
+use crate::lsp::wire::{self, Incoming};
+use crate::output;
+use crate::source::{Embedded, Files};
+
+/// Answer an editor's questions about WESL, WGSL and GLSL on standard input and output.
+#[derive(Args)]
+pub struct Arguments {}
+
+/// Waiting for more keystrokes before documents are looked at.
+const PAUSE: Duration = Duration::from_millis(2);
+
+pub fn run(_: Arguments) -> Result<(), Failure> {
+    let (sender, receiver) = channel();
+    // Reading goes on while documents are looked at, so that a keystroke ends the waiting.
+    thread::spawn(move || {
+        let mut stream = BufReader::new(stdin().lock());
+        while let Ok(incoming) = wire::read(&mut stream) {
+            let is_end = matches!(incoming, Incoming::End);
+            if sender.send(incoming).is_err() || is_end {
+                return;
+            }
+        }
+    });
+    match serve(&receiver)? {
+        0 => Ok(()),
+        _ => Err(Failure::input("the editor left without `shutdown`")),
+    }
+}
+
+/// Answers until the editor leaves; the exit code that the protocol asks for.
+fn serve(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
+    let mut server = Server::new(Box::new(library_file));
+    let mut pause = PAUSE;
+    loop {
+        let next = match server.is_idle() {
+            false => receiver.recv_timeout(pause),
+            true => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        };
+        let sent = match next {
+            Ok(Incoming::Message(message)) => {
+                pause = PAUSE;
+                guarded(&mut server, &message, |server| server.receive(&message))
+            }
+            Ok(Incoming::Malformed(answer)) => vec![answer],
+            Ok(Incoming::End) | Err(RecvTimeoutError::Disconnected) => return Ok(0),
+            Err(RecvTimeoutError::Timeout) => {
+                pause = Duration::ZERO;
+                guarded(&mut server, &Value::Null, Server::look)
+            }
+        };
+        for message in sent {
+            let mut bytes = Vec::new();
+            wire::write(&mut bytes, &message)?;
+            terminal::data(&bytes)?;
+            terminal::flush()?;
+        }
+        if let Some(code) = server.exit {
+            return Ok(code);
+        }
+    }
+}
+
+/// One question that goes wrong inside is answered as such; the server goes on.
+fn guarded(
+    server: &mut Server,
+    message: &Value,
+    work: impl FnOnce(&mut Server) -> Vec<Value>,
+) -> Vec<Value> {
+    catch_unwind(AssertUnwindSafe(|| work(server))).unwrap_or_else(|_| {
+        let id = message.get("id");
+        id.map(|id| wire::error(id, wire::FAILED, "internal error")).into_iter().collect()
+    })
+}
+
+/// A copy of a file of the library where editors can open it.
+fn library_file(name: &str) -> Option<PathBuf> {
+    let variable =
+        |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let cache = variable("XDG_CACHE_HOME").or_else(|| Some(variable("HOME")?.join(".cache")))?;
+    let folder = cache.join("lamplight").join(env!("CARGO_PKG_VERSION"));
+    let file = folder.join(name);
+    let text = Embedded.read(name).ok()??;
+    if std::fs::read(&file).is_ok_and(|known| known == text.as_bytes()) {
+        return Some(file);
+    }
+    output::make_folder(file.parent()?).ok()?;
+    output::write(&file, text.as_bytes()).ok()?;
+    Some(file)
+}

@@ -1,0 +1,320 @@
+//! What may be written at a place.
+
+use std::collections::BTreeSet;
+
+use serde_json::{Value, json};
+
+use super::package::Modules;
+use super::place::{self, Lines};
+use super::{Server, act};
+use crate::catalogue::Kind;
+use crate::parse::wesl::{ItemKind, Name};
+use crate::permute::Setting;
+use crate::source::Files;
+
+/// The protocol's numbers of what a completion is.
+const FUNCTION: u32 = 3;
+const FIELD: u32 = 5;
+const VARIABLE: u32 = 6;
+const MODULE: u32 = 9;
+const VALUE: u32 = 12;
+const KEYWORD: u32 = 14;
+const CONSTANT: u32 = 21;
+const STRUCT: u32 = 22;
+
+const KEYWORDS: &[&str] = &[
+    "alias",
+    "break",
+    "case",
+    "const",
+    "const_assert",
+    "continue",
+    "continuing",
+    "default",
+    "discard",
+    "else",
+    "enable",
+    "fn",
+    "for",
+    "if",
+    "import",
+    "let",
+    "loop",
+    "override",
+    "return",
+    "struct",
+    "switch",
+    "var",
+    "while",
+];
+
+/// `textDocument/completion`.
+pub fn completion(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let (document, byte) = server.asked(parameters)?;
+    let (root, path, text) = (document.root.clone(), document.path.clone(), document.text.clone());
+    let word = place::word(&text, byte).start;
+    let line = text[..word].rfind('\n').map_or(0, |end| end + 1);
+    let before = &text[line..word];
+    let Some(modules) = server.modules(&root) else { return Ok(json!([])) };
+    if let Some(condition) = before.rfind("@if(").max(before.rfind("@elif("))
+        && before[condition..].matches('(').count() > before[condition..].matches(')').count()
+    {
+        return Ok(flags(server, parameters, before));
+    }
+    if before.ends_with("::") {
+        return Ok(path_members(server, &modules, &path, statement(&text, word)));
+    }
+    if before.ends_with('.') {
+        return Ok(fields(&modules, &path));
+    }
+    Ok(names(server, &modules, &path, &text, word..byte))
+}
+
+fn entry(label: &str, kind: u32, detail: &str) -> Value {
+    json!({ "label": label, "kind": kind, "detail": detail })
+}
+
+/// From the start of the statement to a byte, without line breaks.
+fn statement(text: &str, byte: usize) -> &str {
+    let start = text[..byte].rfind([';', '}']).map_or(0, |end| end + 1);
+    &text[start..byte]
+}
+
+/// Axes and features, or the values of the axis that is compared.
+fn flags(server: &Server, parameters: &Value, before: &str) -> Value {
+    let Some(opened) =
+        server.document(parameters).ok().and_then(|document| server.opened(&document.root))
+    else {
+        return json!([]);
+    };
+    let programs = || opened.manifest.iter().flat_map(|manifest| &manifest.programs);
+    let axes = programs().flat_map(|program| program.space.axes());
+    let compared = before.trim_end().strip_suffix("==").or(before.trim_end().strip_suffix("!="));
+    if let Some(before) = compared {
+        let before = before.trim_end();
+        let name = &before[place::word(before, before.len())];
+        let values = axes.filter(|axis| axis.name == name).flat_map(|axis| &axis.values);
+        let names: BTreeSet<String> = values.map(ToString::to_string).collect();
+        return names.iter().map(|name| entry(name, VALUE, "value")).collect();
+    }
+    let mut seen = BTreeSet::new();
+    let axes = axes.filter(|axis| seen.insert(axis.name.clone())).map(|axis| {
+        let values: Vec<String> = axis.values.iter().map(ToString::to_string).collect();
+        entry(&axis.name, VARIABLE, &format!("axis: {}", values.join(", ")))
+    });
+    let axes: Vec<Value> = axes.collect();
+    let features =
+        opened.features.declared.iter().map(|(name, feature)| {
+            entry(name, VARIABLE, feature.doc.as_deref().unwrap_or("feature"))
+        });
+    axes.into_iter().chain(features).collect()
+}
+
+/// Modules and items below the path that is written before the place.
+fn path_members(server: &mut Server, modules: &Modules, here: &str, before: &str) -> Value {
+    let path = written_path(before);
+    let parts: Vec<&str> = path.iter().map(String::as_str).collect();
+    let Some((first, rest)) = parts.split_first() else { return json!([]) };
+    let document = server.documents.values().find(|document| document.path == here);
+    let Some(opened) = document.and_then(|document| server.opened(&document.root)) else {
+        return json!([]);
+    };
+    if *first == "constants" {
+        let programs = opened.manifest.iter().flat_map(|manifest| &manifest.programs);
+        let axes = programs.flat_map(|program| program.space.axes());
+        let is_number = |axis: &&crate::permute::Axis| {
+            !matches!(axis.values.first(), Some(Setting::Name(_)) | None)
+        };
+        let names: BTreeSet<&str> = axes.filter(is_number).map(|axis| axis.name.as_str()).collect();
+        return names.into_iter().map(|name| entry(name, CONSTANT, "constant")).collect();
+    }
+    let mut folder: Vec<&str> = rest.to_vec();
+    let above: Vec<&str> =
+        here.rsplit_once('.').map_or(here, |(stem, _)| stem).split('/').collect();
+    let (files, label): (&dyn Files, &str) = match *first {
+        "package" => (&*opened.packages.root.files, "package"),
+        "super" => {
+            let ups = 1 + rest.iter().take_while(|part| **part == "super").count();
+            let kept = above.len().saturating_sub(ups);
+            folder = above[..kept].iter().chain(&rest[ups - 1..]).copied().collect();
+            (&*opened.packages.root.files, "package")
+        }
+        name => match opened.packages.dependency(name) {
+            Some(package) => (&*package.files, name),
+            None => return json!([]),
+        },
+    };
+    let prefix = if folder.is_empty() { String::new() } else { folder.join("/") + "/" };
+    let below = files.list(&["wesl", "wgsl"]).into_iter().filter_map(|file| {
+        let rest = file.strip_prefix(&prefix)?.to_owned();
+        Some(rest.split(['/', '.']).next()?.to_owned())
+    });
+    let below: BTreeSet<String> = below.collect();
+    let mut found: Vec<Value> = below.iter().map(|name| entry(name, MODULE, "module")).collect();
+    let label = std::iter::once(label).chain(folder.iter().copied()).collect::<Vec<_>>().join("::");
+    let node = modules.graph.nodes.iter().find(|node| node.label == label);
+    for item in node.into_iter().flat_map(|node| &node.module.items) {
+        if item.name != Name::UNDERSCORE {
+            found.push(entry(modules.graph.names.text(item.name), kind(item.kind), &label));
+        }
+    }
+    // A module of the library that nothing imports yet.
+    let known = server.items();
+    let module = known.iter().find(|module| format!("lamplight::{}", module.path) == label);
+    for item in module.filter(|_| node.is_none()).into_iter().flat_map(|module| &module.items) {
+        found.push(entry(&item.name, of_library(item.kind), item.summary()));
+    }
+    Value::Array(found)
+}
+
+/// The names of the path before a place, those outside the braces of an import included.
+fn written_path(before: &str) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    let mut rest = before.trim_end();
+    loop {
+        while let Some(shorter) = rest.strip_suffix("::") {
+            let name = place::word(shorter, shorter.len());
+            if name.is_empty() {
+                break;
+            }
+            parts.push(shorter[name.clone()].to_owned());
+            rest = shorter[..name.start].trim_end();
+        }
+        // `import a::{b, c::`: on from before the brace that is open.
+        let mut depth = 0;
+        let open = rest.char_indices().rev().find(|(_, letter)| {
+            depth += i32::from(*letter == '}') - i32::from(*letter == '{');
+            depth < 0
+        });
+        match open {
+            Some((at, _)) if rest.trim_start().contains("import") => rest = rest[..at].trim_end(),
+            _ => break,
+        }
+        if !rest.ends_with("::") {
+            break;
+        }
+    }
+    parts.reverse();
+    parts
+}
+
+/// Members of the structs of a module and of what it reaches by name.
+fn fields(modules: &Modules, here: &str) -> Value {
+    let Some(node) = modules.node(here) else { return json!([]) };
+    let mut found = BTreeSet::new();
+    let symbols = modules.places_in(node).map(|(symbol, _)| symbol);
+    for (node, item) in symbols.filter_map(|symbol| modules.item(symbol)) {
+        if item.kind != ItemKind::Struct {
+            continue;
+        }
+        let text = &node.module.text[item.name_range.end as usize..item.range.end as usize];
+        for line in text.lines() {
+            let Some((name, _)) = line.split("//").next().unwrap_or_default().split_once(':')
+            else {
+                continue;
+            };
+            found.insert(name[place::word(name, name.trim_end().len())].to_owned());
+        }
+    }
+    let owner = |name: &String| entry(name, FIELD, "member");
+    found.iter().filter(|name| !name.is_empty()).map(owner).collect()
+}
+
+/// Names in scope, those that can be imported, built-ins and keywords.
+fn names(
+    server: &mut Server,
+    modules: &Modules,
+    here: &str,
+    text: &str,
+    written: std::ops::Range<usize>,
+) -> Value {
+    let prefix = text[written.clone()].to_lowercase();
+    let fits = |name: &str| name.to_lowercase().starts_with(&prefix);
+    let mut found: Vec<Value> = Vec::new();
+    let mut seen = BTreeSet::new();
+    let mut add = |name: &str, value: Value| {
+        if fits(name) && seen.insert(name.to_owned()) {
+            found.push(value);
+        }
+    };
+    let node = modules.node(here).map(|node| &modules.graph.nodes[node as usize]);
+    if let Some(node) = node {
+        let at = written.start as u32;
+        let around = node.module.items.iter().find(|item| item.range.contains(&at));
+        for local in around.into_iter().flat_map(|item| &item.locals) {
+            let name = modules.graph.names.text(*local);
+            add(name, entry(name, VARIABLE, "local"));
+        }
+        for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {
+            let name = modules.graph.names.text(item.name);
+            add(name, entry(name, kind(item.kind), &node.label));
+        }
+        for import in &node.module.imports {
+            let name = modules.graph.names.text(import.alias);
+            add(name, entry(name, VARIABLE, "imported"));
+        }
+    }
+    if !prefix.is_empty() {
+        let lines = Lines::new(text);
+        for (path, name, kind) in importable(server, modules, here) {
+            let edit = act::import_edit(text, &lines, &path);
+            let value = json!({
+                "label": name,
+                "kind": kind,
+                "detail": format!("import {path}"),
+                "sortText": format!("~{name}"),
+                "additionalTextEdits": [edit],
+            });
+            add(&name, value);
+        }
+    }
+    for name in naga::keywords::wgsl::BUILTIN_IDENTIFIERS.iter().copied() {
+        add(name, entry(name, FUNCTION, "built in"));
+    }
+    for name in KEYWORDS {
+        add(name, entry(name, KEYWORD, "keyword"));
+    }
+    Value::Array(found)
+}
+
+/// Items of other modules and of the library: path, name, kind.
+pub fn importable(
+    server: &mut Server,
+    modules: &Modules,
+    here: &str,
+) -> Vec<(String, String, u32)> {
+    let own = modules.node(here);
+    let mut found = Vec::new();
+    for (index, node) in modules.graph.nodes.iter().enumerate() {
+        if Some(index as u32) == own || node.label.starts_with("lamplight::") {
+            continue;
+        }
+        for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {
+            let name = modules.graph.names.text(item.name).to_owned();
+            found.push((format!("{}::{name}", node.label), name, kind(item.kind)));
+        }
+    }
+    for module in server.items().iter() {
+        let items = module.items.iter();
+        found
+            .extend(items.map(|item| (item.full_path(), item.name.clone(), of_library(item.kind))));
+    }
+    found
+}
+
+fn kind(kind: ItemKind) -> u32 {
+    match kind {
+        ItemKind::Function => FUNCTION,
+        ItemKind::Struct | ItemKind::Alias => STRUCT,
+        ItemKind::Const | ItemKind::Override => CONSTANT,
+        ItemKind::Var | ItemKind::ConstAssert => VARIABLE,
+    }
+}
+
+fn of_library(kind: Kind) -> u32 {
+    match kind {
+        Kind::Function => FUNCTION,
+        Kind::Struct => STRUCT,
+        Kind::Constant => CONSTANT,
+    }
+}

@@ -1,0 +1,123 @@
+//! A module under the permutation that the editor shows: what is wrong with it, and what of it is
+//! not there.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::package::Opened;
+
+use crate::compose::{self, Keep, Options};
+use crate::diagnostic::Diagnostics;
+use crate::lint;
+use crate::parse::wesl::Event;
+use crate::permute::{Program, Setting, Settings};
+use crate::resolve::{self, Graph};
+use crate::validate;
+
+/// What was chosen for a package, by axis or feature.
+pub type Choice = BTreeMap<String, Setting>;
+
+/// The settings of a module, and how they are told: those of the program that has it as a root, or
+/// else of one that knows what it asks for.
+pub fn settings(opened: &Opened, path: &str, choice: &Choice) -> (Settings, String) {
+    let programs = || opened.manifest.iter().flat_map(|manifest| &manifest.programs);
+    let is_root = |program: &&Program| program.files().any(|file| file.path == path);
+    let program = programs().find(is_root).or_else(|| programs().next());
+    let (mut settings, what) = match program {
+        Some(program) => {
+            let point = program.space.default_assignment();
+            (program.space.settings(&point), format!("program `{}`", program.name))
+        }
+        None => (Settings::default(), "the package".to_owned()),
+    };
+    opened.features.complete(&mut settings);
+    for (name, value) in choice {
+        match (name.strip_prefix("constants::"), value) {
+            (Some(constant), value) => {
+                settings.constants.insert(constant.to_owned(), value.to_string());
+            }
+            (None, value) => drop(settings.values.insert(name.clone(), value.clone())),
+        }
+    }
+    let chosen: Vec<String> =
+        choice.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let chosen = if chosen.is_empty() { "default".to_owned() } else { chosen.join(",") };
+    (settings, format!("in permutation `{chosen}` of {what}"))
+}
+
+/// A graph with the module as its root, and what is wrong so far.
+pub fn graph(opened: &mut Opened, path: &str) -> Result<Graph, Diagnostics> {
+    let Some(language) = lint::language(path) else { return Err(Vec::new()) };
+    resolve::load(&mut opened.sources, &opened.packages, path, language)
+}
+
+/// What is wrong with a module under the settings: names, conditions, then what naga says.
+pub fn problems(graph: &Graph, settings: &Settings, path: &str) -> Diagnostics {
+    let mut found = graph.undeclared(settings);
+    // What nothing declares is told on its own; what else is wrong is looked for without it.
+    let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
+    match compose::compose(graph, &settings, &options(graph, path)) {
+        Ok(composed) => {
+            found.extend(graph.own(composed.warnings.clone()));
+            match validate::every(&composed) {
+                Ok(validated) => found.extend(graph.own(validate::lint(&composed, &validated))),
+                Err(errors) => found.extend(errors),
+            }
+        }
+        Err(errors) => found.extend(errors),
+    }
+    found
+}
+
+fn options(graph: &Graph, path: &str) -> Options {
+    let stem = path.strip_suffix(".glsl").unwrap_or(path);
+    let has_stage = [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending));
+    let keep = match graph {
+        Graph::Glsl(_) if has_stage => Keep::All,
+        _ => Keep::Root,
+    };
+    Options { keep, ..Options::default() }
+}
+
+/// The composed text of a module, as an entry point's lens opens it.
+pub fn composed(graph: &Graph, settings: &Settings) -> Result<String, Diagnostics> {
+    let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
+    compose::compose(graph, &settings, &Options::default()).map(|composed| composed.text)
+}
+
+/// The parts of a WESL module that the settings take away, by place.
+pub fn inactive(graph: &Graph, settings: &Settings) -> Vec<Range<u32>> {
+    let Graph::Wesl(graph) = graph else { return Vec::new() };
+    let Some(root) = graph.nodes.first() else { return Vec::new() };
+    let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
+    let mut answers = compose::wesl::Conditions::new(graph, &settings);
+    let mut found = Vec::new();
+    for item in &root.module.items {
+        if item.condition.is_some_and(|condition| !answers.holds(0, condition)) {
+            found.push(item.range.clone());
+            continue;
+        }
+        let mut at = 0;
+        while let Some(event) = item.events.get(at) {
+            at += 1;
+            if let Event::Node { condition, start, end, next } = *event
+                && !answers.holds(0, condition)
+            {
+                found.push(start..end);
+                at = next as usize;
+            }
+        }
+    }
+    let imports = root.module.imports.iter();
+    found.extend(imports.filter_map(|import| {
+        let holds = import.condition.is_none_or(|condition| answers.holds(0, condition));
+        (!holds).then_some(import.path.range.start..import.alias_range.end)
+    }));
+    found.sort_by_key(|range| range.start);
+    found
+}
+
+/// What is known of a WESL or GLSL file by its name.
+pub fn is_module(path: &str) -> bool {
+    lint::language(path).is_some()
+}

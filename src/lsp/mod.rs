@@ -1,0 +1,329 @@
+//! A language server over WESL, WGSL and GLSL: what editors ask, answered from the same stages
+//! that composing goes through.
+//!
+//! [`Server::receive`] takes one message and gives those to send; [`Server::look`] gives what is
+//! wrong with documents that changed. Nothing here reads or writes a stream, and whatever comes in
+//! has an answer.
+
+mod act;
+mod choose;
+mod complete;
+mod describe;
+mod format;
+mod look;
+mod navigate;
+mod package;
+mod place;
+mod shade;
+mod told;
+pub mod wire;
+
+use std::collections::{BTreeMap, VecDeque};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::catalogue;
+use crate::project;
+use look::Choice;
+use package::{Modules, Opened, Texts};
+use wire::{FAILED, NO_METHOD, WRONG_PARAMETERS, answer, error, notification};
+
+/// Where a file of the embedded library lies on the disk, for editors to show.
+pub type Library = Box<dyn Fn(&str) -> Option<PathBuf>>;
+
+/// A text that an editor has open.
+struct Document {
+    text: String,
+    version: Value,
+    /// Root folder of its package, and its path below that.
+    root: PathBuf,
+    path: String,
+}
+
+/// The state of one session.
+pub struct Server {
+    documents: BTreeMap<PathBuf, Document>,
+    /// By root folder of a package.
+    choices: BTreeMap<PathBuf, Choice>,
+    /// Of the package that was asked about last, until a document changes.
+    modules: Option<(PathBuf, Arc<Modules>)>,
+    /// Documents to look at, the one that was edited last first.
+    changed: VecDeque<PathBuf>,
+    items: Option<Arc<Vec<catalogue::Module>>>,
+    library: Library,
+    is_shut_down: bool,
+    /// The exit code, once the editor said that it is over.
+    pub exit: Option<u8>,
+}
+
+type Handler = fn(&mut Server, &Value) -> Result<Value, String>;
+
+/// What editors ask for.
+const REQUESTS: &[(&str, Handler)] = &[
+    ("textDocument/hover", describe::hover),
+    ("textDocument/signatureHelp", describe::signature),
+    ("textDocument/definition", navigate::definition),
+    ("textDocument/references", navigate::references),
+    ("textDocument/prepareRename", navigate::prepare_rename),
+    ("textDocument/rename", navigate::rename),
+    ("textDocument/documentSymbol", navigate::document_symbols),
+    ("workspace/symbol", navigate::workspace_symbols),
+    ("textDocument/completion", complete::completion),
+    ("textDocument/codeAction", act::actions),
+    ("textDocument/formatting", act::formatting),
+    ("textDocument/semanticTokens/full", shade::tokens),
+    ("textDocument/inlayHint", shade::hints),
+    ("textDocument/codeLens", choose::lenses),
+    ("workspace/executeCommand", choose::command),
+    ("lamplight/permutation", choose::permutation),
+];
+
+impl Server {
+    /// A session that has not begun.
+    pub fn new(library: Library) -> Self {
+        Self {
+            documents: BTreeMap::new(),
+            choices: BTreeMap::new(),
+            modules: None,
+            changed: VecDeque::new(),
+            items: None,
+            library,
+            is_shut_down: false,
+            exit: None,
+        }
+    }
+
+    /// Takes a message; gives those to send.
+    pub fn receive(&mut self, message: &Value) -> Vec<Value> {
+        let nothing = Value::Null;
+        let method = message.get("method").and_then(Value::as_str);
+        let parameters = message.get("params").unwrap_or(&nothing);
+        match (method, message.get("id")) {
+            (Some(method), Some(id)) => vec![self.request(method, id, parameters)],
+            (Some(method), None) => {
+                self.notified(method, parameters);
+                Vec::new()
+            }
+            // Answers to what this server asks: it asks nothing.
+            (None, _) if message.get("result").or(message.get("error")).is_some() => Vec::new(),
+            (None, id) => {
+                vec![error(id.unwrap_or(&nothing), wire::PARSE_ERROR, "a message has a method")]
+            }
+        }
+    }
+
+    fn request(&mut self, method: &str, id: &Value, parameters: &Value) -> Value {
+        match method {
+            "initialize" => return answer(id, capabilities()),
+            "shutdown" => {
+                self.is_shut_down = true;
+                return answer(id, Value::Null);
+            }
+            _ => {}
+        }
+        let Some((_, handler)) = REQUESTS.iter().find(|(known, _)| *known == method) else {
+            return error(id, NO_METHOD, &format!("there is no request `{method}`"));
+        };
+        match handler(self, parameters) {
+            Ok(result) => answer(id, result),
+            Err(words) if words.is_empty() => {
+                error(id, WRONG_PARAMETERS, &format!("these are no parameters of `{method}`"))
+            }
+            Err(words) => error(id, FAILED, &words),
+        }
+    }
+
+    fn notified(&mut self, method: &str, parameters: &Value) {
+        let document = parameters.get("textDocument");
+        let uri = document.and_then(|found| found.get("uri")).and_then(Value::as_str);
+        let path = uri.and_then(place::path);
+        match (method, path) {
+            ("exit", _) => self.exit = Some(u8::from(!self.is_shut_down)),
+            ("textDocument/didOpen", Some(path)) => {
+                let text = document.and_then(|found| found.get("text")).and_then(Value::as_str);
+                let version = document.and_then(|found| found.get("version")).cloned();
+                if let Some(text) = text {
+                    self.open(path, text.to_owned(), version.unwrap_or_default());
+                }
+            }
+            ("textDocument/didChange", Some(path)) => {
+                let version = document.and_then(|found| found.get("version")).cloned();
+                self.change(&path, parameters, version.unwrap_or_default());
+            }
+            ("textDocument/didClose", Some(path)) => {
+                self.documents.remove(&path);
+                self.forget(None);
+            }
+            ("textDocument/didSave" | "workspace/didChangeWatchedFiles", _) => self.forget(None),
+            _ => {}
+        }
+    }
+
+    fn open(&mut self, path: PathBuf, text: String, version: Value) {
+        let (root, below) = home(&path);
+        let document = Document { text, version, root, path: below };
+        self.documents.insert(path.clone(), document);
+        self.forget(Some(&path));
+    }
+
+    fn change(&mut self, path: &Path, parameters: &Value, version: Value) {
+        let Some(document) = self.documents.get_mut(path) else { return };
+        let changes = parameters.get("contentChanges").and_then(Value::as_array);
+        for change in changes.into_iter().flatten() {
+            let Some(new) = change.get("text").and_then(Value::as_str) else { continue };
+            let range = change.get("range").map(|range| {
+                let byte = |end: &str| place::byte(&document.text, range.get(end)?);
+                byte("start").zip(byte("end")).filter(|(start, end)| start <= end)
+            });
+            match range {
+                None => new.clone_into(&mut document.text),
+                Some(Some((start, end))) => document.text.replace_range(start..end, new),
+                Some(None) => {}
+            }
+        }
+        document.version = version;
+        self.forget(Some(path));
+    }
+
+    /// Something changed: every open document is to be looked at again, the edited one first.
+    fn forget(&mut self, edited: Option<&Path>) {
+        self.modules = None;
+        let others =
+            self.documents.keys().map(PathBuf::as_path).filter(|path| Some(*path) != edited);
+        self.changed = edited.into_iter().chain(others).map(Path::to_owned).collect();
+    }
+
+    /// Whether every document was looked at since it changed.
+    pub fn is_idle(&self) -> bool {
+        self.changed.is_empty()
+    }
+
+    /// What is wrong with the next document; to be called when nothing else waits.
+    pub fn look(&mut self) -> Vec<Value> {
+        let next = self.changed.pop_front();
+        next.and_then(|path| self.look_at(&path)).into_iter().collect()
+    }
+
+    fn look_at(&self, file: &Path) -> Option<Value> {
+        let document = self.documents.get(file)?;
+        let uri = place::address(file);
+        let found = self.problems(document, &uri).unwrap_or_default();
+        let parameters = json!({ "uri": uri, "version": document.version, "diagnostics": found });
+        Some(notification("textDocument/publishDiagnostics", parameters))
+    }
+
+    fn problems(&self, document: &Document, uri: &str) -> Option<Vec<Value>> {
+        let shown = |sources: &_, found: &[_], note: Option<&str>| {
+            let here = found.iter().filter(|found: &&crate::diagnostic::Diagnostic| {
+                let place = found.labels.first().map(|label| label.span.source);
+                let library = &*self.library;
+                place.and_then(|id| told::address_of(sources, id, library)).as_deref() == Some(uri)
+            });
+            let told = |found| told::diagnostic(sources, found, note, &*self.library);
+            here.filter_map(told).collect::<Vec<_>>()
+        };
+        let mut opened = match package::open(&document.root, &self.texts(&document.root)) {
+            Ok(opened) => opened,
+            Err((sources, problems)) => return Some(shown(&sources, &problems, None)),
+        };
+        if !look::is_module(&document.path) {
+            return Some(shown(&opened.sources, &opened.problems, None));
+        }
+        let (settings, note) =
+            look::settings(&opened, &document.path, &self.choice(&document.root));
+        match look::graph(&mut opened, &document.path) {
+            Ok(graph) => {
+                let found = look::problems(&graph, &settings, &document.path);
+                let mut told = shown(&opened.sources, &found, Some(&note));
+                told.extend(shade::unnecessary(&document.text, &graph, &settings));
+                Some(told)
+            }
+            Err(found) => Some(shown(&opened.sources, &found, None)),
+        }
+    }
+
+    /// The open texts of a package.
+    fn texts(&self, root: &Path) -> Texts {
+        let own = self.documents.values().filter(|document| document.root == root);
+        Arc::new(own.map(|document| (document.path.clone(), document.text.clone())).collect())
+    }
+
+    fn choice(&self, root: &Path) -> Choice {
+        self.choices.get(root).cloned().unwrap_or_default()
+    }
+
+    fn opened(&self, root: &Path) -> Option<Opened> {
+        package::open(root, &self.texts(root)).ok()
+    }
+
+    /// All modules of a package, read again once a document changed.
+    fn modules(&mut self, root: &Path) -> Option<Arc<Modules>> {
+        if let Some((_, known)) = self.modules.as_ref().filter(|(known, _)| known == root) {
+            return Some(Arc::clone(known));
+        }
+        let modules = Arc::new(package::modules(&mut self.opened(root)?)?);
+        self.modules = Some((root.to_owned(), Arc::clone(&modules)));
+        Some(modules)
+    }
+
+    /// The library's items, as `show` tells them.
+    fn items(&mut self) -> Arc<Vec<catalogue::Module>> {
+        Arc::clone(self.items.get_or_insert_with(|| Arc::new(catalogue::library())))
+    }
+
+    /// The document that parameters name, and the byte of their position in it.
+    fn asked(&self, parameters: &Value) -> Result<(&Document, usize), String> {
+        let document = self.document(parameters)?;
+        let position = parameters.get("position").ok_or_else(String::new)?;
+        let byte = place::byte(&document.text, position).ok_or_else(String::new)?;
+        Ok((document, byte))
+    }
+
+    fn document(&self, parameters: &Value) -> Result<&Document, String> {
+        let uri = parameters.get("textDocument").and_then(|found| found.get("uri"));
+        let uri = uri.or_else(|| parameters.get("uri")).and_then(Value::as_str);
+        let path = uri.ok_or_else(String::new).map(place::path)?;
+        path.and_then(|path| self.documents.get(&path))
+            .ok_or_else(|| "the document is not open".to_owned())
+    }
+}
+
+/// The package of a file, which need not be on the disk yet, and its path there.
+fn home(file: &Path) -> (PathBuf, String) {
+    let folder = file.parent().unwrap_or(Path::new("/"));
+    let real = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let name = file.file_name().unwrap_or_default();
+    let root = project::package_at(&real).or_else(|| project::package_above(&real));
+    let root = root.and_then(|root| root.canonicalize().ok());
+    let root = root.filter(|root| real.starts_with(root)).unwrap_or_else(|| real.clone());
+    let below = real.strip_prefix(&root).unwrap_or(Path::new("")).join(name);
+    (root, below.to_string_lossy().replace('\\', "/"))
+}
+
+fn capabilities() -> Value {
+    json!({
+        "capabilities": {
+            "textDocumentSync": { "openClose": true, "change": 2, "save": true },
+            "hoverProvider": true,
+            "signatureHelpProvider": { "triggerCharacters": ["(", ","] },
+            "definitionProvider": true,
+            "referencesProvider": true,
+            "renameProvider": { "prepareProvider": true },
+            "documentSymbolProvider": true,
+            "workspaceSymbolProvider": true,
+            "completionProvider": { "triggerCharacters": [":", ".", "(", "@"] },
+            "codeActionProvider": { "codeActionKinds": ["quickfix"] },
+            "codeLensProvider": {},
+            "documentFormattingProvider": true,
+            "inlayHintProvider": true,
+            "semanticTokensProvider": {
+                "legend": { "tokenTypes": ["comment"], "tokenModifiers": [] },
+                "full": true,
+            },
+            "executeCommandProvider": { "commands": choose::COMMANDS },
+        },
+        "serverInfo": { "name": "lamplight", "version": env!("CARGO_PKG_VERSION") },
+    })
+}

@@ -1,0 +1,205 @@
+//! Where names are declared and used, and giving them others.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::package::{Modules, Symbol};
+use super::place::Lines;
+use super::{Server, told};
+use crate::parse::wesl::{ItemKind, Name, is_keyword};
+use crate::source::Span;
+
+/// Names that a workspace's answer has at most.
+const SYMBOLS: usize = 500;
+
+impl Server {
+    /// What parameters ask about: the modules of its package, the symbol, and its place.
+    pub(super) fn symbol(
+        &mut self,
+        parameters: &Value,
+    ) -> Result<Option<(Arc<Modules>, Symbol, Span)>, String> {
+        let (document, byte) = self.asked(parameters)?;
+        let (root, path) = (document.root.clone(), document.path.clone());
+        let Some(modules) = self.modules(&root) else { return Ok(None) };
+        let found = modules.node(&path).and_then(|node| {
+            let (symbol, range) = modules.symbol(node, byte as u32)?;
+            Some((symbol, modules.graph.nodes[node as usize].module.span(range)))
+        });
+        Ok(found.map(|(symbol, span)| (modules, symbol, span)))
+    }
+
+    fn location(&self, modules: &Modules, span: Span) -> Option<Value> {
+        let uri = told::address_of(&modules.sources, span.source, &*self.library)?;
+        let lines = Lines::new(&modules.sources.get(span.source).text);
+        Some(json!({ "uri": uri, "range": lines.range(span.range()) }))
+    }
+}
+
+/// `textDocument/definition`.
+pub fn definition(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(Value::Null) };
+    let places = modules.declarations(symbol);
+    Ok(places.into_iter().filter_map(|span| server.location(&modules, span)).collect())
+}
+
+/// `textDocument/references`.
+pub fn references(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(json!([])) };
+    let declared = parameters.pointer("/context/includeDeclaration").and_then(Value::as_bool);
+    let declarations = modules.declarations(symbol);
+    let places = modules.references(symbol).into_iter();
+    let places = places.filter(|span| declared != Some(false) || !declarations.contains(span));
+    Ok(places.filter_map(|span| server.location(&modules, span)).collect())
+}
+
+/// Why a symbol keeps its name, if it does.
+fn fixed(modules: &Modules, symbol: Symbol) -> Option<&'static str> {
+    match symbol {
+        Symbol::Items { node, .. } if modules.graph.nodes[node as usize].package != 0 => {
+            Some("it is declared in another package")
+        }
+        Symbol::Items { .. } | Symbol::Local { .. } => None,
+        Symbol::Flag(_) => Some("axes and features are named in more than these files"),
+        Symbol::Constant(_) => Some("constants come from outside"),
+    }
+}
+
+/// `textDocument/prepareRename`.
+pub fn prepare_rename(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let Some((modules, symbol, span)) = server.symbol(parameters)? else {
+        return Ok(Value::Null);
+    };
+    if let Some(reason) = fixed(&modules, symbol) {
+        return Err(reason.to_owned());
+    }
+    let text = &modules.sources.get(span.source).text;
+    Ok(Lines::new(text).range(last_name(text, span).range()))
+}
+
+/// The last name of a path.
+fn last_name(text: &str, span: Span) -> Span {
+    let written = text.get(span.range()).unwrap_or_default();
+    let start = written.rfind("::").map_or(0, |at| at + "::".len());
+    let blank = written[start..].len() - written[start..].trim_start().len();
+    Span { start: span.start + (start + blank) as u32, ..span }
+}
+
+/// `textDocument/rename`: each place that writes the name; those that write an alias stay.
+pub fn rename(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let new = parameters.get("newName").and_then(Value::as_str).ok_or_else(String::new)?.to_owned();
+    let Some((modules, symbol, span)) = server.symbol(parameters)? else {
+        return Err("there is no name here".to_owned());
+    };
+    if let Some(reason) = fixed(&modules, symbol) {
+        return Err(reason.to_owned());
+    }
+    let mut letters = new.chars();
+    let first = letters.next().is_some_and(|c| c == '_' || unicode_ident::is_xid_start(c));
+    if !first || !letters.all(unicode_ident::is_xid_continue) || is_keyword(&new) || new == "_" {
+        return Err(format!("`{new}` is no name in WGSL"));
+    }
+    let declared = modules.declarations(symbol);
+    let old = declared.first().map(|span| modules.sources.text(*span).to_owned());
+    let old = old.ok_or("its declaration is not known")?;
+    if let Some(taken) = taken(&modules, symbol, &new) {
+        return Err(format!("`{new}` is already declared in `{taken}`"));
+    }
+    // The place that was asked about may write an alias, which is a name of its own.
+    if modules.sources.text(last_name(&modules.sources.get(span.source).text, span)) != old {
+        return Err("this is another name for it: rename it in its import".to_owned());
+    }
+    let mut edits: BTreeMap<String, Vec<Value>> = BTreeMap::new();
+    for span in modules.references(symbol) {
+        let text = &modules.sources.get(span.source).text;
+        let name = last_name(text, span);
+        if modules.sources.text(name) != old {
+            continue;
+        }
+        let uri = told::address_of(&modules.sources, span.source, &*server.library);
+        let edit = json!({ "range": Lines::new(text).range(name.range()), "newText": new });
+        edits.entry(uri.ok_or("a place has no address")?).or_default().push(edit);
+    }
+    Ok(json!({ "changes": edits }))
+}
+
+/// The module that has the name already where the symbol is declared or used.
+fn taken(modules: &Modules, symbol: Symbol, new: &str) -> Option<String> {
+    let name: Name = modules.graph.names.find(new)?;
+    let places = modules.references(symbol);
+    let nodes = modules.graph.nodes.iter();
+    let mut used = nodes.filter(|node| places.iter().any(|span| span.source == node.module.source));
+    let has = |node: &&crate::resolve::wesl::Node| {
+        node.sets.contains_key(&name)
+            || node.aliases.contains_key(&name)
+            || node.module.items.iter().any(|item| item.locals.contains(&name))
+    };
+    used.find(has).map(|node| node.label.clone())
+}
+
+/// The protocol's number of what an item is.
+pub(super) fn kind(kind: ItemKind) -> u32 {
+    match kind {
+        ItemKind::Function => 12,
+        ItemKind::Struct => 23,
+        ItemKind::Const | ItemKind::Override => 14,
+        ItemKind::Var => 13,
+        ItemKind::Alias => 26,
+        ItemKind::ConstAssert => 24,
+    }
+}
+
+/// `textDocument/documentSymbol`.
+pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let document = server.document(parameters)?;
+    let (root, path) = (document.root.clone(), document.path.clone());
+    let Some(modules) = server.modules(&root) else { return Ok(json!([])) };
+    let Some(node) = modules.node(&path) else { return Ok(json!([])) };
+    let module = &modules.graph.nodes[node as usize].module;
+    let lines = Lines::new(&module.text);
+    let range =
+        |range: &std::ops::Range<u32>| lines.range(range.start as usize..range.end as usize);
+    let symbols = module.items.iter().map(|item| {
+        let name = match item.kind {
+            ItemKind::ConstAssert => "const_assert",
+            _ => modules.graph.names.text(item.name),
+        };
+        json!({
+            "name": name,
+            "kind": kind(item.kind),
+            "range": range(&item.range),
+            "selectionRange": range(&item.name_range),
+        })
+    });
+    Ok(symbols.collect())
+}
+
+/// `workspace/symbol`: of the packages of all open documents, and of the library.
+pub fn workspace_symbols(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let query = parameters.get("query").and_then(Value::as_str).unwrap_or_default().to_lowercase();
+    let mut roots: Vec<_> = server.documents.values().map(|found| found.root.clone()).collect();
+    roots.dedup();
+    let mut found = Vec::new();
+    for root in roots {
+        let Some(modules) = server.modules(&root) else { continue };
+        for node in &modules.graph.nodes {
+            for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {
+                let name = modules.graph.names.text(item.name);
+                let span = node.module.span(item.name_range.clone());
+                if found.len() < SYMBOLS && name.to_lowercase().contains(&query) {
+                    let place = server.location(&modules, span);
+                    found.extend(place.map(|location| {
+                        json!({
+                            "name": name,
+                            "kind": kind(item.kind),
+                            "containerName": node.label,
+                            "location": location,
+                        })
+                    }));
+                }
+            }
+        }
+    }
+    Ok(Value::Array(found))
+}

@@ -1,0 +1,249 @@
+//! All modules of a package as one graph, and what stands at a place of it.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::diagnostic::Diagnostics;
+use crate::parse::wesl::{Event, Expression, Item, Name, Operand};
+use crate::permute::Manifest;
+use crate::permute::manifest::Features;
+use crate::project;
+use crate::resolve::Packages;
+use crate::resolve::wesl::{Graph, Node, Target, load_all};
+use crate::source::{Files, ReadError, SourceSet, Span};
+
+/// Texts of open documents by their path below a package's root.
+pub type Texts = Arc<BTreeMap<String, String>>;
+
+/// Files of a package with those in the place of some that an editor has open.
+struct Overlay {
+    below: Box<dyn Files>,
+    open: Texts,
+}
+
+impl Files for Overlay {
+    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
+        match self.open.get(path) {
+            Some(text) => Ok(Some(text.clone())),
+            None => self.below.read(path),
+        }
+    }
+
+    fn list(&self, extensions: &[&str]) -> Vec<String> {
+        let mut found = self.below.list(extensions);
+        let is_new = |path: &&String| {
+            let ending = path.rsplit_once('.').map_or("", |(_, ending)| ending);
+            extensions.contains(&ending) && !found.contains(path)
+        };
+        let new: Vec<String> = self.open.keys().filter(is_new).cloned().collect();
+        found.extend(new);
+        found.sort();
+        found
+    }
+
+    fn display(&self, path: &str) -> String {
+        self.below.display(path)
+    }
+
+    fn on_disk(&self, path: &str) -> bool {
+        self.below.on_disk(path)
+    }
+}
+
+/// A package as an editor has it: its manifest, and its files with the open ones in their place.
+pub struct Opened {
+    pub root: PathBuf,
+    pub sources: SourceSet,
+    pub packages: Packages,
+    pub manifest: Option<Manifest>,
+    pub features: Features,
+    /// What is wrong with the files that declare it.
+    pub problems: Diagnostics,
+}
+
+/// Opens the package of a root folder. A manifest with errors is as good as none, and told.
+pub fn open(root: &Path, texts: &Texts) -> Result<Opened, (SourceSet, Diagnostics)> {
+    let mut sources = SourceSet::default();
+    let mut packages = match project::packages(root, &mut sources) {
+        Ok(packages) => packages,
+        Err(problems) => return Err((sources, problems)),
+    };
+    let below = std::mem::replace(&mut packages.root.files, Box::new(crate::source::Embedded));
+    packages.root.files = Box::new(Overlay { below, open: Arc::clone(texts) });
+    let (manifest, mut problems) = match project::manifest(root, &mut sources) {
+        Ok(manifest) => (manifest, Vec::new()),
+        Err(problems) => (None, problems),
+    };
+    let features = match &manifest {
+        Some(manifest) => manifest.features.clone(),
+        None => project::features(root, &mut sources).unwrap_or_else(|more| {
+            problems.extend(more);
+            Features::default()
+        }),
+    };
+    Ok(Opened { root: root.to_owned(), sources, packages, manifest, features, problems })
+}
+
+/// What a name stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Symbol {
+    /// The declarations of a name in a module.
+    Items { node: u32, name: Name },
+    /// A parameter or a local of a module, by the first byte of its declaration.
+    Local { node: u32, declared: u32 },
+    /// A feature or an axis, in a condition.
+    Flag(Name),
+    /// `constants::NAME`.
+    Constant(u32),
+}
+
+/// Every module of the package, and those of others that they reach.
+pub struct Modules {
+    pub graph: Graph,
+    pub sources: SourceSet,
+}
+
+/// Reads all modules of the opened package.
+pub fn modules(opened: &mut Opened) -> Option<Modules> {
+    let paths = opened.packages.root.files.list(&["wesl", "wgsl"]);
+    let graph = load_all(&mut opened.sources, &opened.packages, &paths)?;
+    Some(Modules { graph, sources: opened.sources.clone() })
+}
+
+impl Modules {
+    /// The module of a file of the package itself.
+    pub fn node(&self, path: &str) -> Option<u32> {
+        let stem = path.rsplit_once('.').map_or(path, |(stem, _)| stem);
+        let is_it = |node: &Node| node.package == 0 && node.path.join("/") == stem;
+        self.graph.nodes.iter().position(is_it).map(|index| index as u32)
+    }
+
+    /// What stands at a byte of a module, with its place there.
+    pub fn symbol(&self, node: u32, byte: u32) -> Option<(Symbol, Range<u32>)> {
+        let module = &self.graph.nodes[node as usize].module;
+        let has = |range: &Range<u32>| range.start <= byte && byte <= range.end;
+        let flag = module.expressions.iter().flat_map(flags).find(|(_, range)| has(range));
+        if let Some((name, range)) = flag {
+            return Some((Symbol::Flag(name), range));
+        }
+        let local = module.local_uses.iter().find(|found| has(&(found.start..found.end)));
+        if let Some(found) = local {
+            let symbol = Symbol::Local { node, declared: found.declared };
+            return Some((symbol, found.start..found.end));
+        }
+        self.places_in(node).find(|(_, range)| has(range))
+    }
+
+    /// Items, constants and what imports bring, at each place of a module that names them.
+    pub fn places_in(&self, node: u32) -> impl Iterator<Item = (Symbol, Range<u32>)> {
+        let here = &self.graph.nodes[node as usize];
+        let uses = here.module.items.iter().flat_map(move |item| uses(here, node, item));
+        let imports = here.module.imports.iter().zip(&here.imports);
+        let imports = imports.flat_map(|(import, targets)| {
+            let symbol = targets.iter().copied().find_map(symbol);
+            let places = [import.path.range.clone(), import.alias_range.clone()];
+            let distinct = usize::from(places[0].end < places[1].start) + 1;
+            symbol.into_iter().flat_map(move |symbol| {
+                places.clone().into_iter().take(distinct).map(move |place| (symbol, place))
+            })
+        });
+        uses.chain(imports)
+    }
+
+    /// Where a symbol is declared.
+    pub fn declarations(&self, symbol: Symbol) -> Vec<Span> {
+        match symbol {
+            Symbol::Items { node, name } => {
+                let here = &self.graph.nodes[node as usize];
+                let items = here.sets.get(&name).into_iter().flatten();
+                let range = |index: &u32| here.module.items[*index as usize].name_range.clone();
+                items.map(|index| here.module.span(range(index))).collect()
+            }
+            Symbol::Local { node, declared } => {
+                let module = &self.graph.nodes[node as usize].module;
+                let place = module.local_uses.iter().find(|found| found.start == declared);
+                place.map(|found| module.span(found.start..found.end)).into_iter().collect()
+            }
+            Symbol::Flag(_) | Symbol::Constant(_) => Vec::new(),
+        }
+    }
+
+    /// Every place that names a symbol, its declarations included, by file and place.
+    pub fn references(&self, symbol: Symbol) -> Vec<Span> {
+        let mut found = Vec::new();
+        for (index, node) in self.graph.nodes.iter().enumerate() {
+            let module = &node.module;
+            match symbol {
+                Symbol::Local { node, declared } if node as usize == index => {
+                    let uses = module.local_uses.iter().filter(|found| found.declared == declared);
+                    found.extend(uses.map(|found| module.span(found.start..found.end)));
+                }
+                Symbol::Local { .. } => {}
+                Symbol::Flag(name) => {
+                    let flags = module.expressions.iter().flat_map(flags);
+                    let flags = flags.filter(|(flag, _)| *flag == name);
+                    found.extend(flags.map(|(_, range)| module.span(range)));
+                }
+                _ => {
+                    let places = self.places_in(index as u32).filter(|(known, _)| *known == symbol);
+                    found.extend(places.map(|(_, range)| module.span(range)));
+                }
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// The item of a symbol that is declared first.
+    pub fn item(&self, symbol: Symbol) -> Option<(&Node, &Item)> {
+        let Symbol::Items { node, name } = symbol else { return None };
+        let here = &self.graph.nodes[node as usize];
+        let index = here.sets.get(&name)?.first()?;
+        Some((here, &here.module.items[*index as usize]))
+    }
+}
+
+/// Names of a condition with their places.
+fn flags(expression: &Expression) -> Vec<(Name, Range<u32>)> {
+    let named = |operand: &Operand| match operand {
+        Operand::Name(name, range) => Some((*name, range.clone())),
+        Operand::Integer(..) => None,
+    };
+    match expression {
+        Expression::Flag(name, range) => vec![(*name, range.clone())],
+        Expression::Compare { left, right, .. } => {
+            named(left).into_iter().chain(named(right)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn symbol(target: Target) -> Option<Symbol> {
+    match target {
+        Target::Items { node, name } => Some(Symbol::Items { node, name }),
+        Target::Constant(index) => Some(Symbol::Constant(index)),
+        Target::Module | Target::Failed(_) => None,
+    }
+}
+
+/// What an item declares and uses.
+fn uses<'n>(
+    here: &'n Node,
+    node: u32,
+    item: &'n Item,
+) -> impl Iterator<Item = (Symbol, Range<u32>)> + 'n {
+    item.events.iter().filter_map(move |event| match *event {
+        Event::Definition { start, end } => {
+            Some((Symbol::Items { node, name: item.name }, start..end))
+        }
+        Event::Use { reference, start, end, .. } => {
+            let candidates = here.bindings.get(reference as usize)?;
+            let found = candidates.iter().find_map(|candidate| symbol(candidate.target))?;
+            Some((found, start..end))
+        }
+        Event::Cut { .. } | Event::Node { .. } => None,
+    })
+}

@@ -1,0 +1,57 @@
+//! Diagnostics as editors show them.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::place::{Lines, address};
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::source::{SourceId, SourceSet};
+
+/// The address of a text: of a file on the disk, or of one that the library's copy has.
+pub fn address_of(
+    sources: &SourceSet,
+    id: SourceId,
+    library: &dyn Fn(&str) -> Option<PathBuf>,
+) -> Option<String> {
+    let source = sources.get(id);
+    if !source.on_disk {
+        return Some(address(&library(source.path.strip_prefix("lamplight/")?)?));
+    }
+    let path = Path::new(&source.path);
+    Some(address(&path.canonicalize().unwrap_or_else(|_| path.to_owned())))
+}
+
+/// One diagnostic at its first place.
+pub fn diagnostic(
+    sources: &SourceSet,
+    found: &Diagnostic,
+    note: Option<&str>,
+    library: &dyn Fn(&str) -> Option<PathBuf>,
+) -> Option<Value> {
+    let (first, others) = found.labels.split_first()?;
+    let range =
+        |span: crate::source::Span| Lines::new(&sources.get(span.source).text).range(span.range());
+    let mut message = found.message.clone();
+    if !first.message.is_empty() {
+        message += &format!("\n{}", first.message);
+    }
+    for line in found.notes.iter().map(String::as_str).chain(note) {
+        message += &format!("\n{line}");
+    }
+    let related = others.iter().filter_map(|label| {
+        let uri = address_of(sources, label.span.source, library)?;
+        let location = json!({ "uri": uri, "range": range(label.span) });
+        Some(json!({ "location": location, "message": label.message }))
+    });
+    let unused = ["unused-import", "shadowed-import"].contains(&found.code.name);
+    Some(json!({
+        "range": range(first.span),
+        "severity": if found.severity == Severity::Error { 1 } else { 2 },
+        "code": found.code.name,
+        "source": "lamplight",
+        "message": message,
+        "relatedInformation": related.collect::<Vec<_>>(),
+        "tags": if unused { vec![1] } else { Vec::new() },
+    }))
+}

@@ -1,0 +1,72 @@
+//! Texts so large that naga could exhaust the process over them are tried in another one first.
+
+use serde::{Deserialize, Serialize};
+
+use super::limits;
+use crate::bundle::{Language, Stage};
+use crate::compose::{Composed, lean};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::rehearse;
+
+/// The stage of [`rehearse::rehearse`] that is naga's.
+pub const STAGE: &str = "naga";
+
+/// What the other process does: it validates a text, and writes it where that is asked for.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Job {
+    /// Language of the text.
+    pub language: Language,
+    /// Stage of a text in GLSL.
+    pub stage: Option<Stage>,
+    /// The text, without comments and layout.
+    pub text: String,
+    /// What is written of it.
+    pub outputs: Option<Outputs>,
+}
+
+/// An entry point, the targets that it is written for, and the clip space, by their names.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Outputs {
+    /// Name of the entry point.
+    pub entry: String,
+    /// Names of the targets.
+    pub targets: Vec<String>,
+    /// Name of the clip space.
+    pub clip: String,
+}
+
+/// Tries a text in another process if it is beyond its calm part of any limit. Places in errors are
+/// those of `placed`, of which the text may be the lean form.
+///
+/// # Errors
+/// `limit-exceeded` where it is beyond a limit, `naga-exhausted` where the other process died.
+pub fn rehearse(
+    composed: &Composed,
+    placed: &Composed,
+    outputs: impl FnOnce() -> Option<Outputs>,
+) -> Result<(), Diagnostic> {
+    if limits::check(composed)?.is_none() {
+        return Ok(());
+    }
+    // A text and its lean form are tried once.
+    let text = lean(composed).text;
+    let (language, stage) = (composed.language, composed.stage);
+    let job = Job { language, stage, text, outputs: outputs() };
+    let Ok(job) = serde_json::to_vec(&job) else { return Ok(()) };
+    rehearse::rehearse(STAGE, &job).map_err(|how| exhausted(placed, &how))
+}
+
+fn exhausted(composed: &Composed, how: &rehearse::Exhausted) -> Diagnostic {
+    let error = Diagnostic::error(codes::NAGA_EXHAUSTED, format!("naga {how} over this shader"));
+    let error = match limits::check(composed) {
+        Ok(Some(large)) => {
+            let words = format!("more than {} {}", large.limit, large.what);
+            limits::place(composed, error, &large, &words)
+        }
+        _ => error,
+    };
+    error.note(
+        "help: make smaller what is marked, or divide the shader: naga's time and memory may grow \
+         with the square of it, or faster",
+    )
+}

@@ -1,0 +1,78 @@
+//! Shaders that are within every limit and still end naga's process, or take it too long: each is
+//! an error of its own, and nothing else is lost.
+
+use std::fs;
+
+use libtest_mimic::Trial;
+
+use super::{Outcome, fails, run, run_within};
+
+type Case = (&'static str, fn() -> Outcome);
+
+const CALM: &str = "@fragment fn calm() -> @location(0) vec4f { return vec4f(); }\n";
+
+/// Address space of a run in which naga finds too little for an array of many values, in KiB.
+const LITTLE_KIB: u64 = 700 << 10;
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [Case; 3] = [
+        ("naga_takes_too_long", too_long),
+        ("naga_takes_too_much_memory", too_much),
+        ("large_shaders_are_compiled", large),
+    ];
+    let trial = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
+    cases.into_iter().map(trial).collect()
+}
+
+/// Functions of thousands of statements, each with an index that naga's writers check.
+fn indices(functions: usize, statements: usize) -> String {
+    let body: String = (0..statements).map(|i| format!("s += m[i][{}];\n", i % 4)).collect();
+    let function = |f| format!("fn g{f}(i: i32) -> f32 {{ var s = 0.0;\n{body}return s; }}\n");
+    let calls: Vec<String> = (0..functions).map(|f| format!("g{f}(i)")).collect();
+    let all: String = (0..functions).map(function).collect();
+    format!(
+        "var<private> m: mat4x4f;\n{all}\
+         @fragment fn large(@location(0) @interpolate(flat) i: i32) -> @location(0) vec4f {{ \
+         return vec4f({}); }}\n",
+        calls.join(" + ")
+    )
+}
+
+/// An array of so many values.
+fn values(count: usize) -> String {
+    format!(
+        "@fragment fn large(@location(0) @interpolate(flat) i: i32) -> @location(0) vec4f {{\n\
+         var c = array<f32, {count}>({});\nreturn vec4f(c[i]); }}\n",
+        vec!["1"; count].join(",")
+    )
+}
+
+/// The error has a place in its file, and the other file is compiled.
+fn refused(large: &str, kib: u64, words: &str) -> Outcome {
+    let folder = tempfile::tempdir()?;
+    fs::write(folder.path().join("large.wgsl"), large)?;
+    fs::write(folder.path().join("calm.wgsl"), CALM)?;
+    let arguments = ["compile", "large.wgsl", "calm.wgsl", "--target", "hlsl"];
+    let output = run_within(kib, &folder, &[&arguments[..], &["--diagnostics", "short"]].concat())?;
+    fails(&output, 1, "error[naga-exhausted]")?;
+    fails(&output, 1, words)?;
+    fails(&output, 1, "large.wgsl:")?;
+    let alone = run_within(kib, &folder, &["compile", "calm.wgsl", "--target", "hlsl"])?;
+    fails(&alone, 0, "SV_Target0")
+}
+
+fn too_long() -> Outcome {
+    refused(&indices(9, 8000), 4 << 20, "naga takes more than 5 seconds over this shader")
+}
+
+fn too_much() -> Outcome {
+    refused(&values(500_000), LITTLE_KIB, "naga takes more memory than it may have")
+}
+
+/// What is beyond the calm part of a limit and within reason is compiled, as `gen` does too.
+fn large() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    fs::write(folder.path().join("large.wgsl"), indices(1, 1100))?;
+    let output = run(&folder, &["compile", "large.wgsl", "--target", "hlsl"])?;
+    fails(&output, 0, "SV_Target0")
+}

@@ -1,0 +1,519 @@
+//! The language server over its protocol, as a process on two pipes; and Neovim as a real client.
+
+use std::fs;
+use std::io::{BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use lamplight::lsp::wire::{self, Incoming};
+use lamplight::source::{Embedded, Files as _};
+use libtest_mimic::{Failed, Trial};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+type Outcome = Result<(), Failed>;
+
+type Run = fn() -> Outcome;
+
+const TRIALS: &[(&str, Run)] = &[
+    ("diagnostics", diagnostics),
+    ("hover", hover),
+    ("definition", definition),
+    ("references_and_rename", references_and_rename),
+    ("completion", completion),
+    ("actions", actions),
+    ("inactive", inactive),
+    ("permutation", permutation),
+    ("formatting", formatting),
+    ("symbols_and_signature", symbols_and_signature),
+    ("survives", survives),
+    ("neovim", neovim),
+];
+
+pub fn trials() -> Vec<Trial> {
+    let trial = |(name, run): &(&str, Run)| Trial::test(format!("lsp::{name}"), *run);
+    TRIALS.iter().map(trial).collect()
+}
+
+const MANIFEST: &str = r#"[program.lamp]
+wesl = "main.wesl"
+
+[program.lamp.axis]
+fog = { values = [false, true], doc = "Far things fade." }
+cone = { values = ["hard", "soft"] }
+
+[features]
+TINT = { doc = "A warm colour." }
+"#;
+
+const UTIL: &str = "/// Half of it.\nfn half(x: f32) -> f32 {\n    return x * 0.5;\n}\n";
+
+const MAIN: &str = "import package::util::half;
+import lamplight::brdf::diffuse::lambert;
+
+@if(fog)
+fn fade(x: f32) -> f32 {
+    return x;
+}
+
+@fragment
+fn fs_main(@location(0) n: vec3f) -> @location(0) vec4f {
+    let up = vec3f(0.0, 1.0, 0.0);
+    var sum = lambert(n, up);
+    @if(fog) {
+        sum = fade(sum);
+    }
+    @if(TINT) sum = half(sum);
+    @if(cone == soft) sum = half(sum);
+    return vec4f(sum);
+}
+";
+
+/// A package on the disk and a server that has one of its files open.
+struct Session {
+    folder: TempDir,
+    child: Child,
+    to: Option<ChildStdin>,
+    from: BufReader<ChildStdout>,
+    next: u64,
+}
+
+impl Session {
+    fn new(main: &str) -> Result<Self, Failed> {
+        let folder = tempfile::tempdir()?;
+        fs::write(folder.path().join("lamplight.toml"), MANIFEST)?;
+        fs::write(folder.path().join("util.wesl"), UTIL)?;
+        fs::write(folder.path().join("main.wesl"), main)?;
+        let mut child = Command::new(env!("CARGO_BIN_EXE_lamplight"))
+            .arg("lsp")
+            .env("XDG_CACHE_HOME", folder.path().join("cache"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()?;
+        let to = child.stdin.take();
+        let from = BufReader::new(child.stdout.take().ok_or("no output")?);
+        let mut session = Self { folder, child, to, from, next: 0 };
+        session.ask("initialize", json!({ "capabilities": {} }))?;
+        session.tell("initialized", json!({}))?;
+        session.open("main.wesl", main)?;
+        Ok(session)
+    }
+
+    fn uri(&self, name: &str) -> Result<String, Failed> {
+        Ok(format!("file://{}", self.folder.path().canonicalize()?.join(name).display()))
+    }
+
+    fn send(&mut self, message: &Value) -> Outcome {
+        Ok(wire::write(self.to.as_mut().ok_or("closed")?, message)?)
+    }
+
+    fn tell(&mut self, method: &str, parameters: Value) -> Outcome {
+        self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": parameters }))
+    }
+
+    fn open(&mut self, name: &str, text: &str) -> Outcome {
+        let uri = self.uri(name)?;
+        let document = json!({ "uri": uri, "languageId": "wesl", "version": 1, "text": text });
+        self.tell("textDocument/didOpen", json!({ "textDocument": document }))
+    }
+
+    fn receive(&mut self) -> Result<Value, Failed> {
+        match wire::read(&mut self.from)? {
+            Incoming::Message(message) => Ok(message),
+            other => Err(format!("{other:?}").into()),
+        }
+    }
+
+    /// The answer to a request: its result, or what it says is wrong.
+    fn answer(&mut self, method: &str, parameters: Value) -> Result<Result<Value, Value>, Failed> {
+        self.next += 1;
+        let id = self.next;
+        let message = json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": parameters });
+        self.send(&message)?;
+        loop {
+            let found = self.receive()?;
+            if found.get("id") == Some(&json!(id)) {
+                let error = found.get("error").cloned();
+                return Ok(error.map_or(Ok(found["result"].clone()), Err));
+            }
+        }
+    }
+
+    fn ask(&mut self, method: &str, parameters: Value) -> Result<Value, Failed> {
+        self.answer(method, parameters)?.map_err(|error| error.to_string().into())
+    }
+
+    /// Asks about the first place of some words in a text; `more` joins the parameters.
+    fn at(&mut self, method: &str, text: &str, words: &str, more: Value) -> Result<Value, Failed> {
+        let parameters = self.place(text, words, more)?;
+        self.ask(method, parameters)
+    }
+
+    fn place(&self, text: &str, words: &str, more: Value) -> Result<Value, Failed> {
+        let byte = text.find(words).ok_or_else(|| format!("no `{words}`"))?;
+        let line = text[..byte].matches('\n').count();
+        let start = text[..byte].rfind('\n').map_or(0, |end| end + 1);
+        let mut parameters = json!({
+            "textDocument": { "uri": self.uri("main.wesl")? },
+            "position": { "line": line, "character": text[start..byte].encode_utf16().count() },
+        });
+        if let (Some(parameters), Some(more)) = (parameters.as_object_mut(), more.as_object()) {
+            parameters.extend(more.clone());
+        }
+        Ok(parameters)
+    }
+
+    /// What is told of a file, once nothing else waits.
+    fn told(&mut self, name: &str) -> Result<Vec<Value>, Failed> {
+        let uri = self.uri(name)?;
+        loop {
+            let message = self.receive()?;
+            if message["method"] == "textDocument/publishDiagnostics"
+                && message["params"]["uri"] == json!(uri)
+            {
+                return Ok(message["params"]["diagnostics"]
+                    .as_array()
+                    .cloned()
+                    .unwrap_or_default());
+            }
+        }
+    }
+
+    fn change(&mut self, text: &str) -> Outcome {
+        let uri = self.uri("main.wesl")?;
+        let parameters = json!({
+            "textDocument": { "uri": uri, "version": 2 },
+            "contentChanges": [{ "text": text }],
+        });
+        self.tell("textDocument/didChange", parameters)
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.to = None;
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn expect(is_so: bool, found: &impl std::fmt::Debug) -> Outcome {
+    if is_so { Ok(()) } else { Err(format!("{found:#?}").into()) }
+}
+
+fn codes(found: &[Value]) -> Vec<&str> {
+    found.iter().filter_map(|found| found["code"].as_str()).collect()
+}
+
+/// Syntax, names and types, for the permutation that is shown, at the author's places.
+fn diagnostics() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    let first = session.told("main.wesl")?;
+    expect(codes(&first).iter().all(|code| *code == "inactive"), &first)?;
+    session.change(&MAIN.replace("vec4f(sum)", "vec4f(summ)"))?;
+    let unknown = session.told("main.wesl")?;
+    let error = unknown.iter().find(|found| found["severity"] == 1).ok_or("no error")?;
+    expect(error["range"]["start"] == json!({ "line": 17, "character": 17 }), error)?;
+    expect(
+        error["message"].as_str().is_some_and(|text| text.contains("permutation `default`")),
+        error,
+    )?;
+    session.change(&MAIN.replace("let up =", "let up"))?;
+    session.told("main.wesl")?;
+    session.change(&MAIN.replace("fs_main(", "fs_main"))?;
+    let syntax = session.told("main.wesl")?;
+    expect(codes(&syntax).contains(&"unbalanced-bracket"), &syntax)?;
+    session.change(&format!("import package::util::nothing;\n{MAIN}"))?;
+    let missing = session.told("main.wesl")?;
+    expect(codes(&missing).contains(&"missing-item"), &missing)
+}
+
+fn hover() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    let text = |found: &Value| found["contents"]["value"].as_str().unwrap_or_default().to_owned();
+    let library = text(&session.at("textDocument/hover", MAIN, "lambert(n", json!({}))?);
+    expect(library.contains("fn lambert(") && library.contains("**Error model**"), &library)?;
+    expect(library.contains("**Source**"), &library)?;
+    let own = text(&session.at("textDocument/hover", MAIN, "half(sum)", json!({}))?);
+    expect(own.contains("Half of it.") && own.contains("fn half(x: f32) -> f32"), &own)?;
+    let axis = text(&session.at("textDocument/hover", MAIN, "cone ==", json!({}))?);
+    expect(axis.contains("`hard`, `soft`") && axis.contains("4 permutations"), &axis)?;
+    let feature = text(&session.at("textDocument/hover", MAIN, "TINT)", json!({}))?);
+    expect(feature.contains("A warm colour."), &feature)?;
+    let local = text(&session.at("textDocument/hover", MAIN, "up);", json!({}))?);
+    expect(local.contains("let up = vec3f"), &local)
+}
+
+fn definition() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    let own = session.at("textDocument/definition", MAIN, "half(sum)", json!({}))?;
+    expect(own[0]["uri"] == json!(session.uri("util.wesl")?), &own)?;
+    expect(own[0]["range"]["start"] == json!({ "line": 1, "character": 3 }), &own)?;
+    let local = session.at("textDocument/definition", MAIN, "up);", json!({}))?;
+    expect(local[0]["range"]["start"] == json!({ "line": 10, "character": 8 }), &local)?;
+    // A module of the library is a file that the editor can open.
+    let library = session.at("textDocument/definition", MAIN, "lambert(n", json!({}))?;
+    let uri = library[0]["uri"].as_str().unwrap_or_default();
+    let line = library[0]["range"]["start"]["line"].as_u64().unwrap_or(0) as usize;
+    let text = fs::read_to_string(uri.trim_start_matches("file://"))?;
+    expect(text.lines().nth(line).is_some_and(|line| line.starts_with("fn lambert")), &library)
+}
+
+fn references_and_rename() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    let context = json!({ "context": { "includeDeclaration": true } });
+    let found = session.at("textDocument/references", MAIN, "half(sum)", context)?;
+    // The declaration, the import, two calls.
+    expect(found.as_array().map(Vec::len) == Some(4), &found)?;
+    let renamed =
+        session.at("textDocument/rename", MAIN, "half(sum)", json!({ "newName": "halved" }))?;
+    let changes = renamed["changes"].as_object().ok_or("no changes")?;
+    let count = |name: &str| -> Result<usize, Failed> {
+        Ok(changes.get(&session.uri(name)?).and_then(Value::as_array).map_or(0, Vec::len))
+    };
+    expect(count("main.wesl")? == 3 && count("util.wesl")? == 1, &renamed)?;
+    let local =
+        session.at("textDocument/rename", MAIN, "sum = lambert", json!({ "newName": "lit" }))?;
+    let edits = local["changes"].as_object().and_then(|changes| changes.values().next().cloned());
+    expect(edits.as_ref().and_then(Value::as_array).map(Vec::len) == Some(8), &local)?;
+    for (words, new) in [("half(sum)", "fn"), ("half(sum)", "fade"), ("lambert(n", "other")] {
+        let parameters = session.place(MAIN, words, json!({ "newName": new }))?;
+        let refused = session.answer("textDocument/rename", parameters)?;
+        expect(refused.is_err(), &(words, new, refused))?;
+    }
+    Ok(())
+}
+
+fn labels(found: &Value) -> Vec<&str> {
+    found.as_array().into_iter().flatten().filter_map(|item| item["label"].as_str()).collect()
+}
+
+fn completion() -> Outcome {
+    let complete = |written: &str| -> Result<Value, Failed> {
+        let text = MAIN.replace("    return vec4f(sum);", &format!("    {written}¤"));
+        let plain = text.replace('¤', "");
+        let mut session = Session::new(&plain)?;
+        let parameters = session.place(&text, "¤", json!({}))?;
+        session.ask("textDocument/completion", parameters)
+    };
+    let path = complete("lamplight::brdf::")?;
+    expect(labels(&path).contains(&"fresnel"), &labels(&path))?;
+    let items = complete("lamplight::brdf::fresnel::")?;
+    expect(labels(&items).contains(&"schlick") || labels(&items).len() > 1, &labels(&items))?;
+    let own = complete("package::util::ha")?;
+    expect(labels(&own) == ["half"], &labels(&own))?;
+    let axes = complete("@if(")?;
+    expect(["fog", "cone", "TINT"].iter().all(|name| labels(&axes).contains(name)), &axes)?;
+    let values = complete("@if(cone == ")?;
+    expect(labels(&values) == ["hard", "soft"], &values)?;
+    let names = complete("blinn_ph")?;
+    let entry = names.as_array().into_iter().flatten().find(|item| item["label"] == "blinn_phong");
+    let edit = entry.map(|entry| entry["additionalTextEdits"][0].clone()).unwrap_or_default();
+    let import = "import lamplight::brdf::specular::blinn_phong;\n";
+    expect(edit["newText"] == import && edit["range"]["start"]["line"] == 2, &names)?;
+    let locals = complete("u")?;
+    expect(labels(&locals).contains(&"up"), &labels(&locals))
+}
+
+fn actions() -> Outcome {
+    let calls = "    @if(MISTY) sum = 0.0;\n    return vec4f(phong(n, n, n, 2.0));";
+    let text = MAIN
+        .replace("    return vec4f(sum);", calls)
+        .replace("diffuse::lambert;", "diffuse::{lambert, oren_nayar};");
+    let mut session = Session::new(&text)?;
+    let told = session.told("main.wesl")?;
+    let parameters = json!({
+        "textDocument": { "uri": session.uri("main.wesl")? },
+        "range": { "start": { "line": 0, "character": 0 }, "end": { "line": 0, "character": 0 } },
+        "context": { "diagnostics": told },
+    });
+    let found = session.ask("textDocument/codeAction", parameters)?;
+    let edit = |title: &str| {
+        let found = found.as_array()?.iter().find(|found| found["title"] == title)?;
+        Some(found["edit"]["changes"].as_object()?.values().next()?[0]["newText"].clone())
+    };
+    expect(edit("Declare the feature `MISTY`") == Some(json!("MISTY = false\n")), &found)?;
+    let import = "import lamplight::brdf::specular::phong;\n";
+    let title = "Import `lamplight::brdf::specular::phong`";
+    expect(edit(title) == Some(json!(import)), &(&found, &told))?;
+    // An import that nothing uses, once everything else is right.
+    session.change(&MAIN.replace("diffuse::lambert;", "diffuse::{lambert, oren_nayar};"))?;
+    let told = session.told("main.wesl")?;
+    let parameters = json!({
+        "textDocument": { "uri": session.uri("main.wesl")? },
+        "context": { "diagnostics": told },
+    });
+    let found = session.ask("textDocument/codeAction", parameters)?;
+    let edit = &found[0]["edit"]["changes"][session.uri("main.wesl")?][0];
+    expect(found[0]["title"] == "Remove the import of `oren_nayar`", &(&found, &told))?;
+    let range = json!({
+        "start": { "line": 1, "character": 41 },
+        "end": { "line": 1, "character": 53 },
+    });
+    expect(edit["range"] == range && edit["newText"] == "", edit)
+}
+
+fn inactive() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    let told = session.told("main.wesl")?;
+    let lines: Vec<u64> = told
+        .iter()
+        .filter(|found| found["code"] == "inactive" && found["tags"] == json!([1]))
+        .filter_map(|found| found["range"]["start"]["line"].as_u64())
+        .collect();
+    expect(lines == [3, 12, 15, 16], &told)?;
+    let document = json!({ "textDocument": { "uri": session.uri("main.wesl")? } });
+    let tokens = session.ask("textDocument/semanticTokens/full", document.clone())?;
+    // Four lines of a function, three of a block, two statements, five numbers each.
+    expect(tokens["data"].as_array().map(Vec::len) == Some(9 * 5), &tokens)?;
+    let hints = session.ask("textDocument/inlayHint", document)?;
+    expect(hints.as_array().map(Vec::len) == Some(4), &hints)
+}
+
+fn permutation() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    session.told("main.wesl")?;
+    let uri = session.uri("main.wesl")?;
+    let parameters = json!({ "uri": uri, "set": "fog=true,cone=soft" });
+    let chosen = session.ask("lamplight/permutation", parameters)?;
+    expect(
+        chosen["values"]["fog"] == "true" && chosen["axes"]["cone"]["values"][1] == "soft",
+        &chosen,
+    )?;
+    let told = session.told("main.wesl")?;
+    expect(told.iter().filter(|found| found["code"] == "inactive").count() == 1, &told)?;
+    let command = json!({ "command": "lamplight.composed", "arguments": [uri] });
+    let text = session.ask("workspace/executeCommand", command)?;
+    expect(text.as_str().is_some_and(|text| text.contains("sum = fade(sum);")), &text)?;
+    let document = json!({ "textDocument": { "uri": uri } });
+    let lenses = session.ask("textDocument/codeLens", document)?;
+    expect(lenses[0]["command"]["title"] == "4 permutations: composed text", &lenses)
+}
+
+/// Formatting changes blanks only, and nothing the second time: over a text with odd blanks, and
+/// over every module of the library.
+fn formatting() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    let mut format = |text: &str| -> Result<String, Failed> {
+        session.change(text)?;
+        let document = json!({
+            "textDocument": { "uri": session.uri("main.wesl")? },
+            "options": { "tabSize": 4, "insertSpaces": true },
+        });
+        let edits = session.ask("textDocument/formatting", document)?;
+        Ok(edits[0]["newText"].as_str().unwrap_or(text).to_owned())
+    };
+    let words = |text: &str| text.split_whitespace().collect::<String>();
+    let odd = MAIN.replace("    ", "\t ");
+    let odd = odd.replace("return vec4f(sum);", "return   vec4f(\n\nsum\n);\n\n\n");
+    let once = format(&odd)?;
+    expect(words(&once) == words(&odd), &once)?;
+    expect(once.contains("    return   vec4f(\n        sum\n    );\n}\n"), &once)?;
+    expect(format(&once)? == once, &once)?;
+    for file in Embedded.list(&["wesl"]) {
+        let text = Embedded.read(&file).ok().flatten().ok_or("unreadable")?;
+        let once = format(&text)?;
+        expect(words(&once) == words(&text) && format(&once)? == once, &file)?;
+    }
+    Ok(())
+}
+
+fn symbols_and_signature() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    let document = json!({ "textDocument": { "uri": session.uri("main.wesl")? } });
+    let symbols = session.ask("textDocument/documentSymbol", document)?;
+    let names: Vec<&str> = symbols
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|found| found["name"].as_str())
+        .collect();
+    expect(names == ["fade", "fs_main"], &symbols)?;
+    let all = session.ask("workspace/symbol", json!({ "query": "hal" }))?;
+    expect(all.as_array().into_iter().flatten().any(|found| found["name"] == "half"), &all)?;
+    let signature = session.at("textDocument/signatureHelp", MAIN, " up);", json!({}))?;
+    expect(signature["activeParameter"] == 1, &signature)?;
+    let label = signature["signatures"][0]["label"].as_str().unwrap_or_default();
+    expect(label.starts_with("fn lambert(") && label.contains("f32"), &signature)
+}
+
+/// Whatever comes in, the server answers the next question.
+fn survives() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    session.told("main.wesl")?;
+    let raw: &[&[u8]] = &[
+        b"Content-Length: 5\r\n\r\n{\"a\":",
+        b"Content-Length: nonsense\r\n\r\n",
+        b"garbage\r\n\r\nContent-Length: 2\r\n\r\n[]",
+        b"Content-Length: 4\r\n\r\nnull",
+        b"Content-Length: 3\r\n\r\n\xff\xfe\xfd",
+    ];
+    for bytes in raw {
+        session.to.as_mut().ok_or("closed")?.write_all(bytes)?;
+    }
+    for message in [
+        json!({ "jsonrpc": "2.0", "id": "x", "method": 3 }),
+        json!({ "jsonrpc": "2.0", "method": "textDocument/didChange", "params": [1, 2] }),
+        json!({ "jsonrpc": "2.0", "method": "textDocument/didOpen",
+            "params": { "textDocument": { "uri": "untitled:1", "text": "fn" } } }),
+        json!({ "jsonrpc": "2.0", "id": 1, "result": null }),
+    ] {
+        session.send(&message)?;
+    }
+    let deep = "(".repeat(100_000);
+    let halves: Vec<String> = (0..MAIN.len()).step_by(37).map(|at| MAIN[..at].to_owned()).collect();
+    let texts = halves.into_iter().chain([deep, "/*".to_owned(), "\u{feff}@if(".to_owned()]);
+    for text in texts {
+        session.change(&text)?;
+        for method in [
+            "textDocument/hover",
+            "textDocument/completion",
+            "textDocument/definition",
+            "textDocument/formatting",
+            "textDocument/codeLens",
+            "textDocument/signatureHelp",
+        ] {
+            let mut parameters = session.place(MAIN, "import", json!({}))?;
+            parameters["position"] =
+                json!({ "line": text.matches('\n').count(), "character": 9999 });
+            let answered = session.answer(method, parameters)?;
+            expect(answered.is_ok(), &(method, answered))?;
+        }
+    }
+    for method in ["textDocument/hover", "textDocument/rename", "no/such", "lamplight/permutation"]
+    {
+        let refused = session.answer(method, json!({ "position": -1 }))?;
+        expect(refused.is_err(), &(method, refused))?;
+    }
+    session.change(MAIN)?;
+    let hover = session.at("textDocument/hover", MAIN, "half(sum)", json!({}))?;
+    expect(hover["contents"]["value"].is_string(), &hover)?;
+    session.ask("shutdown", Value::Null)?;
+    session.tell("exit", Value::Null)?;
+    let status = session.child.wait()?;
+    expect(status.success(), &status)
+}
+
+/// Neovim without a screen, where it is installed: `cargo xtask test` installs it.
+fn neovim() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let root = folder.path().canonicalize()?;
+    fs::write(root.join("lamplight.toml"), MANIFEST)?;
+    fs::write(root.join("util.wesl"), UTIL)?;
+    fs::write(root.join("main.wesl"), MAIN.replace("vec4f(sum)", "vec4f(summ)"))?;
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lsp/neovim.lua");
+    let output = Command::new("nvim")
+        .args(["--headless", "--clean", "-u", "NONE", "-c"])
+        .arg(format!("luafile {}", script.display()))
+        .arg(root.join("main.wesl"))
+        .env("LAMPLIGHT", env!("CARGO_BIN_EXE_lamplight"))
+        .env("XDG_CACHE_HOME", root.join("cache"))
+        .env("XDG_STATE_HOME", root.join("state"))
+        .current_dir(&root)
+        .output()
+        .map_err(|error| format!("nvim: {error}; install it with: apt-get install neovim"))?;
+    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    let expected =
+        ["diagnostics: ok", "hover: ok", "definition: ok", "rename: ok", "completion: ok"];
+    expect(expected.iter().all(|line| said.contains(line)), &said)
+}
