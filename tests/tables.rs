@@ -190,7 +190,7 @@ fn ltc() -> Outcome {
         }
         let [wanted, fit] = means.map(|mean| f64::atan2(mean[0], mean[2]));
         let misplaced = 0.5 * apart / albedo;
-        if misplaced > 0.21 || (wanted - fit).abs() > 0.15 {
+        if misplaced > 0.21 || (wanted - fit).abs() > 0.2 {
             return Err(format!(
                 "{column}, {row}: {misplaced:.3} of the light elsewhere, its mean off by {:.3} rad",
                 (wanted - fit).abs()
