@@ -1,10 +1,12 @@
 //! What users of the command line meet: each trial is named after what a person expects.
 
+mod checks;
 mod command_line;
 mod package;
 mod reload;
 mod roots;
 mod same_bytes;
+mod shaders;
 mod told;
 mod tools;
 
@@ -17,10 +19,12 @@ type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
     let cases = [
+        checks::CASES,
         command_line::CASES,
         reload::CASES,
         roots::CASES,
         same_bytes::CASES,
+        shaders::CASES,
         told::CASES,
         tools::CASES,
     ];

@@ -1,5 +1,8 @@
 //! The examples do what they say.
 
+#[path = "../examples/hot_reload.rs"]
+#[allow(dead_code)]
+mod hot_reload;
 #[path = "../examples/load_bundle.rs"]
 #[allow(dead_code)]
 mod load_bundle;
@@ -9,7 +12,7 @@ mod wesl_crate;
 
 use std::ffi::OsString;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use lamplight::bundle::{self, Target};
 use lamplight::generate::{Request, in_memory};
@@ -17,12 +20,15 @@ use lamplight::permute::Quoted;
 use lamplight::project;
 use libtest_mimic::{Failed, Trial};
 
+use crate::guide;
 use crate::snapshot::root;
 
 pub fn trials() -> Vec<Trial> {
     vec![
         Trial::test("examples::load_bundle", loads_a_bundle),
+        Trial::test("examples::hot_reload", swaps_while_it_draws),
         Trial::test("examples::plain_glsl", plain_glsl_compiles),
+        Trial::test("examples::readme_glsl", readme_glsl_compiles),
         Trial::test("examples::wesl_crate", wesl_crate_links),
         Trial::test("examples::build_script", build_script_compiles),
     ]
@@ -54,6 +60,61 @@ fn loads_a_bundle() -> Result<(), Failed> {
     } else {
         Err(format!("the pixel is {pixel:?}, not orange").into())
     }
+}
+
+/// What the guide's page on hot reload says that the example prints, while `watch` follows an edit
+/// of the page's shader.
+fn swaps_while_it_draws() -> Result<(), Failed> {
+    let page = std::fs::read_to_string(root().join("docs/guide/hot-reload.md"))?;
+    let folder = tempfile::tempdir()?;
+    for name in ["lamplight.toml", "surface.wesl"] {
+        std::fs::write(folder.path().join(name), guide::shown_file(&page, name)?)?;
+    }
+    let shader = folder.path().join("surface.wesl");
+    let mut watch = Command::new(env!("CARGO_BIN_EXE_lamplight"))
+        .args(["watch", "--no-cache", "--out", "live.lamplight"])
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()?;
+    let bundle = folder.path().join("live.lamplight");
+    let started = guide::waits_for(|| bundle.is_file());
+    let mut told = Vec::new();
+    // Edited once the first frame is drawn, so that the swap happens while it draws.
+    let drawn = lamplight::execute::on_thread(|| {
+        let mut tell = |line: String| {
+            if told.is_empty() {
+                let text = std::fs::read_to_string(&shader).unwrap_or_default();
+                let _ = std::fs::write(&shader, text.replace("0.5", "0.25"));
+            }
+            told.push(line);
+        };
+        hot_reload::draw(&bundle, 1, &mut tell).map_err(|error| error.to_string())
+    });
+    watch.kill()?;
+    watch.wait()?;
+    if !started {
+        return Err("`watch` wrote nothing".into());
+    }
+    drawn.ok_or("the example panicked")??;
+    guide::shows_output(&page, "--example hot_reload", &told)
+}
+
+/// README's first example of GLSL, with a compiler that knows nothing of Lamplight.
+fn readme_glsl_compiles() -> Result<(), Failed> {
+    let readme = std::fs::read_to_string(root().join("README.md"))?;
+    let block = readme.split("```glsl\n").nth(1).and_then(|rest| rest.split("```").next());
+    let includes = block.ok_or("README has no GLSL")?;
+    let folder = tempfile::tempdir()?;
+    run(Command::new(env!("CARGO_BIN_EXE_lamplight")).arg("export").arg(folder.path()))?;
+    let shader = folder.path().join("readme.frag");
+    let head = "#version 450\n#extension GL_GOOGLE_include_directive : require\n";
+    let main =
+        "layout(location = 0) out float lit;\nvoid main() { lit = inverse_square(2.0, 0.01); }\n";
+    std::fs::write(&shader, format!("{head}{includes}{main}"))?;
+    let include = format!("-I{}", folder.path().display());
+    let mut compiler = Command::new("glslangValidator");
+    run(compiler.args(["-V", "-o", "/dev/null", &include]).arg(shader)).map(drop)
 }
 
 fn plain_glsl_compiles() -> Result<(), Failed> {

@@ -50,6 +50,41 @@ fn stem(path: &std::path::Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
+/// The text of a file that a page shows.
+pub fn shown_file(page: &str, name: &str) -> Result<String, Failed> {
+    let lines: Vec<&str> = page.lines().collect();
+    let is_wanted =
+        |block: &block::Block| matches!(&block.kind, block::Kind::File(path) if path == name);
+    let found = block::read(&lines)?.into_iter().find(is_wanted);
+    let found = found.ok_or_else(|| format!("the page shows no `{name}`"))?;
+    Ok(lines[found.lines].join("\n") + "\n")
+}
+
+/// Compares what a program printed with the block of a page that begins with its command.
+pub fn shows_output(page: &str, command: &str, printed: &[String]) -> Result<(), Failed> {
+    let lines: Vec<&str> = page.lines().collect();
+    let is_wanted = |block: &block::Block| {
+        lines[block.lines.start].starts_with("$ ") && lines[block.lines.start].contains(command)
+    };
+    let found = block::read(&lines)?.into_iter().find(is_wanted);
+    let found = found.ok_or_else(|| format!("the page does not run `{command}`"))?;
+    let shown = &lines[found.lines.start + 1..found.lines.end];
+    let printed: Vec<&str> = printed.iter().map(String::as_str).collect();
+    match compare::matches(shown, &printed) {
+        true => Ok(()),
+        false => Err(format!("the page shows {shown:#?}, printed was {printed:#?}").into()),
+    }
+}
+
+/// Waits until something holds; whether it did within a minute.
+pub fn waits_for(holds: impl Fn() -> bool) -> bool {
+    let start = std::time::Instant::now();
+    while !holds() && start.elapsed() < std::time::Duration::from_secs(60) {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    holds()
+}
+
 /// The first heading of a page.
 fn title(text: &str) -> Result<&str, Failed> {
     let heading = text.lines().find_map(|line| line.strip_prefix("# "));

@@ -73,7 +73,7 @@ fn library() -> Result<(), Failed> {
         if report.outcomes.is_empty() {
             return Err(format!("no case file's path has `{only}` in it").into());
         }
-        match (check::failures(&report) + &check::lacking(&report)).as_str() {
+        match (failed(&report) + &check::lacking(&report)).as_str() {
             "" => Ok(()),
             text => Err(text.to_owned().into()),
         }
@@ -131,7 +131,7 @@ fn lacking() -> Result<(), Failed> {
         if report.passed() && is_told && counted == report.outcomes.len() {
             Ok(())
         } else {
-            Err(format!("{lacking}\n{}", check::failures(&report)).into())
+            Err(format!("{lacking}\n{}", failed(&report)).into())
         }
     })
 }
@@ -176,7 +176,7 @@ fn vectors() -> Result<(), Failed> {
         if report.passed() && inputs.iter().all(|count| *count == 2) {
             Ok(())
         } else {
-            Err(format!("{inputs:?}\n{}", check::failures(&report)).into())
+            Err(format!("{inputs:?}\n{}", failed(&report)).into())
         }
     })
 }
@@ -330,6 +330,11 @@ fn case_errors() -> Result<(), Failed> {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.into()) }
 }
 
+/// What failed, in words.
+fn failed(report: &check::Report) -> String {
+    check::failures_as_text(&check::failures(report))
+}
+
 /// A function that is off fails with its smallest input.
 fn wrong_function() -> Result<(), Failed> {
     let cases = "[[case]]\nfunction = \"wrong\"\nformula = \"x\"\nlaws = { falling = \"x\" }\ninputs = { x = { random = [0, 10], count = 500 } }\n";
@@ -338,7 +343,7 @@ fn wrong_function() -> Result<(), Failed> {
         let report = user_library(cases)
             .check(&sources, &["mine.toml".to_owned()], &[Language::Wesl], open)
             .map_err(|errors| render(&sources, &errors))?;
-        let text = check::failures(&report);
+        let text = failed(&report);
         for expected in [
             "x = 4 (0x40800000)",
             "found 5 (0x40a00000)",

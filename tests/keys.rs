@@ -99,22 +99,42 @@ const TYPESCRIPT: Harness = Harness {
     edit: stripped,
 };
 
+/// A lock to which values were added since, and which has values and an axis that are gone.
+const OLDER_LOCK: &str = "p gone no yes\np lamp none point old\np lit false true\np moving off on\n\
+    p lamp + spot\np count 4 1\np lamp + area sky\n";
+const NEWER: &str = "[program.p]\nwesl = \"a.wesl\"\n[program.p.axis]\n\
+    lamp = { values = [\"sky\", \"none\", \"spot\", \"area\", \"point\"], default = \"spot\" }\n\
+    lit = { values = [true, false] }\ncount = { values = [1, 4, 10] }\n\
+    moving = { values = [\"on\", \"off\"], mode = \"dynamic\" }\n";
+
 fn in_language(harness: &Harness) -> Outcome {
-    let manifest = library()?;
+    let (manifest, lock) = (library()?, read_lock()?);
+    of_manifest(harness, &manifest, &lock)?;
+    let mut sources = SourceSet::default();
+    let id = sources.add("lamplight.lock", OLDER_LOCK);
+    let older =
+        lock::parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human))?;
+    let newer = parsed(NEWER)?;
+    of_manifest(harness, &newer, &extended(&older, &newer))
+}
+
+/// Keys, their numbers and the way back are those of the library.
+fn of_manifest(harness: &Harness, manifest: &Manifest, lock: &Lock) -> Outcome {
     let folder = tempfile::tempdir()?;
     let language = keys::find(harness.language).ok_or("no such language")?;
     std::fs::write(
         folder.path().join(harness.file),
-        (harness.edit)(keys::write(&manifest, language)),
+        (harness.edit)(keys::write(manifest, Some(lock), language)),
     )?;
-    std::fs::write(folder.path().join(harness.source), (harness.main)(&manifest))?;
+    std::fs::write(folder.path().join(harness.source), (harness.main)(manifest))?;
     execute(folder.path(), harness.compile, "")?;
     let (mut asked, mut expected) = (String::new(), String::new());
     for (index, program) in manifest.programs.iter().enumerate() {
         for point in program.space.enumerate() {
             let ordinals: Vec<String> = point.ordinals().iter().map(ToString::to_string).collect();
             asked += &format!("{index} {}\n", ordinals.join(" "));
-            expected += &format!("{}\n", program.space.key(&point));
+            let number = lock.dense(&program.name, &program.space, &point).ok_or("no number")?;
+            expected += &format!("{} {number} true\n", program.space.key(&point));
         }
     }
     let found = execute(folder.path(), harness.run, &asked)?;
@@ -168,11 +188,18 @@ fn rust_main(manifest: &Manifest) -> String {
     let mut arms = String::new();
     for (index, program) in manifest.programs.iter().enumerate() {
         let field = |(at, axis): (usize, &lamplight::permute::Axis)| match axis.kind {
-            Kind::Bool => format!("{}: o[{at}] == 1, ", axis.name),
+            _ if axis.mode == Mode::Dynamic => String::new(),
+            Kind::Bool => {
+                let truth = usize::from(axis.values[1] == Setting::Bool(true));
+                format!("{}: o[{at}] == {truth}, ", axis.name)
+            }
             _ => format!("{}: {}::{}::ALL[o[{at}]], ", axis.name, program.name, camel(&axis.name)),
         };
         let fields: String = program.space.axes().iter().enumerate().map(field).collect();
-        arms += &format!("            {index} => {}::Key {{ {fields} }}.to_key(),\n", program.name);
+        arms += &format!(
+            "            {index} => {{ let k = {0}::Key {{ {fields} }}; let n = k.to_ordinal(); format!(\"{{k}} {{n}} {{}}\", {0}::Key::from_ordinal(n) == Some(k)) }},\n",
+            program.name
+        );
     }
     let start = "include!(\"keys.rs\");\nfn main() {\n    for line in std::io::stdin().lines() {\n        let line = line.unwrap();\n";
     let parse = "        let n: Vec<usize> = line.split_whitespace().map(|n| n.parse().unwrap()).collect();\n        let o = &n[1..];\n        let _ = o;\n";
@@ -186,13 +213,17 @@ fn c_main(manifest: &Manifest) -> String {
     for (index, program) in manifest.programs.iter().enumerate() {
         let name = format!("lamplight_{}", program.name);
         let field = |axis: &lamplight::permute::Axis| match axis.kind {
-            Kind::Bool => format!("            key.{} = next() == 1;\n", axis.name),
+            _ if axis.mode == Mode::Dynamic => "            (void)next();\n".to_owned(),
+            Kind::Bool => {
+                let truth = u8::from(axis.values[1] == Setting::Bool(true));
+                format!("            key.{} = next() == {truth};\n", axis.name)
+            }
             _ => format!("            key.{} = ({name}_{})next();\n", axis.name, axis.name),
         };
         let fields: String = program.space.axes().iter().map(field).collect();
         let bytes = name.to_uppercase();
         cases += &format!(
-            "        case {index}: {{\n            char text[{bytes}_KEY_BYTES];\n            {name} key = {name}_default();\n{fields}            {name}_to_key(&key, text);\n            puts(text);\n            break;\n        }}\n"
+            "        case {index}: {{\n            char text[{bytes}_KEY_BYTES];\n            {name} key = {name}_default();\n{fields}            {name}_to_key(&key, text);\n            uint64_t number = {name}_to_ordinal(&key);\n            {name} same;\n            char back[{bytes}_KEY_BYTES] = \"\";\n            if ({name}_from_ordinal(number, &same))\n                {name}_to_key(&same, back);\n            printf(\"%s %llu %s\\n\", text, (unsigned long long)number, strcmp(text, back) ? \"false\" : \"true\");\n            break;\n        }}\n"
         );
     }
     format!(
@@ -223,13 +254,12 @@ fn typescript_main(manifest: &Manifest) -> String {
             })
             .collect();
         text += &format!(
-            "  [keys.{}{}Key, [{}]],\n",
-            camel[..1].to_lowercase(),
-            &camel[1..],
+            "  [keys.{0}Key, [{1}], keys.{0}Ordinal, keys.{0}FromOrdinal],\n",
+            camel[..1].to_lowercase() + &camel[1..],
             axes.join(", ")
         );
     }
-    text + "];\nfor (const line of readFileSync(0, 'utf8').trim().split('\\n')) {\n  const [program, ...ordinals] = line.split(' ').map(Number);\n  const [key, axes] = programs[program];\n  console.log(key(Object.fromEntries(axes.map(([name, values], index) => [name, values[ordinals[index]]]))));\n}\n"
+    text + "];\nfor (const line of readFileSync(0, 'utf8').trim().split('\\n')) {\n  const [program, ...ordinals] = line.split(' ').map(Number);\n  const [key, axes, toOrdinal, fromOrdinal] = programs[program];\n  const chosen = Object.fromEntries(axes.map(([name, values], index) => [name, values[ordinals[index]]]));\n  const number = toOrdinal(chosen);\n  console.log(key(chosen), number, key(fromOrdinal(number)) === key(chosen));\n}\n"
 }
 
 /// What a runtime does that strips types: interfaces and aliases go, and annotations.
@@ -244,9 +274,31 @@ fn stripped(text: String) -> String {
                 "(key, axes)",
             );
             let line = line.replace(" as Record<string, Value | undefined>", "");
-            let line = match (line.find("(key: "), line.find(" = {}): string")) {
+            let line = line.replace(
+                "(key: object, start: number, fields: readonly Field[]): number",
+                "(key, start, fields)",
+            );
+            let line = line.replace(
+                "(number: number, digits: readonly Digit[]): Record<string, Value> | undefined",
+                "(number, digits)",
+            );
+            let line =
+                line.replace("reduce<number>", "reduce").replace(": Record<string, Value> =", " =");
+            let line = match line.split_once("FromOrdinal(number: number): ") {
+                Some((start, _)) => format!("{start}FromOrdinal(number) {{"),
+                None => line,
+            };
+            let line = match (line.find("const key: "), line.find(" | undefined = numberKey")) {
                 (Some(start), Some(end)) => {
-                    format!("{}(key{}", &line[..start], line[end..].replace("): string", ")"))
+                    format!("{}const key{}", &line[..start], &line[end + " | undefined".len()..])
+                }
+                _ => line,
+            };
+            let end = line.find(" = {}): string").or_else(|| line.find(" = {}): number"));
+            let line = match (line.find("(key: "), end) {
+                (Some(start), Some(end)) => {
+                    let rest = line[end..].replace("): string", ")").replace("): number", ")");
+                    format!("{}(key{rest}", &line[..start])
                 }
                 _ => line,
             };
@@ -286,7 +338,14 @@ fn awkward(language: &str, file: &str, command: &[&str]) -> Outcome {
     let manifest = parsed(AWKWARD)?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().join(file);
-    std::fs::write(&path, keys::write(&manifest, keys::find(language).ok_or("no such language")?))?;
+    std::fs::write(
+        &path,
+        keys::write(
+            &manifest,
+            Some(&extended(&Lock::default(), &manifest)),
+            keys::find(language).ok_or("no such language")?,
+        ),
+    )?;
     let path = path.to_string_lossy().into_owned();
     let mut command = command.to_vec();
     let metadata = folder.path().join("out").to_string_lossy().into_owned();

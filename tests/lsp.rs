@@ -225,7 +225,11 @@ fn diagnostics() -> Outcome {
     expect(codes(&syntax).contains(&"unbalanced-bracket"), &syntax)?;
     session.change(&format!("import package::util::nothing;\n{MAIN}"))?;
     let missing = session.told("main.wesl")?;
-    expect(codes(&missing).contains(&"missing-item"), &missing)
+    expect(codes(&missing).contains(&"missing-item"), &missing)?;
+    let uri = session.uri("main.wesl")?;
+    session.tell("textDocument/didClose", json!({ "textDocument": { "uri": uri } }))?;
+    let closed = session.told("main.wesl")?;
+    expect(closed.is_empty(), &closed)
 }
 
 fn hover() -> Outcome {

@@ -248,7 +248,11 @@ fn off_before_rounding() -> Outcome {
     checked.exits(3)?;
     contains(
         &checked.errors(),
-        &["threshold (case 1): the code in f64, without any rounding, is off on 4 of 9 inputs"],
+        &[
+            "`fades & more::threshold`: the code in f64, without any rounding, is off on 4 of 9 inputs",
+            "fades & more.toml:2:12",
+            "most with x = ",
+        ],
     )
 }
 

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use lamplight::bundle::Language;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::executors;
-use lamplight::proof::check::{Open, failures};
+use lamplight::proof::check::{Open, failures, failures_as_text};
 use lamplight::proof::library::Library;
 use lamplight::scene::Equirect;
 use lamplight::source::{Memory, SourceSet};
@@ -44,7 +44,7 @@ fn cases(bytes: &[u8]) -> String {
     let mut open: Vec<Open> =
         opened.map(|session| Open { executor: "eval", session }).into_iter().collect();
     match library.check(&sources, &["m.toml".to_owned()], &[Language::Wesl], &mut open) {
-        Ok(report) => format!("{} {}", report.outcomes.len(), failures(&report)),
+        Ok(report) => format!("{} {}", report.outcomes.len(), failures_as_text(&failures(&report))),
         Err(problems) => {
             let sources = sources.into_inner().unwrap_or_default();
             [Form::Human, Form::Json].map(|form| render(&sources, &problems, form)).concat()

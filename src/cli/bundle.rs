@@ -144,8 +144,9 @@ fn list(bundle: &Bundle, program: Option<&str>) -> Result<(), Failure> {
             let language = format!("{language:?}").to_lowercase();
             writeln!(
                 out,
-                "{name:12} {entry:12} {language}  {:6} permutations  {}",
+                "{name:12} {entry:12} {language}  {:6} {:12}  {}",
                 keys.len(),
+                if keys.len() == 1 { "permutation" } else { "permutations" },
                 targets.join(" ")
             )?;
         }

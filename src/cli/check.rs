@@ -12,7 +12,7 @@ use super::features;
 use super::input::{self, LanguageName};
 use crate::bundle::Language;
 use crate::cli::terminal::stdout;
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostics, nearest};
 use crate::execute::on_thread;
 use crate::output::{self, Replace};
 use crate::permute::{Setting, Settings};
@@ -56,6 +56,9 @@ pub struct Arguments {
     #[arg(long)]
     spec: bool,
 }
+
+/// Functions without a case that are told by name.
+const UNTESTED: usize = 10;
 
 /// Case files of one package.
 struct Selection {
@@ -106,15 +109,19 @@ fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure>
     let mut sessions =
         arguments.executor.iter().map(|name| opened(name)).collect::<Result<Vec<_>, _>>()?;
     let mut report = Report::default();
+    let sources = Mutex::new(SourceSet::default());
     for selection in selections {
-        let sources = Mutex::new(SourceSet::default());
-        let found = one(selection, &sources, arguments, &mut sessions);
-        report.append(found.map_err(|diagnostics| {
-            Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics)
-        })??);
+        match one(selection, &sources, arguments, &mut sessions) {
+            Ok(found) => report.append(found?),
+            Err(diagnostics) => {
+                return Err(Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics));
+            }
+        }
     }
+    let sources = sources.into_inner().unwrap_or_default();
     write!(stdout(), "{}", table(&report))?;
     print_spec(&report, arguments.spec)?;
+    print_untested(&report)?;
     let passed = report.outcomes.iter().filter(|outcome| outcome.passed()).count();
     write!(stdout(), "{passed} of {} pass", report.outcomes.len())?;
     let lacking = lacking(&report);
@@ -123,14 +130,37 @@ fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure>
         count => write!(stdout(), ", {count} cannot run on their executor:\n{lacking}")?,
     }
     if let Some(folder) = &arguments.report {
-        let mut texts = Vec::new();
-        for form in report::ALL {
-            texts.push((form.file, (form.text)(&report)));
-        }
+        let origin = report::Origin { sources: &sources, command: command_line() };
+        let texts: Vec<(&str, String)> =
+            report::ALL.iter().map(|form| (form.file, (form.text)(&report, &origin))).collect();
         let files = texts.iter().map(|(name, text)| (*name, text.as_bytes()));
         output::write_folder(folder, files, arguments.replace())?;
     }
-    if report.passed() { Ok(()) } else { Err(Failure::check(failures(&report))) }
+    if report.passed() { Ok(()) } else { Err(Failure::Check(sources, failures(&report))) }
+}
+
+/// What was asked for, as one types it again.
+fn command_line() -> String {
+    let quoted =
+        |word: String| match word.chars().all(|c| c.is_alphanumeric() || "-_./:=,".contains(c)) {
+            true => word,
+            false => format!("'{}'", word.replace('\'', "'\\''")),
+        };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("lamplight".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// Functions that no case calls.
+fn print_untested(report: &Report) -> Result<(), Failure> {
+    let (few, all) = (report.untested.iter().take(UNTESTED), report.untested.len());
+    let names = few.map(String::as_str).collect::<Vec<_>>().join(", ");
+    match all {
+        0 => {}
+        1 => writeln!(stdout(), "1 function has no case: {names}")?,
+        _ if all > UNTESTED => writeln!(stdout(), "{all} functions have no case: {names}, ...")?,
+        _ => writeln!(stdout(), "{all} functions have no case: {names}")?,
+    }
+    Ok(())
 }
 
 /// The check of one selection; with `--bless`, its package's recorded shares are lowered after it.
@@ -174,6 +204,10 @@ fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
     match (all, lines.lines().count()) {
         (_, 0) => {}
         (true, _) => write!(stdout(), "{lines}")?,
+        (false, 1) => writeln!(
+            stdout(),
+            "1 case states less than WGSL allows for some input (`--spec` lists it)"
+        )?,
         (false, count) => writeln!(
             stdout(),
             "{count} cases state less than WGSL allows for some input (`--spec` lists them)"
@@ -296,8 +330,13 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
             .cloned()
             .collect();
         if matching.is_empty() {
+            let known: Vec<String> =
+                files.iter().map(|file| stem(file).replace('/', "::")).collect();
+            let asked = wanted.replace('/', "::");
+            let near = nearest(&asked, known.iter().map(String::as_str));
+            let near = near.map_or(String::new(), |near| format!("\nhelp: did you mean `{near}`?"));
             return Err(Failure::input(format!(
-                "`{path}` is no file, and no module of the library with numeric cases"
+                "`{path}` is no file, and no module of the library with numeric cases{near}"
             )));
         }
         found.extend(matching);

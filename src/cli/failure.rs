@@ -15,6 +15,8 @@ use crate::source::SourceSet;
 pub enum Failure {
     /// The input is wrong: exit code 1, diagnostics into its text.
     Input(SourceSet, Diagnostics),
+    /// A check failed: exit code 3, diagnostics at its cases.
+    Check(SourceSet, Diagnostics),
     /// A sentence and the exit code of the contract.
     Message(u8, String),
 }
@@ -52,14 +54,12 @@ impl Failure {
                 ExitCode::from(4)
             }
             Self::Input(sources, diagnostics) => {
-                warn(&sources, &diagnostics, form);
-                let reading = guide::after_errors(&diagnostics);
-                if let (Some(reading), DiagnosticForm::Human | DiagnosticForm::Coloured) =
-                    (reading, form)
-                {
-                    let _ = stderr().write_all(reading.as_bytes());
-                }
+                explain(&sources, &diagnostics, form);
                 ExitCode::from(1)
+            }
+            Self::Check(sources, diagnostics) => {
+                explain(&sources, &diagnostics, form);
+                ExitCode::from(3)
             }
             Self::Message(code, message) => {
                 let _ = match form {
@@ -75,6 +75,15 @@ impl Failure {
                 ExitCode::from(code)
             }
         }
+    }
+}
+
+/// Diagnostics, and for people where to read on.
+fn explain(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
+    warn(sources, diagnostics, form);
+    let reading = guide::after_errors(diagnostics);
+    if let (Some(reading), DiagnosticForm::Human | DiagnosticForm::Coloured) = (reading, form) {
+        let _ = stderr().write_all(reading.as_bytes());
     }
 }
 

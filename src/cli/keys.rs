@@ -7,6 +7,7 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure, warn};
 use super::overwrite::Overwrite;
 use super::terminal::data;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::input;
 use crate::keys::{self, LANGUAGES, Language};
 use crate::output::{self, Replace};
@@ -27,7 +28,8 @@ pub struct Arguments {
     /// The file to write [default: standard output].
     #[arg(short, long, value_name = "FILE", requires = "lang")]
     out: Option<PathBuf>,
-    /// Write the lock file beside the manifest: axes and values that it lacks are appended.
+    /// Write the lock file beside the manifest: axes and values that it lacks are appended. Where
+    /// there is one, keys can be turned into its numbers and back.
     #[arg(long)]
     lock: bool,
     /// Write nothing; exit code 3 if a file is not up to date.
@@ -49,16 +51,16 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     }
     let (mut sources, manifest) = open(named.as_deref())?;
     warn(&sources, &manifest.warnings, form);
-    if let Some(path) = named.as_deref().filter(|_| arguments.lock) {
-        let lock = match project::lock(path, &mut sources) {
-            Ok(lock) => extended(&lock, &manifest),
-            Err(diagnostics) => return Err(Failure::Input(sources, diagnostics)),
-        };
+    let lock = match named.as_deref().map(|path| lock(path, &arguments, &mut sources, &manifest)) {
+        Some(Err(diagnostics)) => return Err(Failure::Input(sources, diagnostics)),
+        found => found.and_then(Result::ok).flatten(),
+    };
+    if let (Some(path), Some(lock), true) = (&named, &lock, arguments.lock) {
         // What is there was read as a lock file.
         put(&project::lock_path(path), &lock.to_string(), arguments.check, Replace::Any)?;
     }
     let Some(language) = arguments.lang else { return Ok(()) };
-    let text = keys::write(&manifest, language);
+    let text = keys::write(&manifest, lock.as_ref(), language);
     match &arguments.out {
         Some(path) => put(path, &text, arguments.check, arguments.overwrite.replace()),
         None => Ok(data(text.as_bytes())?),
@@ -75,6 +77,29 @@ fn open(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> {
         Ok(manifest) => Ok((sources, manifest)),
         Err(diagnostics) => Err(Failure::Input(sources, diagnostics)),
     }
+}
+
+/// The lock that numbers are written from: the file beside the manifest, with what it lacks where
+/// it is to be written.
+fn lock(
+    path: &Path,
+    arguments: &Arguments,
+    sources: &mut SourceSet,
+    manifest: &Manifest,
+) -> Result<Option<Lock>, Diagnostics> {
+    if !arguments.lock && !project::lock_path(path).exists() {
+        return Ok(None);
+    }
+    let lock = project::lock(path, sources)?;
+    let whole = extended(&lock, manifest);
+    if arguments.lock || whole == lock {
+        return Ok(Some(whole));
+    }
+    let message = format!("`{}` lacks axes or values", project::lock_path(path).display());
+    Err(vec![
+        Diagnostic::error(codes::LOCK_INCOMPLETE, message)
+            .note("help: add `--lock`: what is missing is appended"),
+    ])
 }
 
 fn extended(lock: &Lock, manifest: &Manifest) -> Lock {

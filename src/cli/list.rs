@@ -5,6 +5,7 @@ use std::io::Write;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
+use super::compile;
 use super::failure::Failure;
 use super::own::Own;
 use super::text;
@@ -161,9 +162,15 @@ fn manifest() -> Result<(SourceSet, Manifest), Failure> {
 }
 
 fn targets() -> Table {
-    let things =
-        targets::ALL.iter().map(|entry| json!({ "target": entry.target.name(), "extension": entry.extension, "summary": entry.about }));
-    Table { shown: &["target", "extension", "summary"], things: things.collect() }
+    let things = targets::ALL.iter().map(|entry| {
+        json!({
+            "target": entry.target.name(),
+            "extension": entry.extension,
+            "compiled": format!("*.{}", compile::ending(entry.target, "frag", entry.extension)),
+            "summary": entry.about,
+        })
+    });
+    Table { shown: &["target", "extension", "compiled", "summary"], things: things.collect() }
 }
 
 fn executors() -> Table {

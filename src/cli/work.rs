@@ -39,8 +39,7 @@ pub struct Places {
     /// Compute everything, keep nothing.
     #[arg(long, conflicts_with_all = ["cache", "store"])]
     no_cache: bool,
-    /// A cache that machines share, asked after the folder: `fs:/path` or `redis://host:port`.
-    #[arg(long, value_name = "ADDRESS")]
+    #[arg(long, value_name = "ADDRESS", help = store::HELP)]
     store: Option<String>,
     #[command(flatten)]
     overwrite: Overwrite,
@@ -279,8 +278,13 @@ fn compare(contents: &Contents, out: &Path) -> Result<(), Failure> {
         })
         .collect();
     let count = difference.permutations.len();
+    let differ = if count == 1 {
+        "1 permutation differs".to_owned()
+    } else {
+        format!("{count} permutations differ")
+    };
     Err(Failure::check(format!(
-        "`{}` is not up to date: {count} permutations differ\n{}",
+        "`{}` is not up to date: {differ}\n{}",
         out.display(),
         lines.join("\n")
     )))

@@ -126,11 +126,24 @@ impl Diagnostic {
 /// Characters of a name from which on it is no slip of the finger.
 const LONGEST_MISSPELT: usize = 100;
 
+/// A conversion named from the other end: `a_to_b` is `b_from_a`.
+fn converse(name: &str) -> Option<String> {
+    let named = |one: &str, other: &str| {
+        name.split_once(one).map(|(left, right)| format!("{right}{other}{left}"))
+    };
+    named("_to_", "_from_").or_else(|| named("_from_", "_to_"))
+}
+
 /// The known name nearest to a misspelt one; ties go to the alphabetically first.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let length = wrong.chars().count();
     if length > LONGEST_MISSPELT {
         return None;
+    }
+    let known: Vec<&str> = known.into_iter().collect();
+    let converse = converse(wrong);
+    if let Some(same) = known.iter().find(|name| Some(**name) == converse.as_deref()) {
+        return Some(same);
     }
     // A name that shares no letter with another is not a misspelling of it.
     let allowed = (1 + length / 4).min(length.saturating_sub(1));

@@ -68,7 +68,22 @@ include!(concat!(env!("OUT_DIR"), "/executors.rs"));
 
 /// Prepares the process for executors. Call this while it has one thread.
 pub fn prepare(entries: &[&Entry]) {
+    if entries.iter().any(|entry| !entry.needs.is_empty()) {
+        without_windows();
+    }
     entries.iter().filter_map(|entry| entry.before_threads).for_each(|prepare| prepare());
+}
+
+/// Tells Mesa's layers that there is no window system, where there is none: they look for Wayland in
+/// the folder that `XDG_RUNTIME_DIR` names, and print an error where that is not set.
+fn without_windows() {
+    let is_absolute = |name| {
+        std::env::var_os(name).is_some_and(|value| std::path::Path::new(&value).is_absolute())
+    };
+    if !is_absolute("XDG_RUNTIME_DIR") && !is_absolute("WAYLAND_DISPLAY") {
+        // SAFETY: Rust's own accesses are locked, and the process has one thread.
+        unsafe { std::env::set_var("WAYLAND_DISPLAY", "/nonexistent") };
+    }
 }
 
 /// The executor of that name.

@@ -184,9 +184,10 @@ impl fmt::Display for Summary {
         for target in &self.targets {
             writeln!(
                 f,
-                "{:8} {:6} outputs {:8.1} MB",
+                "{:8} {:6} {:7} {:8.1} MB",
                 target.target,
                 target.outputs,
+                if target.outputs == 1 { "output" } else { "outputs" },
                 target.bytes as f64 / 1e6
             )?;
         }

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::names::{Taken, comment, value};
+use super::ordinal::{Ordinals, Says, ordinals};
 use super::{Language, axes, default, part};
-use crate::permute::{Axis, Kind, Manifest, Program};
+use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language = Language { name: "c", about: "a header for C99 and C++", write };
 
@@ -63,13 +64,17 @@ const KEYWORDS: &[&str] = &[
 ];
 
 const START: &str = "/* Written by `lamplight keys --lang c`; do not edit. */
-#ifndef LAMPLIGHT_KEYS_H
-#define LAMPLIGHT_KEYS_H
+#ifndef GUARD
+#define GUARD
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <string.h>
 
+/* What all headers of keys share, so that several can be included. */
+#ifndef LAMPLIGHT_KEY_PART
+#define LAMPLIGHT_KEY_PART
 /* Appends a part of a key; the length of the text. */
 static inline size_t lamplight_key_part(char *text, size_t length, const char *part)
 {
@@ -79,14 +84,26 @@ static inline size_t lamplight_key_part(char *text, size_t length, const char *p
     memcpy(text + length, part, added + 1);
     return length + added;
 }
+#endif
 ";
 
-fn write(manifest: &Manifest) -> String {
-    let mut taken = Taken::new(&["LAMPLIGHT_KEYS_H", "lamplight_key_part"]);
-    let mut text = START.to_owned();
-    manifest.programs.iter().for_each(|program| text.push_str(&self::program(program, &mut taken)));
+fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
+    let guard = guard(manifest);
+    let mut taken = Taken::new(&[&guard, "LAMPLIGHT_KEY_PART", "lamplight_key_part"]);
+    let mut text = START.replace("GUARD", &guard);
+    for program in &manifest.programs {
+        let found = lock.and_then(|lock| ordinals(program, lock, u64::MAX));
+        text.push_str(&self::program(program, found.as_ref(), &mut taken));
+    }
     text.push_str("\n#endif\n");
     text
+}
+
+/// A name of its own for each manifest: that of its programs, as a number of fixed length.
+fn guard(manifest: &Manifest) -> String {
+    let names: Vec<&str> = manifest.programs.iter().map(|program| program.name.as_str()).collect();
+    let hash = blake3::hash(names.join("\n").as_bytes()).to_hex();
+    format!("LAMPLIGHT_KEYS_{}_H", hash[..16].to_uppercase())
 }
 
 /// An axis with its identifiers.
@@ -100,14 +117,22 @@ struct Named<'a> {
 impl Named<'_> {
     fn default(&self) -> &str {
         match (self.axis.kind, self.axis.default) {
-            (Kind::Bool, _) if *default(self.axis) == crate::permute::Setting::Bool(true) => "true",
+            (Kind::Bool, _) if *default(self.axis) == Setting::Bool(true) => "true",
             (Kind::Bool, _) => "false",
             (_, ordinal) => &self.constants[ordinal],
         }
     }
+
+    /// The value of that index.
+    fn value(&self, index: usize) -> String {
+        match self.axis.kind {
+            Kind::Bool => self.axis.values[index].to_string(),
+            Kind::Enum | Kind::Int => self.constants[index].clone(),
+        }
+    }
 }
 
-fn program(program: &Program, taken: &mut Taken) -> String {
+fn program(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) -> String {
     let name = taken.give(format!("lamplight_{}", program.name));
     let [default, to_key, bytes] = [
         format!("{name}_default"),
@@ -135,6 +160,11 @@ fn program(program: &Program, taken: &mut Taken) -> String {
     }
     text.push_str("    return key;\n}\n");
     text.push_str(&to_text(&name, &to_key, &bytes, &axes));
+    if let Some(ordinals) = ordinals {
+        let names = ["to_ordinal", "from_ordinal"].map(|what| taken.give(format!("{name}_{what}")));
+        text.push_str(&to_ordinal(&name, &names[0], &axes, ordinals));
+        text.push_str(&from_ordinal(&name, (&names, &default), &axes, ordinals));
+    }
     text
 }
 
@@ -231,4 +261,75 @@ fn append(named: &Named<'_>) -> String {
         "            length = lamplight_key_part(text, length, parts[key->{field}]);\n    }}"
     );
     text
+}
+
+/// The function from a key to its number.
+fn to_ordinal(name: &str, function: &str, axes: &[Named<'_>], ordinals: &Ordinals) -> String {
+    let mut text = String::from(
+        "\n/* The number in the lock file: it stays what it is when axes and values are added. A value that is no value counts as the default. */\n",
+    );
+    let _ = writeln!(text, "static inline uint64_t {function}(const {name} *key)\n{{");
+    let _ = writeln!(text, "    uint64_t number = UINT64_C({});", ordinals.constant);
+    if axes.is_empty() {
+        text.push_str("    (void)key;\n");
+    }
+    for (named, adds) in axes.iter().zip(&ordinals.of_values) {
+        let (adds, place) = added(named, adds);
+        let adds: Vec<String> = adds.iter().map(|add| format!("UINT64_C({add})")).collect();
+        let _ = writeln!(
+            text,
+            "    {{\n        static const uint64_t adds[] = {{{}}};",
+            adds.join(", ")
+        );
+        let _ = writeln!(text, "        number += adds[{place}];\n    }}");
+    }
+    text + "    return number;\n}\n"
+}
+
+/// What an axis adds, and the index of what a key adds.
+fn added(named: &Named<'_>, adds: &[u64]) -> (Vec<u64>, String) {
+    let field = &named.field;
+    match named.axis.kind {
+        // Its values are in the order of the manifest, which may be either.
+        Kind::Bool => {
+            let of = |value| named.axis.ordinal(&Setting::Bool(value)).map_or(0, |at| adds[at]);
+            (vec![of(false), of(true)], format!("key->{field} ? 1 : 0"))
+        }
+        Kind::Enum | Kind::Int => {
+            let place = format!(
+                "(size_t)key->{field} < sizeof adds / sizeof *adds ? (size_t)key->{field} : (size_t){}",
+                named.default()
+            );
+            (adds.to_vec(), place)
+        }
+    }
+}
+
+/// The function from a number to its key.
+fn from_ordinal(
+    name: &str,
+    ([to_ordinal, function], default): (&[String; 2], &str),
+    axes: &[Named<'_>],
+    ordinals: &Ordinals,
+) -> String {
+    let mut text = String::from("\n/* Gives the key of a number; false if there is none. */\n");
+    let _ = writeln!(
+        text,
+        "static inline bool {function}(uint64_t number, {name} *key)\n{{\n    *key = {default}();"
+    );
+    for digit in &ordinals.digits {
+        let named = &axes[digit.axis];
+        let (weight, radix) = (digit.weight, digit.radix);
+        let _ = writeln!(text, "    switch (number / UINT64_C({weight}) % UINT64_C({radix})) {{");
+        for (number, says) in digit.says.iter().enumerate() {
+            let then = match says {
+                Says::Value(value) => format!("key->{} = {};", named.field, named.value(*value)),
+                Says::Nothing => String::new(),
+                Says::Gone => continue,
+            };
+            let _ = writeln!(text, "    case {number}: {then} break;");
+        }
+        text.push_str("    default: return false;\n    }\n");
+    }
+    text + &format!("    return {to_ordinal}(key) == number;\n}}\n")
 }

@@ -4,13 +4,15 @@
 //! Every language gets an enum an axis and a structure a program, whose text is the canonical
 //! key. The text leaves out defaults, so code that is generated today names the same permutations
 //! after axes and values are added. Dynamic axes are left out: permutations do not differ in them.
+//! With a lock file, keys become its numbers and numbers keys.
 
 mod c;
 mod names;
+mod ordinal;
 mod rust;
 mod typescript;
 
-use crate::permute::{Axis, Manifest, Mode, Program, Setting};
+use crate::permute::{Axis, Lock, Manifest, Mode, Program, Setting};
 
 /// A language that keys are written for.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +21,7 @@ pub struct Language {
     pub name: &'static str,
     /// One line for listings.
     pub about: &'static str,
-    write: fn(&Manifest) -> String,
+    write: fn(&Manifest, Option<&Lock>) -> String,
 }
 
 /// Every language, by name.
@@ -36,9 +38,10 @@ pub fn is_written(head: &[u8]) -> bool {
     head.windows(MARK.len()).take(16).any(|window| window == MARK)
 }
 
-/// One source file with the keys of every program. The same manifest gives the same bytes.
-pub fn write(manifest: &Manifest, language: &Language) -> String {
-    (language.write)(manifest)
+/// One source file with the keys of every program; with a lock that has all of their values, also
+/// their numbers. The same manifest and lock give the same bytes.
+pub fn write(manifest: &Manifest, lock: Option<&Lock>, language: &Language) -> String {
+    (language.write)(manifest, lock)
 }
 
 /// The axes that keys name, sorted by name as in keys.

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::names::{Taken, camel, comment, value};
+use super::ordinal::{Ordinals, Says, ordinals};
 use super::{Language, axes, default, part};
-use crate::permute::{Axis, Kind, Manifest, Program};
+use crate::permute::{Axis, Kind, Lock, Manifest, Program};
 
 pub const LANGUAGE: Language =
     Language { name: "rust", about: "a module a program, for any edition", write };
@@ -17,13 +18,12 @@ const KEYWORDS: &[&str] = &[
     "virtual", "where", "yield",
 ];
 
-fn write(manifest: &Manifest) -> String {
+fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
     let mut taken = Taken::new(KEYWORDS);
     let mut text = String::from("// Written by `lamplight keys --lang rust`; do not edit.\n");
-    manifest
-        .programs
-        .iter()
-        .for_each(|program| text.push_str(&module(program, &taken.give(program.name.clone()))));
+    manifest.programs.iter().for_each(|program| {
+        text.push_str(&module(program, lock, &taken.give(program.name.clone())))
+    });
     text
 }
 
@@ -37,9 +37,14 @@ struct Named<'a> {
 
 impl Named<'_> {
     fn default(&self) -> String {
+        self.value(self.axis.default)
+    }
+
+    /// The value of that index, as an expression and as a pattern.
+    fn value(&self, index: usize) -> String {
         match self.axis.kind {
-            Kind::Bool => default(self.axis).to_string(),
-            Kind::Enum | Kind::Int => format!("{}::{}", self.ty, self.variants[self.axis.default]),
+            Kind::Bool => self.axis.values[index].to_string(),
+            Kind::Enum | Kind::Int => format!("{}::{}", self.ty, self.variants[index]),
         }
     }
 }
@@ -59,7 +64,7 @@ fn named(program: &Program) -> Vec<Named<'_>> {
     named.collect()
 }
 
-fn module(program: &Program, name: &str) -> String {
+fn module(program: &Program, lock: Option<&Lock>, name: &str) -> String {
     let axes = named(program);
     let mut text = format!("\n/// Keys of program `{}`.\n", program.name);
     text.push_str(
@@ -75,6 +80,8 @@ fn module(program: &Program, name: &str) -> String {
         .for_each(|axis| text.push_str(&enumeration(axis)));
     text.push_str(&structure(&axes));
     text.push_str(&display(&axes));
+    let found = lock.and_then(|lock| ordinals(program, lock, u64::MAX));
+    text.push_str(&found.map_or(String::new(), |found| numbers(&axes, &found)));
     text.push_str("}\n");
     text
 }
@@ -117,6 +124,48 @@ fn structure(axes: &[Named<'_>]) -> String {
     );
     text.push_str("            }\n        }\n    }\n\n");
     text
+}
+
+/// Keys as numbers, and back.
+fn numbers(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
+    let mut text = String::from(
+        "\n    impl Key {\n        /// The number in the lock file: it stays what it is when axes and values are added.\n",
+    );
+    text.push_str("        pub const fn to_ordinal(&self) -> u64 {\n");
+    let _ = write!(text, "            {}", ordinals.constant);
+    for (named, adds) in axes.iter().zip(&ordinals.of_values) {
+        let arms: Vec<String> = (0..adds.len())
+            .map(|value| format!("{} => {}", named.value(value), adds[value]))
+            .collect();
+        let _ = write!(
+            text,
+            "\n                + match self.{} {{ {} }}",
+            named.field,
+            arms.join(", ")
+        );
+    }
+    text.push_str("\n        }\n\n        /// The key of a number; `None` if there is none.\n");
+    text.push_str("        pub fn from_ordinal(number: u64) -> ::core::option::Option<Self> {\n");
+    let mutable = if ordinals.digits.is_empty() { "" } else { "mut " };
+    let _ = writeln!(
+        text,
+        "            let {mutable}key = <Self as ::core::default::Default>::default();"
+    );
+    for digit in &ordinals.digits {
+        let named = &axes[digit.axis];
+        let _ = writeln!(text, "            match number / {} % {} {{", digit.weight, digit.radix);
+        for (number, says) in digit.says.iter().enumerate() {
+            let then = match says {
+                Says::Value(value) => format!("key.{} = {}", named.field, named.value(*value)),
+                Says::Nothing => "{}".to_owned(),
+                Says::Gone => continue,
+            };
+            let _ = writeln!(text, "                {number} => {then},");
+        }
+        text.push_str("                _ => return ::core::option::Option::None,\n            }\n");
+    }
+    text.push_str("            if key.to_ordinal() == number { ::core::option::Option::Some(key) } else { ::core::option::Option::None }\n");
+    text + "        }\n    }\n"
 }
 
 fn display(axes: &[Named<'_>]) -> String {

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::names::{Taken, camel, comment, lower_camel};
+use super::ordinal::{Ordinals, Says, ordinals};
 use super::{Language, axes, default};
-use crate::permute::{Axis, Kind, Manifest, Program, Setting};
+use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language =
     Language { name: "ts", about: "a TypeScript module of erasable types", write };
@@ -33,14 +34,52 @@ function keyText(key: object, axes: readonly (readonly [string, Value])[]): stri
 }
 ";
 
-fn write(manifest: &Manifest) -> String {
-    let mut taken = Taken::new(&["Value", "keyText", "Record"]);
+/// What keys as numbers need beside it; `from` is undefined where the lock has a value that is gone.
+const NUMBERS: &str = "
+/** A field with its default, and what each of its values adds to a number. */
+type Field = readonly [string, Value, readonly (readonly [Value, number])[]];
+
+/** A digit of a number: its weight, its radix, its field and the value that each of its values sets. */
+type Digit = readonly [number, number, string, readonly (Value | null | undefined)[]];
+
+function keyNumber(key: object, start: number, fields: readonly Field[]): number {
+  const chosen = key as Record<string, Value | undefined>;
+  const added = fields.map(([field, value, adds]) => adds.find(([known]) => known === (chosen[field] ?? value))?.[1]);
+  return added.reduce<number>((sum, add) => sum + (add ?? 0), start);
+}
+
+/** The fields that a number sets; null leaves one as it is, undefined is a value that is gone. */
+function numberKey(number: number, digits: readonly Digit[]): Record<string, Value> | undefined {
+  const key: Record<string, Value> = {};
+  for (const [weight, radix, field, values] of digits) {
+    const value = values[Math.floor(number / weight) % radix];
+    if (value === undefined) return undefined;
+    if (value !== null) key[field] = value;
+  }
+  return key;
+}
+";
+
+/// Integers that a number of the language holds.
+const MOST: u64 = 1 << 53;
+
+fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
+    let mut taken = Taken::new(&["Value", "keyText", "Record", "Math"]);
     let mut text = START.to_owned();
-    manifest.programs.iter().for_each(|program| text.push_str(&self::program(program, &mut taken)));
+    if lock.is_some() {
+        for name in ["Field", "Digit", "keyNumber", "numberKey"] {
+            taken.give(name.to_owned());
+        }
+        text.push_str(NUMBERS);
+    }
+    for program in &manifest.programs {
+        let found = lock.and_then(|lock| ordinals(program, lock, MOST));
+        text.push_str(&self::program(program, found.as_ref(), &mut taken));
+    }
     text
 }
 
-fn program(program: &Program, taken: &mut Taken) -> String {
+fn program(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) -> String {
     let ty = taken.give(format!("{}Key", camel(&program.name)));
     let function = taken.give(format!("{}Key", lower_camel(&program.name)));
     let mut text = format!(
@@ -73,6 +112,47 @@ fn program(program: &Program, taken: &mut Taken) -> String {
         renamed(program, &fields),
         list.replace("\n  ", "\n    ").trim_end_matches(' ').to_owned()
             + if list.is_empty() { "" } else { "  " }
+    );
+    if let Some(ordinals) = ordinals {
+        let lower = lower_camel(&program.name);
+        let names = ["Ordinal", "FromOrdinal"].map(|what| taken.give(format!("{lower}{what}")));
+        text.push_str(&numbers(program, ordinals, &ty, (&fields, &names)));
+    }
+    text
+}
+
+/// The functions from a key to its number, and back.
+fn numbers(
+    program: &Program,
+    ordinals: &Ordinals,
+    ty: &str,
+    (fields, [to, from]): (&[String], &[String; 2]),
+) -> String {
+    let axes: Vec<&Axis> = axes(program).collect();
+    let field = |((axis, field), adds): ((&&Axis, &String), &Vec<u64>)| {
+        let adds = axis.values.iter().zip(adds);
+        let adds: Vec<String> =
+            adds.map(|(value, add)| format!("[{}, {add}]", literal(value))).collect();
+        format!("    [\"{field}\", {}, [{}]],\n", literal(default(axis)), adds.join(", "))
+    };
+    let listed: String = axes.iter().zip(fields).zip(&ordinals.of_values).map(field).collect();
+    let mut text = format!(
+        "\n/** The number in the lock file: it stays what it is when axes and values are added. */\nexport function {to}(key: {ty} = {{}}): number {{\n  return keyNumber(key, {}, [\n{listed}  ]);\n}}\n",
+        ordinals.constant
+    );
+    let digit = |digit: &super::ordinal::Digit| {
+        let says = digit.says.iter().map(|says| match says {
+            Says::Value(value) => literal(&axes[digit.axis].values[*value]),
+            Says::Nothing => "null".to_owned(),
+            Says::Gone => "undefined".to_owned(),
+        });
+        let says = says.collect::<Vec<_>>().join(", ");
+        format!("    [{}, {}, \"{}\", [{says}]],\n", digit.weight, digit.radix, fields[digit.axis])
+    };
+    let digits: String = ordinals.digits.iter().map(digit).collect();
+    let _ = write!(
+        text,
+        "\n/** The key of a number; undefined if there is none. */\nexport function {from}(number: number): {ty} | undefined {{\n  const key: {ty} | undefined = numberKey(number, [\n{digits}  ]);\n  return key !== undefined && {to}(key) === number ? key : undefined;\n}}\n"
     );
     text
 }

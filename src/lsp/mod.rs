@@ -155,6 +155,7 @@ impl Server {
             ("textDocument/didClose", Some(path)) => {
                 self.documents.remove(&path);
                 self.forget(None);
+                self.changed.push_front(path);
             }
             ("textDocument/didSave" | "workspace/didChangeWatchedFiles", _) => self.forget(None),
             _ => {}
@@ -207,8 +208,12 @@ impl Server {
     }
 
     fn look_at(&self, file: &Path) -> Option<Value> {
-        let document = self.documents.get(file)?;
         let uri = place::address(file);
+        let Some(document) = self.documents.get(file) else {
+            // Closed: what was told of it is told no longer.
+            let parameters = json!({ "uri": uri, "diagnostics": [] });
+            return Some(notification("textDocument/publishDiagnostics", parameters));
+        };
         let found = self.problems(document, &uri).unwrap_or_default();
         let parameters = json!({ "uri": uri, "version": document.version, "diagnostics": found });
         Some(notification("textDocument/publishDiagnostics", parameters))

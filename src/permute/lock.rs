@@ -36,16 +36,16 @@ pub struct Lock {
 
 /// One line of the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Digit {
+pub(crate) struct Digit {
     program: String,
-    axis: String,
+    pub axis: String,
     /// Whether 0 means none of the values, rather than the first.
     added: bool,
     values: Vec<Setting>,
 }
 
 impl Digit {
-    fn radix(&self) -> u128 {
+    pub fn radix(&self) -> u128 {
         self.values.len() as u128 + u128::from(self.added)
     }
 
@@ -57,7 +57,8 @@ impl Digit {
             .map_or(0, |place| place as u128 + u128::from(self.added))
     }
 
-    fn setting(&self, digit: u128) -> Option<&Setting> {
+    /// The setting that a value of the digit stands for.
+    pub fn setting(&self, digit: u128) -> Option<&Setting> {
         self.values.get(usize::try_from(digit.checked_sub(u128::from(self.added))?).ok()?)
     }
 }
@@ -181,7 +182,10 @@ impl Lock {
     }
 
     /// The digits of a program with their weights; `None` for a weight beyond 128 bits.
-    fn digits<'a>(&'a self, program: &'a str) -> impl Iterator<Item = (Option<u128>, &'a Digit)> {
+    pub(crate) fn digits<'a>(
+        &'a self,
+        program: &'a str,
+    ) -> impl Iterator<Item = (Option<u128>, &'a Digit)> {
         self.lines.iter().filter(move |digit| digit.program == program).scan(
             Some(1u128),
             |weight, digit| {

@@ -5,6 +5,8 @@
 //! component. Formulas say where a comparison is too close to call (`near`), which inputs are
 //! meant (`where`), what an error grows with (`scaled`), and what is expected (`formula`).
 
+mod functions;
+
 use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, codes, nearest};
@@ -51,50 +53,34 @@ pub struct Function {
 }
 
 /// Every function, by name.
-pub const FUNCTIONS: &[Function] = &[
-    Function { name: "abs", arity: Some(1), apply: |a| map(&a[0], f64::abs) },
-    Function { name: "acos", arity: Some(1), apply: |a| map(&a[0], f64::acos) },
-    Function {
-        name: "clamp",
-        arity: Some(3),
-        apply: |a| zip(&zip(&a[0], &a[1], f64::max), &a[2], f64::min),
-    },
-    Function { name: "cross", arity: Some(2), apply: |a| cross(&a[0], &a[1]) },
-    Function {
-        name: "dot",
-        arity: Some(2),
-        apply: |a| vec![zip(&a[0], &a[1], |x, y| x * y).iter().sum()],
-    },
-    Function {
-        name: "dot_abs",
-        arity: Some(2),
-        apply: |a| vec![zip(&a[0], &a[1], |x, y| (x * y).abs()).iter().sum()],
-    },
-    Function { name: "exp2", arity: Some(1), apply: |a| map(&a[0], f64::exp2) },
-    Function { name: "floor", arity: Some(1), apply: |a| map(&a[0], f64::floor) },
-    Function { name: "length", arity: Some(1), apply: |a| vec![length(&a[0])] },
-    Function { name: "log2", arity: Some(1), apply: |a| map(&a[0], f64::log2) },
-    Function { name: "max", arity: Some(2), apply: |a| zip(&a[0], &a[1], f64::max) },
-    Function { name: "min", arity: Some(2), apply: |a| zip(&a[0], &a[1], f64::min) },
-    Function { name: "normalize", arity: Some(1), apply: |a| map(&a[0], |x| x / length(&a[0])) },
-    Function { name: "pow", arity: Some(2), apply: |a| zip(&a[0], &a[1], f64::powf) },
-    Function {
-        name: "select",
-        arity: Some(3),
-        apply: |a| if a[2][0] != 0.0 { a[1].clone() } else { a[0].clone() },
-    },
-    Function { name: "sqrt", arity: Some(1), apply: |a| map(&a[0], f64::sqrt) },
-    Function { name: "vec", arity: None, apply: |a| a.concat() },
-];
+pub const FUNCTIONS: &[Function] = functions::ALL;
+
+/// Why a text is no formula, and where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Mistake {
+    /// Bytes of the text.
+    pub range: Range<usize>,
+    pub message: String,
+    /// What there would have been.
+    pub note: Option<String>,
+}
+
+impl From<(Range<usize>, String)> for Mistake {
+    fn from((range, message): (Range<usize>, String)) -> Self {
+        Self { range, message, note: None }
+    }
+}
 
 impl Formula {
-    /// Parses a text over named parameters; ranges of the error are bytes of `text`.
-    pub fn parse(text: &str, scope: &Scope<'_>) -> Result<Self, (Range<usize>, String)> {
+    /// Parses a text over named parameters.
+    pub fn parse(text: &str, scope: &Scope<'_>) -> Result<Self, Mistake> {
         let mut parser = Parser { text, at: 0, depth: 0, parts: 0, scope };
         let formula = parser.binary(0)?;
         parser.skip();
         if parser.at < text.len() {
-            return Err((parser.at..text.len(), "unexpected text after the formula".to_owned()));
+            return Err(
+                (parser.at..text.len(), "unexpected text after the formula".to_owned()).into()
+            );
         }
         Ok(formula)
     }
@@ -170,13 +156,13 @@ struct Parser<'a> {
     scope: &'a Scope<'a>,
 }
 
-type Parsed = Result<Formula, (Range<usize>, String)>;
+type Parsed = Result<Formula, Mistake>;
 
 impl Parser<'_> {
     fn binary(&mut self, weakest: u8) -> Parsed {
         self.depth += 1;
         if self.depth > FORMULA_NESTING {
-            return Err((self.at..self.at, "the formula is nested too deeply".to_owned()));
+            return Err((self.at..self.at, "the formula is nested too deeply".to_owned()).into());
         }
         let mut left = self.unary()?;
         while let Some(operator) = self.operator(weakest) {
@@ -202,7 +188,7 @@ impl Parser<'_> {
         self.parts += 1;
         if self.parts > FORMULA_PARTS {
             let message = format!("the formula has more than {FORMULA_PARTS} signs and operands");
-            return Err((self.at..self.at, message));
+            return Err((self.at..self.at, message).into());
         }
         match self.text[self.at..].chars().next() {
             Some('-') => {
@@ -219,7 +205,8 @@ impl Parser<'_> {
             _ => Err((
                 self.at..self.text.len(),
                 "expected a number, a parameter or a function".to_owned(),
-            )),
+            )
+                .into()),
         }
     }
 
@@ -238,7 +225,7 @@ impl Parser<'_> {
         rest[..end]
             .parse()
             .map(Formula::Number)
-            .map_err(|_| (range, format!("`{}` is not a number", &rest[..end])))
+            .map_err(|_| (range, format!("`{}` is not a number", &rest[..end])).into())
     }
 
     fn name(&mut self) -> Parsed {
@@ -263,6 +250,7 @@ impl Parser<'_> {
                         known.map_or(String::new(), |known| format!("; did you mean `{known}`?"))
                     ),
                 )
+                    .into()
             },
         )
     }
@@ -270,13 +258,13 @@ impl Parser<'_> {
     fn call(&mut self, name: &str, range: Range<usize>) -> Parsed {
         let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
             let known = nearest(name, FUNCTIONS.iter().map(|function| function.name));
-            return Err((
+            let known = known.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
+            let names: Vec<&str> = FUNCTIONS.iter().map(|function| function.name).collect();
+            return Err(Mistake {
                 range,
-                format!(
-                    "there is no function `{name}`{}",
-                    known.map_or(String::new(), |known| format!("; did you mean `{known}`?"))
-                ),
-            ));
+                message: format!("there is no function `{name}`{known}"),
+                note: Some(format!("functions are {}", names.join(", "))),
+            });
         };
         self.at += 1;
         let mut arguments = vec![self.binary(0)?];
@@ -286,16 +274,17 @@ impl Parser<'_> {
         self.expect(')')?;
         match function.arity {
             Some(arity) if arity != arguments.len() => {
-                Err((range, format!("`{name}` takes {arity} arguments, not {}", arguments.len())))
+                Err((range, format!("`{name}` takes {arity} arguments, not {}", arguments.len()))
+                    .into())
             }
             _ => Ok(Formula::Call(function, arguments)),
         }
     }
 
-    fn expect(&mut self, wanted: char) -> Result<(), (Range<usize>, String)> {
+    fn expect(&mut self, wanted: char) -> Result<(), Mistake> {
         self.skip();
         if !self.text[self.at..].starts_with(wanted) {
-            return Err((self.at..self.text.len(), format!("expected `{wanted}`")));
+            return Err((self.at..self.text.len(), format!("expected `{wanted}`")).into());
         }
         self.at += wanted.len_utf8();
         Ok(())
@@ -310,10 +299,6 @@ fn truth(value: bool) -> f64 {
     f64::from(u8::from(value))
 }
 
-fn length(a: &[f64]) -> f64 {
-    a.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
 fn map(a: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
     a.iter().map(|x| f(*x)).collect()
 }
@@ -326,13 +311,4 @@ fn zip(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     };
     let pick = |v: &[f64], i: usize| v[if v.len() == 1 { 0 } else { i }];
     (0..count).map(|i| f(pick(a, i), pick(b, i))).collect()
-}
-
-fn cross(a: &[f64], b: &[f64]) -> Vec<f64> {
-    match (a, b) {
-        ([a0, a1, a2], [b0, b1, b2]) => {
-            vec![a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0]
-        }
-        _ => vec![f64::NAN; 3],
-    }
 }

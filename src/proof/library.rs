@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::cases::{self, File};
 use super::check::{self, Open, Report};
 use super::ratchet::{self, Ratchet};
+use super::untested;
 use crate::bundle::Language;
 use crate::compose::{self, Composed, Keep, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -132,7 +133,12 @@ impl Library {
         let subjects = |module: &str, language: Language, functions: &[String]| {
             self.module(sources, module, language, functions)
         };
-        check::check_with(&files, languages, &subjects, open, options)
+        let mut report = check::check_with(&files, languages, &subjects, open, options)?;
+        for (module, file) in &files {
+            let text = self.text(&format!("{}.wesl", module.replace("::", "/")));
+            report.untested.extend(text.iter().flat_map(|text| untested::of(module, text, file)));
+        }
+        Ok(report)
     }
 
     /// The case files of these paths, each with its module's path.

@@ -19,3 +19,4 @@ pub mod plots;
 pub mod ratchet;
 pub mod references;
 pub mod tolerance;
+mod untested;

@@ -1,41 +1,48 @@
 //! `index.html`: one page that needs nothing else.
 
+mod columns;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::escaped;
 use super::plot::{Series, error_plot, heat_map};
+use super::{Origin, escaped};
 use crate::bundle::Language;
-use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, failures_of, language, short};
+use crate::proof::check::{
+    Input, Outcome, Proof, Report, Verdict, failures_as_text, language, of_outcome, short,
+};
 
 const STYLE: &str = include_str!("style.css");
 
 /// The report as a page.
-pub fn page(report: &Report) -> String {
-    let page = Page::new(report);
+pub fn page(report: &Report, origin: &Origin<'_>) -> String {
+    let page = Page::new(report, origin);
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>Lamplight: numbers</title>\n<style>\n{STYLE}</style></head>\n<body>\n<header><h1>Lamplight: numbers</h1>\n"
     );
     page.summary(&mut html);
     html += "</header>\n<main>\n";
+    page.failed(&mut html);
     page.index(&mut html);
-    for (path, outcomes) in &page.functions {
+    for (path, outcomes) in page.failures_first() {
         page.function(&mut html, path, outcomes);
     }
+    columns::legend(&mut html);
     html + "</main></body></html>\n"
 }
 
 /// A report sorted for reading.
 struct Page<'a> {
     report: &'a Report,
+    origin: &'a Origin<'a>,
     /// In the order of their first runs.
     executors: Vec<&'static str>,
     functions: BTreeMap<String, Vec<&'a Outcome>>,
 }
 
 impl<'a> Page<'a> {
-    fn new(report: &'a Report) -> Self {
+    fn new(report: &'a Report, origin: &'a Origin<'a>) -> Self {
         let (mut executors, mut functions) = (Vec::new(), BTreeMap::<String, Vec<&Outcome>>::new());
         for outcome in &report.outcomes {
             if !executors.contains(&outcome.executor) {
@@ -43,7 +50,37 @@ impl<'a> Page<'a> {
             }
             functions.entry(outcome.path()).or_default().push(outcome);
         }
-        Self { report, executors, functions }
+        Self { report, origin, executors, functions }
+    }
+
+    fn fails(&self, path: &str, outcomes: &[&Outcome]) -> bool {
+        outcomes.iter().any(|outcome| outcome.failed())
+            || self.report.proofs.iter().any(|proof| !proof.passed() && proof.path() == path)
+    }
+
+    /// Functions in the order of a reader's interest.
+    fn failures_first(&self) -> Vec<(&String, &Vec<&'a Outcome>)> {
+        let mut functions: Vec<_> = self.functions.iter().collect();
+        functions.sort_by_key(|(path, outcomes)| !self.fails(path, outcomes));
+        functions
+    }
+
+    /// Links to what fails, above everything else.
+    fn failed(&self, html: &mut String) {
+        let failing = self.functions.iter().filter(|(path, outcomes)| self.fails(path, outcomes));
+        let links: Vec<String> =
+            failing.map(|(path, _)| format!("<a href=\"#{0}\">{0}</a>", escaped(path))).collect();
+        if !links.is_empty() {
+            let _ = writeln!(
+                html,
+                "<p class=\"failed\"><b class=\"bad\">fails</b> {}</p>",
+                links.join(", ")
+            );
+        }
+        if !self.report.untested.is_empty() {
+            let untested = escaped(&self.report.untested.join(", "));
+            let _ = writeln!(html, "<p class=\"note\">Without a case: {untested}.</p>");
+        }
     }
 
     fn class(&self, outcome: &Outcome) -> usize {
@@ -85,7 +122,10 @@ impl<'a> Page<'a> {
                 escaped(adapter)
             );
         }
-        html.push_str("</ul><p class=\"note\">Lines show the largest error over each parameter, dashed for GLSL; the grey area is what is allowed. Headroom is what is left of that.</p>\n");
+        let (version, command) = (env!("CARGO_PKG_VERSION"), escaped(&self.origin.command));
+        let _ =
+            write!(html, "</ul><p class=\"note\">lamplight {version}: <code>{command}</code></p>");
+        html.push_str("<p class=\"note\">Lines show the largest error over each parameter, dashed for GLSL; the grey area is what is allowed. Headroom is what is left of that.</p>\n");
     }
 
     /// One row a function, one column an executor.
@@ -95,13 +135,14 @@ impl<'a> Page<'a> {
             let _ = write!(html, "<th>{executor}</th>");
         }
         html.push_str("</tr></thead><tbody>\n");
-        for (path, outcomes) in &self.functions {
+        for (path, outcomes) in self.failures_first() {
             let _ = write!(html, "<tr><td><a href=\"#{0}\">{0}</a></td>", escaped(path));
             for executor in &self.executors {
                 let own: Vec<&&Outcome> =
                     outcomes.iter().filter(|outcome| outcome.executor == *executor).collect();
                 let share = own.iter().map(|outcome| share(outcome)).fold(0.0, f64::max);
-                html.push_str(&cell(!own.iter().any(|outcome| outcome.failed()), share));
+                let text = cell(!own.iter().any(|outcome| outcome.failed()), share);
+                html.push_str(&text);
             }
             html.push_str("</tr>\n");
         }
@@ -125,8 +166,12 @@ impl<'a> Page<'a> {
     }
 
     fn case(&self, html: &mut String, case: usize, outcomes: &[&Outcome], proof: Option<&Proof>) {
-        let _ = writeln!(html, "<h3>case {}</h3>", case + 1);
-        html.push_str("<table><thead><tr><th>executor</th><th>language</th><th>inputs</th><th>ULP</th><th>of allowed</th><th>headroom</th><th>of driver</th><th>ambiguous</th><th>free</th><th>parity ULP</th></tr></thead><tbody>\n");
+        let place = outcomes.first().map_or(String::new(), |outcome| {
+            let (file, line) = self.origin.place(outcome.span);
+            format!(", {}:{line}", escaped(file))
+        });
+        let _ = writeln!(html, "<h3>case {}{place}</h3>", case + 1);
+        columns::heading(html);
         for outcome in outcomes {
             row(html, outcome);
         }
@@ -211,7 +256,7 @@ fn row(html: &mut String, outcome: &Outcome) {
         Err(error) => {
             let _ = write!(
                 html,
-                "<td colspan=\"8\" class=\"{}\">{}: {}</td>",
+                "<td colspan=\"9\" class=\"{}\">{}: {}</td>",
                 if outcome.failed() { "bad" } else { "note" },
                 if outcome.failed() { "not run" } else { "cannot run here" },
                 escaped(&error.message)
@@ -229,8 +274,9 @@ fn numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
         |rows: usize| format!("{:.2} %", 100.0 * rows as f64 / verdict.inputs.max(1) as f64);
     let _ = write!(
         html,
-        "<td>{}</td><td>{}</td><td>{}</td>{}",
+        "<td>{}</td><td>{}</td><td>{}</td><td>{}</td>{}",
         verdict.inputs,
+        short(verdict.largest),
         short(ulps),
         short(allowed),
         cell(outcome.passed(), share(outcome))
@@ -294,12 +340,9 @@ fn proved(proof: &Proof) -> String {
 }
 
 fn failing(html: &mut String, outcomes: &[&Outcome]) {
-    for outcome in outcomes.iter().filter(|outcome| outcome.failed()) {
-        let _ = writeln!(
-            html,
-            "<pre class=\"bad\">{}</pre>",
-            escaped(&failures_of(std::slice::from_ref(*outcome), &[]))
-        );
+    for failure in outcomes.iter().filter_map(|outcome| of_outcome(outcome)) {
+        let text = failures_as_text(std::slice::from_ref(&failure));
+        let _ = writeln!(html, "<pre class=\"bad\">{}</pre>", escaped(&text));
     }
 }
 

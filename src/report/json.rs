@@ -2,20 +2,25 @@
 
 use serde_json::{Value, json};
 
+use super::Origin;
 use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, Worst, language};
 
 /// The report as indented JSON.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &Report, origin: &Origin<'_>) -> String {
     let value = json!({
         "format": 1,
+        "version": env!("CARGO_PKG_VERSION"),
+        "command": origin.command,
         "passed": report.passed(),
-        "outcomes": report.outcomes.iter().map(outcome).collect::<Vec<_>>(),
-        "proofs": report.proofs.iter().map(proof).collect::<Vec<_>>(),
+        "outcomes": report.outcomes.iter().map(|one| outcome(one, origin)).collect::<Vec<_>>(),
+        "proofs": report.proofs.iter().map(|one| proof(one, origin)).collect::<Vec<_>>(),
+        "untested": report.untested,
     });
     format!("{value:#}\n")
 }
 
-fn outcome(outcome: &Outcome) -> Value {
+fn outcome(outcome: &Outcome, origin: &Origin<'_>) -> Value {
+    let (file, line) = origin.place(outcome.span);
     let (verdict, error) = match &outcome.verdict {
         Ok(found) => (verdict(found), Value::Null),
         Err(error) => (Value::Null, json!(error.message)),
@@ -24,6 +29,8 @@ fn outcome(outcome: &Outcome) -> Value {
         "module": outcome.module,
         "function": outcome.function,
         "case": outcome.case,
+        "file": file,
+        "line": line,
         "language": language(outcome.language),
         "executor": outcome.executor,
         "adapter": outcome.adapter,
@@ -49,6 +56,7 @@ fn verdict(verdict: &Verdict) -> Value {
         "ambiguous": verdict.ambiguous,
         "failing": verdict.failing.len(),
         "parity_ulps": verdict.parity,
+        "largest_error": verdict.largest,
         "worst": verdict.worst.as_ref().map(worst),
         "worst_inputs": worst_inputs.map(input).collect::<Vec<_>>(),
         "laws": laws.collect::<Vec<_>>(),
@@ -75,7 +83,8 @@ fn input(input: &Input) -> Value {
     json!({ "words": words.collect::<Vec<_>>(), "outcome": worst(&input.worst) })
 }
 
-fn proof(proof: &Proof) -> Value {
+fn proof(proof: &Proof, origin: &Origin<'_>) -> Value {
+    let (file, line) = origin.place(proof.span);
     let spec = match &proof.spec {
         Ok(spec) => json!({
             "rows": spec.rows,
@@ -99,9 +108,12 @@ fn proof(proof: &Proof) -> Value {
         "module": proof.module,
         "function": proof.function,
         "case": proof.case,
+        "file": file,
+        "line": line,
         "passed": proof.passed(),
         "spec": spec,
         "value": value,
         "parity": parity,
+        "arguments": proof.arguments,
     })
 }

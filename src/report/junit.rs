@@ -3,20 +3,23 @@
 
 use std::fmt::Write as _;
 
-use super::escaped;
-use crate::proof::check::{Report, failures_of, language};
+use super::{Origin, escaped};
+use crate::diagnostic::Diagnostic;
+use crate::proof::check::{Report, failures_as_text, language, of_outcome, of_proof};
 
 /// A test case: the module it belongs to, its name, how it failed, and why it cannot run.
 struct Test<'a> {
     module: &'a str,
     name: String,
-    failure: Option<String>,
+    /// File and line of the case.
+    place: (&'a str, usize),
+    failure: Option<Diagnostic>,
     lacks: Option<&'a str>,
 }
 
 /// The report as JUnit understands it.
-pub fn text(report: &Report) -> String {
-    let tests = tests(report);
+pub fn text(report: &Report, origin: &Origin<'_>) -> String {
+    let tests = tests(report, origin);
     let mut modules: Vec<&str> = tests.iter().map(|test| test.module).collect();
     modules.sort_unstable();
     modules.dedup();
@@ -34,7 +37,7 @@ pub fn text(report: &Report) -> String {
     text + "</testsuites>\n"
 }
 
-fn tests(report: &Report) -> Vec<Test<'_>> {
+fn tests<'a>(report: &'a Report, origin: &'a Origin<'_>) -> Vec<Test<'a>> {
     let outcomes = report.outcomes.iter().map(|outcome| Test {
         module: &outcome.module,
         name: format!(
@@ -44,13 +47,15 @@ fn tests(report: &Report) -> Vec<Test<'_>> {
             language(outcome.language),
             outcome.executor
         ),
-        failure: outcome.failed().then(|| failures_of(std::slice::from_ref(outcome), &[])),
+        place: origin.place(outcome.span),
+        failure: of_outcome(outcome),
         lacks: outcome.lacks().map(|lack| lack.message.as_str()),
     });
     let proofs = report.proofs.iter().map(|proof| Test {
         module: &proof.module,
         name: format!("{} case {} in f64", proof.function, proof.case + 1),
-        failure: (!proof.passed()).then(|| failures_of(&[], std::slice::from_ref(proof))),
+        place: origin.place(proof.span),
+        failure: of_proof(proof),
         lacks: None,
     });
     outcomes.chain(proofs).collect()
@@ -72,11 +77,13 @@ fn suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
     for test in tests {
         let _ = write!(
             text,
-            "    <testcase classname=\"{}\" name=\"{}\"",
+            "    <testcase classname=\"{}\" name=\"{}\" file=\"{}\" line=\"{}\"",
             escaped(module),
-            escaped(&test.name)
+            escaped(&test.name),
+            escaped(test.place.0),
+            test.place.1
         );
-        let Some(details) = &test.failure else {
+        let Some(failure) = &test.failure else {
             text.push_str(&match test.lacks {
                 Some(reason) => {
                     format!(
@@ -88,12 +95,11 @@ fn suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
             });
             continue;
         };
-        let first = details.lines().next().unwrap_or_default();
         let _ = writeln!(
             text,
             ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>",
-            escaped(first),
-            escaped(details)
+            escaped(&failure.message),
+            escaped(&failures_as_text(std::slice::from_ref(failure)))
         );
     }
     text.push_str("  </testsuite>\n");

@@ -1,6 +1,7 @@
 //! A check's report as files: a page to look at, JSON for programs, JUnit for continuous integration.
 //!
-//! Each is a function from the [`Report`] to its text; the command line writes them.
+//! Each is a function from the [`Report`] and its [`Origin`] to a text; the command line writes
+//! them.
 
 mod html;
 mod json;
@@ -9,12 +10,29 @@ mod plot;
 
 use crate::diagnostic::is_obeyed;
 use crate::proof::check::Report;
+use crate::source::{SourceSet, Span};
 
 /// A form of a report.
 pub struct Entry {
     /// File name.
     pub file: &'static str,
-    pub text: fn(&Report) -> String,
+    pub text: fn(&Report, &Origin<'_>) -> String,
+}
+
+/// What a report is of.
+pub struct Origin<'a> {
+    /// The case files.
+    pub sources: &'a SourceSet,
+    /// The command line that made it.
+    pub command: String,
+}
+
+impl Origin<'_> {
+    /// File and line of a case.
+    pub fn place(&self, span: Span) -> (&str, usize) {
+        let (line, _) = self.sources.position(span.source, span.start as usize);
+        (&self.sources.get(span.source).path, line)
+    }
 }
 
 /// Every form.

@@ -2,6 +2,9 @@
 
 use crate::cache::{Folder, Storage};
 
+/// What an address may be, for help.
+pub const HELP: &str = "A cache that machines share, asked after the folder: `fs:/path`";
+
 /// The store at `fs:/path`.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     match address.split_once(':') {

@@ -13,6 +13,10 @@ use tokio::time::timeout;
 
 use crate::cache::Storage;
 
+/// What an address may be, for help.
+pub const HELP: &str =
+    "A cache that machines share, asked after the folder: `fs:/path` or `redis://host:port`";
+
 /// How long a server may take for its first answer.
 const PATIENCE: Duration = Duration::from_secs(5);
 

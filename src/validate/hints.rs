@@ -9,14 +9,13 @@ use crate::diagnostic::{Diagnostic, nearest};
 use crate::source::{Embedded, Files};
 
 /// Functions and types of both languages that are often misspelt.
-const PREDECLARED: &[&str] = &[
+const SHARED: &[&str] = &[
     "abs",
     "acos",
     "all",
     "any",
     "asin",
     "atan",
-    "atan2",
     "ceil",
     "clamp",
     "cos",
@@ -27,13 +26,9 @@ const PREDECLARED: &[&str] = &[
     "dot",
     "exp",
     "exp2",
-    "faceForward",
     "floor",
-    "fma",
     "fract",
     "fwidth",
-    "inverseSqrt",
-    "inversesqrt",
     "length",
     "log",
     "log2",
@@ -46,48 +41,69 @@ const PREDECLARED: &[&str] = &[
     "reflect",
     "refract",
     "round",
-    "saturate",
-    "select",
     "sign",
     "sin",
     "smoothstep",
     "sqrt",
     "step",
     "tan",
+    "transpose",
+    "trunc",
+    "bool",
+    "vec2",
+    "vec3",
+    "vec4",
+];
+
+/// Those of WGSL alone.
+const WGSL: &[&str] = &[
+    "array",
+    "atan2",
+    "f32",
+    "faceForward",
+    "fma",
+    "i32",
+    "inverseSqrt",
+    "mat2x2f",
+    "mat3x3f",
+    "mat4x4f",
+    "saturate",
+    "select",
     "textureLoad",
     "textureSample",
     "textureSampleCompare",
     "textureSampleLevel",
-    "texture",
-    "textureLod",
-    "transpose",
-    "trunc",
-    "bool",
-    "f32",
-    "i32",
     "u32",
+    "vec2f",
+    "vec2i",
+    "vec2u",
+    "vec3f",
+    "vec3i",
+    "vec3u",
+    "vec4f",
+    "vec4i",
+    "vec4u",
+];
+
+/// Those of GLSL alone.
+const GLSL: &[&str] = &[
     "float",
     "int",
-    "uint",
-    "vec2",
-    "vec3",
-    "vec4",
-    "vec2f",
-    "vec3f",
-    "vec4f",
-    "vec2i",
-    "vec3i",
-    "vec4i",
-    "vec2u",
-    "vec3u",
-    "vec4u",
-    "mat2x2f",
-    "mat3x3f",
-    "mat4x4f",
+    "inversesqrt",
+    "ivec2",
+    "ivec3",
+    "ivec4",
     "mat2",
     "mat3",
     "mat4",
-    "array",
+    "mod",
+    "texelFetch",
+    "texture",
+    "textureLod",
+    "uint",
+    "uvec2",
+    "uvec3",
+    "uvec4",
 ];
 
 /// Adds what to import, or the nearest name.
@@ -97,12 +113,17 @@ pub fn unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic
             error.note(format!("help: the library has it: `{}`", import(composed, module, name)))
         });
     }
+    let own = match composed.language {
+        Language::Wesl => WGSL,
+        Language::Glsl => GLSL,
+    };
     let declared = composed.parts.iter().flat_map(|part| part.names.iter().map(String::as_str));
-    let known = declared.chain(PREDECLARED.iter().copied());
-    if let Some(near) = nearest(name, known) {
-        return error.note(format!("help: did you mean `{near}`?"));
-    }
-    match nearest(name, library().keys().map(String::as_str)) {
+    let here: Vec<&str> =
+        declared.chain(SHARED.iter().copied()).chain(own.iter().copied()).collect();
+    let of_library = library().keys().map(String::as_str);
+    // One search over all of them: what is nearest is meant, wherever it is.
+    match nearest(name, here.iter().copied().chain(of_library)) {
+        Some(near) if here.contains(&near) => error.note(format!("help: did you mean `{near}`?")),
         Some(near) => library()[near].iter().fold(error, |error, module| {
             let import = import(composed, module, near);
             error.note(format!("help: did you mean the library's `{near}`? `{import}`"))
@@ -114,7 +135,7 @@ pub fn unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic
 fn import(composed: &Composed, module: &str, name: &str) -> String {
     match composed.language {
         Language::Wesl => format!("import lamplight::{}::{name};", module.replace('/', "::")),
-        Language::Glsl => format!("#include <lamplight/{module}.glsl>"),
+        Language::Glsl => format!("#include \"lamplight/{module}.glsl\""),
     }
 }
 

@@ -104,6 +104,9 @@ pub fn validation(
     let diagnostic = spans
         .into_iter()
         .fold(diagnostic, |diagnostic, (range, words)| place(diagnostic, composed, range, words));
+    let diagnostic = said.beside.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
+        place(diagnostic, composed, span.to_range(), &words)
+    });
     said.notes.into_iter().fold(diagnostic, Diagnostic::note)
 }
 

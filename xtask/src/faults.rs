@@ -1,8 +1,11 @@
-//! `cargo xtask faults`: calls of the system that fail, and runs that are killed at them.
+//! `cargo xtask faults`: calls of the system that fail, runs that are killed at them, caches that
+//! answer wrongly, and clocks that jump.
 //!
 //! A small bundle is generated over an older one, once for each call and each of its occurrences,
 //! with that occurrence failing or ending the run (`strace` injects it). Whatever happens, the
 //! folder holds a whole bundle afterwards: the older or the newer one. Panics are findings too.
+
+mod stores;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,28 +16,46 @@ use crate::generate::root;
 use crate::{Failure, Outcome};
 
 /// Calls that name a file, or that write to one.
-const CALLS: &[&str] =
-    &["openat", "write", "rename", "mkdir", "unlink", "rmdir", "statx", "fsync", "flock"];
+const CALLS: &[&str] = &[
+    "openat",
+    "write",
+    "rename",
+    "mkdir",
+    "unlink",
+    "unlinkat",
+    "rmdir",
+    "statx",
+    "fstat",
+    "fsync",
+    "flock",
+    "read",
+    "lseek",
+    "getdents64",
+    "readlink",
+    "ftruncate",
+];
 
 /// What is done at a call: a name, and `strace`'s words for it.
 const FAULTS: &[(&str, &str)] = &[
     ("disk full", "error=ENOSPC"),
     ("input or output error", "error=EIO"),
     ("not permitted", "error=EACCES"),
+    ("quota exceeded", "error=EDQUOT"),
+    ("read-only file system", "error=EROFS"),
+    ("too many open files", "error=EMFILE"),
+    ("late by 20 ms", "delay_enter=20000"),
     ("killed", "signal=KILL"),
 ];
 
 /// Faults of one kind at one call: later occurrences are alike.
-const MOST: usize = 40;
+const MOST: usize = 24;
 
 const MANIFEST: &str = "[program.small]\nwesl = \"small.wesl\"\ntargets = [\"wgsl\"]\n\
     [program.small.axis]\ncount = { values = [1, 2, 3] }\n";
 
 /// Injects every fault; a bundle that is not whole afterwards is exit code 3.
 pub fn run(arguments: &[String]) -> Outcome {
-    if !arguments.is_empty() {
-        return Err(Failure::usage("usage: cargo xtask faults"));
-    }
+    let seed = seed(arguments)?;
     let package = Package::new()?;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut findings = Vec::new();
@@ -54,6 +75,7 @@ pub fn run(arguments: &[String]) -> Outcome {
             }
         }
     }
+    findings.extend(stores::run(&package, seed, &mut counts)?);
     for (fault, count) in &counts {
         println!("{fault:22} {count:6}");
     }
@@ -61,6 +83,15 @@ pub fn run(arguments: &[String]) -> Outcome {
     match findings.is_empty() {
         true => Ok(()),
         false => Err(Failure::check(format!("{} findings", findings.len()))),
+    }
+}
+
+fn seed(arguments: &[String]) -> Result<u64, Failure> {
+    const USAGE: &str = "usage: cargo xtask faults [--seed N]";
+    match arguments {
+        [] => Ok(1),
+        [name, seed] if name == "--seed" => seed.parse().map_err(|_| Failure::usage(USAGE)),
+        _ => Err(Failure::usage(USAGE)),
     }
 }
 
@@ -80,10 +111,7 @@ struct Package {
 
 impl Package {
     fn new() -> Result<Self, Failure> {
-        let program = root().join("target/debug/lamplight");
-        if !program.is_file() {
-            return Err(Failure::environment("build it first: cargo build"));
-        }
+        let program = beside_this()?;
         let folder = root().join("target/faults");
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).map_err(environment)?;
@@ -147,8 +175,18 @@ impl Package {
     }
 }
 
+/// The program that was built beside this one, in the same profile.
+pub fn beside_this() -> Result<PathBuf, Failure> {
+    let program = std::env::current_exe().map_err(environment)?.with_file_name("lamplight");
+    match program.is_file() {
+        true => Ok(program),
+        false => Err(Failure::environment("build it first: cargo build")),
+    }
+}
+
 fn was_injected(trace: &Path) -> bool {
-    fs::read_to_string(trace).is_ok_and(|text| text.contains("(INJECTED)"))
+    fs::read_to_string(trace)
+        .is_ok_and(|text| text.contains("(INJECTED)") || text.contains("(DELAYED)"))
 }
 
 fn environment(error: std::io::Error) -> Failure {

@@ -38,6 +38,11 @@ pub struct Judged {
 }
 
 impl Judged {
+    /// Where nobody was asked.
+    pub fn nothing() -> Self {
+        Self { refusals: Vec::new(), missing: Vec::new() }
+    }
+
     /// Fails if a judge was not there.
     pub fn complete(&self) -> Outcome {
         if self.missing.is_empty() {

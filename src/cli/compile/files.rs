@@ -75,7 +75,7 @@ fn stage(stage: naga::ShaderStage) -> &'static str {
 }
 
 /// Files of several targets must not share a name; GLSL files end as glslang expects.
-fn ending(target: Target, stage: &str, extension: &str) -> String {
+pub fn ending(target: Target, stage: &str, extension: &str) -> String {
     match target {
         Target::GLSL450 | Target::GLSL330 | Target::ESSL300 => format!("{target}.{stage}"),
         _ => format!("{stage}.{extension}"),

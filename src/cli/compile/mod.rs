@@ -4,6 +4,7 @@ mod depfile;
 mod files;
 mod target;
 
+pub use files::ending;
 pub use target::{Wanted, clip, target, wanted, wanted_one};
 
 use std::path::PathBuf;

@@ -69,7 +69,21 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 fn files() -> Result<Contents, Failure> {
     let mut contents = texts(&["wesl", "wgsl", "glsl"])?;
     contents.extend(texts(&["toml"])?.into_iter().filter(|(path, _)| path == "wesl.toml"));
+    contents.extend(licenses());
+    contents.insert("README.md".to_owned(), readme());
     Ok(contents)
+}
+
+/// What the files are, and of which version.
+fn readme() -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    let (license, repository) = (env!("CARGO_PKG_LICENSE"), env!("CARGO_PKG_REPOSITORY"));
+    format!(
+        "# lamplight {version}\n\n{DESCRIPTION}, with the same functions in GLSL.\n\n\
+         A compiler's include path is the folder above this one:\n\
+         `#include \"lamplight/brdf/specular.glsl\"`.\n\n\
+         Licence: {license}. Source: {repository}\n"
+    )
 }
 
 /// What others import. Programs are entry points, with conditions over axes of Lamplight's.

@@ -10,7 +10,7 @@ pub const NAME: &str = LIBRARY;
 
 pub fn contents(modules: Contents, glsl: Contents) -> Contents {
     let own = [
-        ("package.json", pretty(&manifest())),
+        ("package.json", manifest()),
         ("dist/weslBundle.js", bundle(&modules)),
         ("dist/weslBundle.d.ts", TYPES.to_owned()),
         ("README.md", README.to_owned()),
@@ -23,23 +23,32 @@ pub fn contents(modules: Contents, glsl: Contents) -> Contents {
         .collect()
 }
 
-fn manifest() -> Value {
-    json!({
-        "name": NAME,
-        "version": env!("CARGO_PKG_VERSION"),
-        "description": DESCRIPTION,
-        "license": format!("({})", env!("CARGO_PKG_LICENSE")),
-        "repository": { "type": "git", "url": format!("git+{}.git", env!("CARGO_PKG_REPOSITORY")) },
-        "keywords": KEYWORDS,
-        "type": "module",
-        "sideEffects": false,
-        "files": ["dist", "shaders", "glsl", "wesl.toml", "LICENSE-MIT", "LICENSE-APACHE"],
-        "exports": {
-            ".": { "types": "./dist/weslBundle.d.ts", "import": "./dist/weslBundle.js" },
-            "./glsl/*": "./glsl/*",
-            "./package.json": "./package.json",
-        },
-    })
+/// By hand, since the order of conditions matters: tools take the first that they know, and `types`
+/// has to come before `import`.
+fn manifest() -> String {
+    let (name, description) = (json!(NAME), json!(DESCRIPTION));
+    let keywords = json!(KEYWORDS);
+    let (version, license) = (env!("CARGO_PKG_VERSION"), env!("CARGO_PKG_LICENSE"));
+    let repository = env!("CARGO_PKG_REPOSITORY");
+    format!(
+        r#"{{
+  "name": {name},
+  "version": "{version}",
+  "description": {description},
+  "license": "({license})",
+  "repository": {{ "type": "git", "url": "git+{repository}.git" }},
+  "keywords": {keywords},
+  "type": "module",
+  "sideEffects": false,
+  "files": ["dist", "shaders", "glsl", "wesl.toml", "LICENSE-MIT", "LICENSE-APACHE"],
+  "exports": {{
+    ".": {{ "types": "./dist/weslBundle.d.ts", "import": "./dist/weslBundle.js" }},
+    "./glsl/*": "./glsl/*",
+    "./package.json": "./package.json"
+  }}
+}}
+"#
+    )
 }
 
 /// JSON is JavaScript: the module is one object, its texts as strings.

@@ -1,5 +1,6 @@
 //! Composes GLSL: preprocesses, keeps what is reached, writes it down.
 
+mod always;
 mod condition;
 mod expand;
 mod gap;
@@ -19,6 +20,7 @@ use crate::compose::{Composed, Keep, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::Settings;
 use crate::resolve::glsl::Graph;
+use crate::source::Span;
 use items::Items;
 use preprocess::{Preprocessed, preprocess};
 use token::{NO_SETTING, Tok};
@@ -42,6 +44,8 @@ pub fn compose(
     let (text, map) = (writer.text, writer.map);
     let parts = parts::parts(&preprocessed, &items, &kept, ranges);
     let decisions = preprocessed.decisions.clone();
+    let mut warnings = preprocessed.warnings.clone();
+    warnings.extend(unversioned(graph, &preprocessed, &options.keep));
     let reads = reads(graph, preprocessed, &items, &kept)?;
     Ok(Composed {
         language: Language::Glsl,
@@ -50,9 +54,29 @@ pub fn compose(
         map,
         parts,
         reads,
-        warnings: Vec::new(),
+        warnings,
         decisions,
     })
+}
+
+/// A shader without a version is one of GLSL 1.10 to other compilers.
+fn unversioned(
+    graph: &Graph,
+    preprocessed: &Preprocessed<'_, '_>,
+    keep: &Keep,
+) -> Option<Diagnostic> {
+    let is_part = matches!(keep, Keep::Items(_) | Keep::Root);
+    if preprocessed.version.is_some() || is_part {
+        return None;
+    }
+    let root = graph.modules.first()?;
+    let first = Span::new(root.source, 0..root.text.find('\n').unwrap_or(root.text.len()));
+    let message = "the shader has no `#version`, and is read as `#version 450`";
+    Some(
+        Diagnostic::warning(codes::MISSING_VERSION, message)
+            .at(first, "the version belongs before this")
+            .note("help: begin the file with `#version 450`: other compilers take 110 without it"),
+    )
 }
 
 /// File name endings.

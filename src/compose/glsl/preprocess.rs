@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::always;
 use super::condition::evaluate;
 use super::expand::{Expander, Fatal, Input, same_definition};
 use super::reads::Reads;
@@ -25,6 +26,7 @@ pub struct Preprocessed<'g, 's> {
     pub reads: Reads<'s>,
     pub spellings: Spellings<'g>,
     pub decisions: Vec<Decision>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// Preprocesses the root of a graph; all errors that were found, at least one, otherwise.
@@ -52,13 +54,15 @@ pub fn preprocess<'g, 's>(
         version: None,
         header: Vec::new(),
         decisions: Vec::new(),
+        warnings: Vec::new(),
     };
     state.check_module(0);
     state.run();
-    let State { expander, tokens, version, header, decisions, .. } = state;
+    let State { expander, tokens, version, header, decisions, warnings, .. } = state;
     let Expander { errors, reads, table, .. } = expander;
     if errors.is_empty() {
-        Ok(Preprocessed { tokens, version, header, reads, spellings: table.spellings, decisions })
+        let spellings = table.spellings;
+        Ok(Preprocessed { tokens, version, header, reads, spellings, decisions, warnings })
     } else {
         Err(errors)
     }
@@ -82,6 +86,7 @@ struct State<'g, 's> {
     version: Option<Span>,
     header: Vec<Span>,
     decisions: Vec<Decision>,
+    warnings: Vec<Diagnostic>,
 }
 
 #[derive(Clone, Copy)]
@@ -190,6 +195,11 @@ impl<'g> State<'g, '_> {
         while let Some(Part::Directive(directive, span)) =
             self.graph.modules[module].parts.get(index)
         {
+            self.warnings.extend(always::warning(
+                &self.expander,
+                &self.graph.modules[module],
+                index,
+            ));
             let (holds, next) = match directive {
                 Directive::If { condition, next } => {
                     (self.decide(module, condition.clone(), *span, false)?, *next)

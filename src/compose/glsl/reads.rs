@@ -61,6 +61,11 @@ impl<'s> Reads<'s> {
         self.entries[usize::from(setting)].symbol
     }
 
+    /// Whether a setting is a boolean that is true; it does not count as read.
+    pub fn is_on(&self, setting: u16) -> bool {
+        *self.entries[usize::from(setting)].setting == Setting::Bool(true)
+    }
+
     /// The value of a setting, which counts as read; the declared name and value if it has none.
     pub fn read(&mut self, setting: u16) -> Result<i64, (&'s str, &'s Setting)> {
         self.count += 1;

@@ -8,7 +8,9 @@ use super::condition::{self, Chain};
 use super::cursor::Tokens;
 use super::import::origin;
 use super::item::{Place, after_template};
-use super::module::{ConditionId, Event, ItemKind, LocalUse, Module, Origin, Path, Reference};
+use super::module::{
+    ConditionId, Event, ItemKind, LocalUse, Module, Origin, Parts, Path, Reference,
+};
 use super::name::{Name, Names};
 use super::scope::{Meaning, Scopes};
 use super::token::{Kind, Token};
@@ -306,6 +308,7 @@ impl Scanner<'_, '_> {
 
     fn path(&mut self, at: usize) -> Result<usize, Diagnostic> {
         let (origin, mut end) = origin(self.tokens, at)?;
+        let first = end;
         let mut segments = Vec::new();
         loop {
             segments.push(self.tokens.identifier(end, "a name")?);
@@ -316,6 +319,11 @@ impl Scanner<'_, '_> {
             end += 1;
         }
         let range = self.tokens.range(at, end);
+        let parts = Parts {
+            first: self.tokens.range(first, first + 1),
+            parents: self.tokens.range(at, end.saturating_sub(2).max(at)),
+            last: self.tokens.range(end - 1, end),
+        };
         let next = self.module.references.len() as u32;
         let reference = *self.paths.entry((origin, segments.clone())).or_insert(next);
         if reference == next {
@@ -323,6 +331,7 @@ impl Scanner<'_, '_> {
                 origin,
                 segments,
                 range: range.clone(),
+                parts,
             }));
         }
         self.events.push(Event::Use { reference, guard: None, start: range.start, end: range.end });

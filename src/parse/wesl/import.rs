@@ -1,7 +1,7 @@
 //! `import` statements, flattened to one entry for each name.
 
 use super::cursor::Tokens;
-use super::module::{ConditionId, Import, Module, Origin, Path};
+use super::module::{ConditionId, Import, Module, Origin, Parts, Path};
 use super::name::Name;
 use super::token::Kind;
 use crate::diagnostic::{Diagnostic, codes};
@@ -15,7 +15,9 @@ pub fn import(
 ) -> Result<usize, Diagnostic> {
     let first = at + 1;
     let (origin, after) = origin(tokens, first)?;
-    let path = Path { origin, segments: Vec::new(), range: tokens.range(first, first) };
+    let nowhere = tokens.range(first, first);
+    let parts = Parts { first: nowhere.clone(), parents: nowhere.clone(), last: nowhere.clone() };
+    let path = Path { origin, segments: Vec::new(), range: nowhere, parts };
     let mut reader = Reader { module, tokens, condition, at: after };
     match reader.tokens.is(after, b'{') {
         true => reader.collection(&path)?,
@@ -73,17 +75,27 @@ impl Reader<'_, '_> {
     ///
     /// `start` is where it starts, unless in a collection.
     fn path(&mut self, mut path: Path, start: Option<usize>) -> Result<(), Diagnostic> {
+        let own = start.unwrap_or(self.at);
         loop {
             if self.tokens.is_word(self.at, Name::AS) {
                 return Err(misplaced_as(self.tokens, self.at));
             }
-            path.segments.push(self.tokens.identifier(self.at, "a name")?);
+            let name = self.tokens.identifier(self.at, "a name")?;
+            let place = self.tokens.range(self.at, self.at + 1);
+            if path.segments.is_empty() {
+                path.parts.first = place.clone();
+            } else if self.at > own {
+                path.parts.parents = self.tokens.range(own, self.at - 1);
+            }
+            path.parts.last = place;
+            path.segments.push(name);
             self.at += 1;
             if self.tokens.kind(self.at) != Some(Kind::Path) {
                 break;
             }
             self.at += 1;
             if self.tokens.is(self.at, b'{') {
+                path.parts.parents = self.tokens.range(own, self.at - 1);
                 return self.collection(&path);
             }
         }

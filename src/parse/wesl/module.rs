@@ -128,6 +128,18 @@ pub struct Path {
     pub origin: Origin,
     pub segments: Vec<Name>,
     pub range: Range<u32>,
+    pub parts: Parts,
+}
+
+/// Places within a path. In a collection, `a::{b, c}`, those of what is shared are before `range`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Parts {
+    /// The first name.
+    pub first: Range<u32>,
+    /// All but the last name, as far as they are written in one piece.
+    pub parents: Range<u32>,
+    /// The last name.
+    pub last: Range<u32>,
 }
 
 /// Where a path starts.

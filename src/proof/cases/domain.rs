@@ -254,6 +254,7 @@ impl Domain {
                 special_values(*special).len() * (1 + size * usize::from(size > 1))
             }
             Self::Union(parts) => {
+                unmistakable(parts, size)?;
                 let counts = parts.iter().map(|part| part.count(shape, other));
                 counts.sum::<Result<usize, String>>()?
             }
@@ -308,6 +309,32 @@ impl Domain {
                 parts.iter().flat_map(|part| part.values(size, other, salt)).collect()
             }
         }
+    }
+}
+
+/// Refuses as many plain numbers as a vector has components: they would be vectors of equal
+/// components, and whoever writes them means one vector.
+fn unmistakable(parts: &[Domain], size: usize) -> Result<(), String> {
+    let one = |part: &Domain| match part {
+        Domain::Values(values) => values.iter().map(|value| plain(value)).collect(),
+        _ => None,
+    };
+    let numbers: Option<Vec<Vec<f64>>> = parts.iter().map(one).collect();
+    let Some(numbers) = numbers.map(|numbers| numbers.concat()) else { return Ok(()) };
+    if size < 2 || numbers.len() != size || (parts.len() != 1 && parts.len() != size) {
+        return Ok(());
+    }
+    let list = format!("{numbers:?}");
+    Err(format!(
+        "these are {size} vectors of equal components: for one vector write `{{ values = [{list}] }}`, for {size} of them `{{ values = {list} }}`"
+    ))
+}
+
+/// The number of a value that has one.
+fn plain(value: &[f64]) -> Option<f64> {
+    match value {
+        [number] => Some(*number),
+        _ => None,
     }
 }
 

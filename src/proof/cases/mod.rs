@@ -59,7 +59,7 @@ pub use rows::{Rows, numbers, rows};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::formula::{Formula, Scope};
+use super::formula::{Formula, Mistake, Scope};
 use super::laws::Law;
 use super::tolerance::{self, Term};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -149,7 +149,7 @@ impl Case {
 impl Text {
     /// The formula over the parameters of a function.
     pub fn bind(&self, scope: &Scope<'_>) -> Result<Formula, Diagnostic> {
-        Formula::parse(&self.text, scope).map_err(|(range, message)| {
+        Formula::parse(&self.text, scope).map_err(|Mistake { range, message, note }| {
             // The span has the quotation mark before the text; an escaped text is longer than its value.
             let exact = (self.span.end - self.span.start) as usize == self.text.len() + 2;
             let start = self.span.start as usize + 1;
@@ -158,7 +158,8 @@ impl Text {
             } else {
                 self.span
             };
-            Diagnostic::error(codes::CASE_INVALID, message).at(span, "in this formula")
+            let error = Diagnostic::error(codes::CASE_INVALID, message).at(span, "in this formula");
+            note.into_iter().fold(error, Diagnostic::note)
         })
     }
 

@@ -22,6 +22,8 @@ pub struct Verdict {
     pub too_ambiguous: bool,
     /// The component whose error is the largest share of its tolerance.
     pub worst: Option<Worst>,
+    /// The largest error of all rows but the ambiguous ones.
+    pub largest: f64,
     /// Rows that are wrong.
     pub failing: Vec<usize>,
     pub laws: Vec<LawVerdict>,
@@ -91,11 +93,15 @@ pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Target], results: &[u32]) -
             continue;
         }
         let Some(worst) = compare(job, row, target, found, &kinds, index) else { continue };
+        let is_ambiguous = target.doubtful || is_ambiguous(job, row);
+        if worst.share() <= 1.0 || !is_ambiguous {
+            verdict.largest = verdict.largest.max(worst.error);
+        }
         if worst.share() <= 1.0 {
             if verdict.worst.is_none_or(|known| known.share() <= worst.share()) {
                 verdict.worst = Some(worst);
             }
-        } else if target.doubtful || is_ambiguous(job, row) {
+        } else if is_ambiguous {
             verdict.ambiguous += 1;
         } else {
             verdict.failing.push(index);

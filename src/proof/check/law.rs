@@ -1,7 +1,7 @@
 //! Judges the laws of a case.
 
 use super::job::{Job, Target};
-use super::judge;
+use super::{judge, profile};
 use crate::execute::kernel::number;
 use crate::proof::cases::Rows;
 use crate::proof::laws::{self, Integral, Law};
@@ -43,7 +43,7 @@ pub fn judge(job: &Job<'_>, law: &Law, given: &Given<'_>) -> LawVerdict {
     let kinds = job.kernel().result_kinds();
     match (law.kind.name, &law.integral, given.transformed) {
         ("reaches", ..) => reaches(law, given.results, &kinds),
-        (_, Some(rule), Some((rows, found))) => integral(law, rule, rows, found, &kinds),
+        (_, Some(rule), Some((rows, found))) => integral(job, law, rule, (rows, found), &kinds),
         _ => each(job, law, given, &kinds),
     }
 }
@@ -84,7 +84,8 @@ fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> La
                         format!(", and {other} for the inputs that the law compares with")
                     });
                     let (broken, allowed) = (amount(broken), amount(allowed));
-                    format!("{row:?} gives {value}{compared}: off by {broken}, allowed {allowed}")
+                    let row = profile::arguments(job, row);
+                    format!("{row} gives {value}{compared}: off by {broken}, allowed {allowed}")
                 };
                 verdict.example.get_or_insert_with(text);
             }
@@ -94,7 +95,7 @@ fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> La
 }
 
 /// An error as people write it.
-fn amount(value: f64) -> String {
+pub fn amount(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.2e}") }
 }
 
@@ -104,10 +105,10 @@ fn apart(row: &[f64], other: &[f64]) -> f64 {
 }
 
 fn integral(
+    job: &Job<'_>,
     law: &Law,
     rule: &Integral,
-    rows: &Rows,
-    found: &[u32],
+    (rows, found): (&Rows, &[u32]),
     kinds: &[ScalarKind],
 ) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
@@ -127,8 +128,9 @@ fn integral(
             let row = rows.row(index * rule.calls());
             let most = if rule.at_most { "at most " } else { "" };
             let text = || {
+                let (row, off) = (profile::arguments(job, row), amount(off));
                 format!(
-                    "over all `{}`, else as in {row:?}, it is {sum}, expected {most}{wanted}: off by {off:e}",
+                    "over all `{}`, else with {row}, it is {sum}, expected {most}{wanted}: off by {off}",
                     law.names[0]
                 )
             };

@@ -8,12 +8,14 @@ mod profile;
 mod proof;
 mod report;
 mod shrink;
+mod told;
 
 pub use judge::{Verdict, Worst};
 pub use law::LawVerdict;
 pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
 pub use proof::{Parity, Proof, Spec, Value};
-pub use report::{failures, failures_of, lacking, language, short, stricter, table};
+pub use report::{lacking, language, short, stricter, table};
+pub use told::{failures, failures_as_text, of_outcome, of_proof};
 
 use std::sync::Arc;
 
@@ -25,6 +27,7 @@ use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::kernel::Kernel;
 use crate::execute::{STACK, Session};
+use crate::source::Span;
 use crate::validate::on_large_stack;
 use job::Job;
 
@@ -46,6 +49,8 @@ pub struct Report {
     pub outcomes: Vec<Outcome>,
     /// One for each case, where they were asked for.
     pub proofs: Vec<Proof>,
+    /// Paths of functions that no case calls.
+    pub untested: Vec<String>,
 }
 
 /// One function in one language on one executor.
@@ -60,6 +65,8 @@ pub struct Outcome {
     pub adapter: String,
     /// Index of the case in its file.
     pub case: usize,
+    /// Where the case names the function.
+    pub span: Span,
     /// What its measurements are recorded under: the function's path and, from its second case
     /// on, the number of the case, `math::safe::saturate#2`.
     pub record: String,
@@ -127,6 +134,7 @@ impl Report {
     pub fn append(&mut self, other: Self) {
         self.outcomes.extend(other.outcomes);
         self.proofs.extend(other.proofs);
+        self.untested.extend(other.untested);
     }
 }
 
@@ -209,6 +217,7 @@ pub fn check_with(
     Ok(Report {
         outcomes: interleaved(columns),
         proofs: if options.prove { proof::prove(&jobs) } else { Vec::new() },
+        untested: Vec::new(),
     })
 }
 
@@ -236,6 +245,7 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outc
                 executor: open.executor,
                 adapter: adapter.clone(),
                 case: job.index,
+                span: job.case.span,
                 record: job.record.clone(),
                 verdict: run(job, (*language, kernel), open.session.as_mut(), &mut first, options),
                 recorded: options

@@ -186,6 +186,12 @@ fn worst(job: &Job<'_>, mut found: Vec<Worst>, names: &[String]) -> Vec<Input> {
     found.into_iter().filter(|worst| worst.error > 0.0).take(WORST).map(input).collect()
 }
 
+/// The words of a row by their names: `d = 1.5, light.kind = 3`.
+pub fn arguments(job: &Job<'_>, row: &[f64]) -> String {
+    let named = columns(job).into_iter().zip(row);
+    named.map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
+}
+
 /// The name of each word of a row.
 fn columns(job: &Job<'_>) -> Vec<String> {
     job.kernel().words().flat_map(|(name, shape)| parts(name, shape)).collect()

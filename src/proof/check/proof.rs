@@ -4,11 +4,12 @@
 use rayon::prelude::*;
 
 use super::job::{self, Job, Judge, Target};
-use super::judge;
+use super::{judge, profile};
 use crate::diagnostic::Diagnostic;
 use crate::execute::interpreter::Interpreter;
 use crate::proof::cases::Oracle;
 use crate::proof::tolerance;
+use crate::source::Span;
 use crate::validate::on_large_stack;
 use naga::ScalarKind;
 
@@ -28,6 +29,10 @@ pub struct Proof {
     pub function: String,
     /// Index of the case in its file.
     pub case: usize,
+    /// Where the case names the function.
+    pub span: Span,
+    /// The arguments with which what is proven fails most, where it fails.
+    pub arguments: Option<String>,
     /// What WGSL allows, against what the case allows; or why it cannot be told.
     pub spec: Result<Spec, String>,
     /// The code in f64 against the oracle, where that is not the code itself.
@@ -118,6 +123,9 @@ fn one(job: &Job<'_>) -> Proof {
     };
     let value =
         bounded.first().and_then(|first| first.as_ref().ok()).and_then(|first| value(job, first));
+    let apart = parity.iter().flatten().filter(|parity| parity.apart > 0).map(|parity| parity.row);
+    let off = value.filter(|value| value.off > 0).map(|value| value.row);
+    let row = apart.chain(off).next();
     let spec = match bounded.into_iter().next() {
         Some(Ok(first)) => Ok(spec(job, &first, &kinds)),
         Some(Err(error)) => Err(error),
@@ -127,6 +135,8 @@ fn one(job: &Job<'_>) -> Proof {
         module: job.module.clone(),
         function: job.case.function.clone(),
         case: job.index,
+        span: job.case.span,
+        arguments: row.map(|row| profile::arguments(job, job.rows.row(row))),
         spec,
         value,
         parity,

@@ -1,6 +1,6 @@
 //! A report as text.
 
-use super::{Outcome, Proof, Report, Verdict};
+use super::{Outcome, Proof, Report};
 use crate::bundle::Language;
 
 const HEADINGS: [&str; COLUMNS] = [
@@ -62,7 +62,7 @@ fn row(outcome: &Outcome) -> [String; COLUMNS] {
             };
             [
                 verdict.inputs.to_string(),
-                number(|worst| worst.error),
+                short(verdict.largest),
                 number(|worst| worst.ulps()),
                 number(|worst| worst.allowed_ulps()),
                 share,
@@ -94,36 +94,6 @@ pub fn stricter(report: &Report) -> String {
     report.proofs.iter().filter_map(line).collect()
 }
 
-/// What does not hold of a proof, a line each.
-fn disproved(proof: &Proof) -> String {
-    let place = format!("{} (case {})", proof.path(), proof.case + 1);
-    let mut text = if proof.agree() { String::new() } else { unequal(proof, &place) };
-    if let Some(value) = proof.value.filter(|value| value.off > 0) {
-        let (off, rows, share) = (value.off, value.rows, short(value.share));
-        text += &format!(
-            "{place}: the code in f64, without any rounding, is off on {off} of {rows} inputs, by up to {share} of what is allowed (row {})\n",
-            value.row
-        );
-    }
-    text
-}
-
-fn unequal(proof: &Proof, place: &str) -> String {
-    match &proof.parity {
-        Some(Err(error)) => {
-            format!("{place}: the languages could not be compared in f64: {error}\n")
-        }
-        Some(Ok(parity)) => {
-            let (apart, rows, worst) = (parity.apart, parity.rows, parity.worst);
-            format!(
-                "{place}: WESL and GLSL differ in f64 on {apart} of {rows} inputs, by up to {worst:.1e} of the value (row {})\n",
-                parity.row
-            )
-        }
-        None => String::new(),
-    }
-}
-
 /// What executors have no way to run, with the reason, one line each.
 pub fn lacking(report: &Report) -> String {
     let line = |outcome: &Outcome| {
@@ -132,67 +102,6 @@ pub fn lacking(report: &Report) -> String {
         Some(format!("{path} (case {case}, {language} on {}): {reason}\n", outcome.executor))
     };
     report.outcomes.iter().filter_map(line).collect()
-}
-
-/// What failed of a report, each with its smallest input; empty when nothing did.
-pub fn failures(report: &Report) -> String {
-    failures_of(&report.outcomes, &report.proofs)
-}
-
-/// What failed of these.
-pub fn failures_of(outcomes: &[Outcome], proofs: &[Proof]) -> String {
-    let mut text: String = proofs.iter().filter(|proof| !proof.passed()).map(disproved).collect();
-    for outcome in outcomes.iter().filter(|outcome| outcome.failed()) {
-        let place = format!(
-            "{}::{} ({}, {} on {})",
-            outcome.module,
-            outcome.function,
-            language(outcome.language),
-            outcome.executor,
-            outcome.adapter
-        );
-        match &outcome.verdict {
-            Err(error) => text += &format!("{place} did not run: {}\n", error.message),
-            Ok(verdict) => text += &failure(&place, outcome, verdict),
-        }
-    }
-    text
-}
-
-/// What failed of one outcome.
-fn failure(place: &str, outcome: &Outcome, verdict: &Verdict) -> String {
-    let mut text = String::new();
-    text += &format!("{place}: {} of {} inputs are off\n", verdict.failing.len(), verdict.inputs);
-    if let (true, Some(worst), Some(recorded)) =
-        (outcome.exceeds_driver(), verdict.worst, outcome.recorded)
-    {
-        let (found, limit) =
-            (worst.ulps(), worst.allowed_ulps() * recorded * crate::proof::ratchet::SLACK);
-        text += &format!(
-            "  {} ULP, but this driver was recorded to need at most {}\n",
-            short(found),
-            short(limit)
-        );
-    }
-    if verdict.proves_nothing() {
-        text += "  no input has a value that f32 could hold and the code determines: nothing was tested\n";
-    }
-    if verdict.too_ambiguous {
-        text +=
-            &format!("  {} inputs are ambiguous, more than the case allows\n", verdict.ambiguous);
-    }
-    for law in verdict.laws.iter().filter(|law| law.broken > 0) {
-        text += &format!(
-            "  the law `{}` is broken {} times: {}\n",
-            law.name,
-            law.broken,
-            law.example.as_deref().unwrap_or("")
-        );
-        text += law.smallest.as_deref().unwrap_or("");
-    }
-    text += verdict.smallest.as_deref().unwrap_or("");
-    text += "\n";
-    text
 }
 
 /// Name of a language.

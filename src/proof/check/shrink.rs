@@ -215,7 +215,8 @@ fn describe(job: &Job<'_>, words: &[u32], target: &Target, found: &[u32]) -> Str
     let allowed = worst.map_or(0.0, |worst| worst.allowed);
     let (found, expected) =
         (values(found, &job.kernel().result_kinds()), list(&target.expected.value));
-    let said = format!("  found {found}\n  expected {expected}\n  allowed {allowed:e}\n\n");
+    let said =
+        format!("  found {found}\n  expected {expected}\n  allowed {}\n\n", law::amount(allowed));
     input.text.clone() + &said + &pasted(job, &input, &expected, allowed)
 }
 

@@ -3,7 +3,7 @@
 use super::graph::{Candidate, Constant, Target};
 use super::load::Loader;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{ConditionId, Name, Origin, Path};
+use crate::parse::wesl::{ConditionId, Module, Name, Origin, Path};
 use crate::source::{LIMITS, Span};
 
 /// A path from a package's root.
@@ -21,6 +21,29 @@ const MEANINGS: usize = 64;
 /// Failures of a graph for which names are suggested.
 const SUGGESTED: usize = 100;
 
+/// What of a path an error may be about.
+#[derive(Debug, Clone, Copy)]
+struct Places {
+    whole: Span,
+    first: Span,
+    /// The whole path where its parents are not written in one piece.
+    parents: Span,
+    last: Span,
+}
+
+impl Places {
+    fn new(module: &Module, path: &Path) -> Self {
+        let whole = module.span(path.range.clone());
+        let parents = Some(path.parts.parents.clone()).filter(|range| range.start < range.end);
+        Self {
+            whole,
+            first: module.span(path.parts.first.clone()),
+            parents: parents.map_or(whole, |range| module.span(range)),
+            last: module.span(path.parts.last.clone()),
+        }
+    }
+}
+
 impl Loader<'_> {
     /// What a path of a module may mean. `import` is its index if an import has it: that one's
     /// own name does not count for its first segment, and it may lead to a module.
@@ -30,11 +53,11 @@ impl Loader<'_> {
         path: &Path,
         import: Option<usize>,
     ) -> Vec<Candidate> {
-        let span = self.nodes[node as usize].module.span(path.range.clone());
+        let places = Places::new(&self.nodes[node as usize].module, path);
         let mut visiting: Vec<usize> = import.into_iter().collect();
         let found = self.absolute(node, path, &mut visiting).and_then(|absolutes| {
             let candidate = |absolute: Absolute| {
-                let target = self.target(&absolute, span, import.is_some())?;
+                let target = self.target(&absolute, places, import.is_some())?;
                 Ok(Candidate { conditions: absolute.conditions, target })
             };
             absolutes.into_iter().map(candidate).collect()
@@ -52,7 +75,7 @@ impl Loader<'_> {
         visiting: &mut Vec<usize>,
     ) -> Result<Vec<Absolute>, Diagnostic> {
         let here = &self.nodes[node as usize];
-        let span = here.module.span(path.range.clone());
+        let places = Places::new(&here.module, path);
         match path.origin {
             Origin::Package => Ok(vec![Absolute {
                 package: Some(here.package),
@@ -60,11 +83,12 @@ impl Loader<'_> {
                 conditions: Vec::new(),
             }]),
             Origin::Super(ups) => {
-                self.above(node, ups as usize, &path.segments, span).map(|absolute| vec![absolute])
+                let place = places.whole;
+                self.above(node, ups as usize, &path.segments, place).map(|absolute| vec![absolute])
             }
             // The path of an import starts with a package, whatever other imports bring.
             Origin::Scope if !visiting.is_empty() && self.is_package(node, path.segments[0]) => {
-                self.in_package(node, &path.segments, span, false).map(|absolute| vec![absolute])
+                self.in_package(node, &path.segments, places, false).map(|absolute| vec![absolute])
             }
             Origin::Scope => {
                 let named = here.aliases.get(&path.segments[0]).into_iter().flatten();
@@ -73,7 +97,7 @@ impl Loader<'_> {
                 if through.is_empty() {
                     let cyclic = visiting.len() > 1 && !seen.is_empty();
                     return self
-                        .in_package(node, &path.segments, span, cyclic)
+                        .in_package(node, &path.segments, places, cyclic)
                         .map(|absolute| vec![absolute]);
                 }
                 self.through_imports(node, path, &through, visiting)
@@ -152,7 +176,7 @@ impl Loader<'_> {
         &self,
         node: u32,
         segments: &[Name],
-        span: Span,
+        places: Places,
         in_circle: bool,
     ) -> Result<Absolute, Diagnostic> {
         let first = self.names.text(segments[0]);
@@ -163,8 +187,8 @@ impl Loader<'_> {
             Some(index) => Some(index + 1),
             None if own => Some(self.nodes[node as usize].package),
             None if segments[0] == Name::CONSTANTS => None,
-            None if in_circle => return Err(cyclic(span)),
-            None => return Err(self.unknown_package(node, first, span)),
+            None if in_circle => return Err(cyclic(places.whole)),
+            None => return Err(self.unknown_package(node, first, places.first)),
         };
         Ok(Absolute { package, segments: segments[1..].to_vec(), conditions: Vec::new() })
     }
@@ -181,7 +205,11 @@ impl Loader<'_> {
             }
             false => error.suggest(
                 first,
-                self.packages.dependencies.iter().map(|package| package.name.as_str()),
+                self.packages
+                    .dependencies
+                    .iter()
+                    .map(|package| package.name.as_str())
+                    .chain(["package", "super"]),
             ),
         }
     }
@@ -189,9 +217,10 @@ impl Loader<'_> {
     fn target(
         &mut self,
         absolute: &Absolute,
-        span: Span,
+        places: Places,
         import: bool,
     ) -> Result<Target, Diagnostic> {
+        let span = places.whole;
         let Some(package) = absolute.package else {
             return Ok(self.constant(&absolute.segments, span));
         };
@@ -211,12 +240,12 @@ impl Loader<'_> {
             Some(node) if !self.nodes[node as usize].module.errors.is_empty() => {
                 self.nodes[node as usize].module.errors[0].clone()
             }
-            Some(node) => self.missing_item(node, *last, span),
+            Some(node) => self.missing_item(node, *last, places.last),
             // The last name may be an item's or a module's: below a folder, a module's.
             None if parents.is_empty() || self.is_module(package, parents, span, false)? => {
                 self.missing_module(package, &absolute.segments, span)
             }
-            None => self.missing_module(package, parents, span),
+            None => self.missing_module(package, parents, places.parents),
         })
     }
 

@@ -82,7 +82,10 @@ fn collision(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Sai
         }
         None => format!("{name} has a place that something else has:{place}"),
     };
-    Said::coded(codes::BINDING_CONFLICT, message)
+    let beside = other.map(|(other, _)| {
+        (module.global_variables.get_span(other), "has the same place".to_owned())
+    });
+    Said { beside, ..Said::coded(codes::BINDING_CONFLICT, message) }
 }
 
 pub fn varying(module: &Module, error: &VaryingError) -> Said {

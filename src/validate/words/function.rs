@@ -146,7 +146,7 @@ fn call(module: &Module, handle: Handle<Function>, error: &CallError) -> Said {
     let said = match error {
         CallError::ArgumentCount { required, seen } => Said::coded(
             codes::CALL_MISMATCH,
-            format!("`{name}` takes {required} arguments, and {seen} are given"),
+            format!("`{name}` takes {required} arguments, not {seen}"),
         ),
         CallError::ArgumentType { index, required, .. } => Said::coded(
             codes::CALL_MISMATCH,

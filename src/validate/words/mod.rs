@@ -25,11 +25,13 @@ pub struct Said {
     pub code: Option<&'static Code>,
     pub message: String,
     pub notes: Vec<String>,
+    /// A place beside those of naga's error, with its label.
+    pub beside: Option<(naga::Span, String)>,
 }
 
 impl Said {
     fn plain(message: impl Into<String>) -> Self {
-        Self { code: None, message: message.into(), notes: Vec::new() }
+        Self { code: None, message: message.into(), notes: Vec::new(), beside: None }
     }
 
     fn coded(code: &'static Code, message: impl Into<String>) -> Self {

@@ -91,7 +91,7 @@ pub fn compose(module: &Module, error: &ComposeError) -> Said {
         }
         ComposeError::ComponentCount { given, expected } => Said::coded(
             codes::CALL_MISMATCH,
-            format!("a constructor takes {expected} components, and {given} are given"),
+            format!("a constructor takes {expected} components, not {given}"),
         ),
         ComposeError::ComponentType { index } => Said::coded(
             codes::CALL_MISMATCH,

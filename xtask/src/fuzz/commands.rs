@@ -7,6 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::mutate::{self, Random};
+use crate::faults::beside_this;
 use crate::generate::root;
 use crate::{Failure, Outcome};
 
@@ -69,15 +70,14 @@ pub const SURFACES: &[Surface] = &[
 
 /// Address space of a command in KiB: 1 GiB, and the stacks that it reserves.
 const MEMORY_KIB: u64 = 2 << 20;
-/// A command must not take longer.
-const LONGEST: Duration = Duration::from_secs(5);
+/// Seconds on a processor that a command may take; others may use the machine too.
+const MOST_SECONDS: u64 = 5;
+/// A command that waits for so long waits for ever.
+const LONGEST: Duration = Duration::from_secs(60);
 
 /// Fuzzes a surface for its share of the time; the number of findings.
 pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure> {
-    let program = root().join("target/debug/lamplight");
-    if !program.is_file() {
-        return Err(Failure::environment("build it first: cargo build"));
-    }
+    let program = beside_this()?;
     let folder = root().join("target/fuzz/commands").join(surface.name);
     fs::create_dir_all(&folder).map_err(environment)?;
     for (name, text) in surface.beside {
@@ -102,7 +102,7 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure
 
 /// What is wrong with a run.
 fn judge(program: &Path, folder: &Path, arguments: &[&str]) -> Result<Option<String>, Failure> {
-    let limited = format!("ulimit -v {MEMORY_KIB}; exec \"$@\"");
+    let limited = format!("ulimit -v {MEMORY_KIB}; ulimit -t {MOST_SECONDS}; exec \"$@\"");
     let said = fs::File::create(folder.join("said")).map_err(environment)?;
     let mut child = Command::new("sh")
         .args(["-c", &limited, "sh"])

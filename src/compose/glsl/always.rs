@@ -1,0 +1,54 @@
+//! Conditions that ask whether a setting is defined: settings always are.
+
+use super::expand::Expander;
+use super::table::Meaning;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::parse::glsl::{Directive, Module, Part, Symbol, known};
+
+/// A warning about the branch of a conditional at `index`, if it asks that.
+pub fn warning(expander: &Expander<'_, '_>, module: &Module, index: usize) -> Option<Diagnostic> {
+    let Part::Directive(directive, span) = module.parts.get(index)? else { return None };
+    let (name, negated) = asked(module, directive)?;
+    // What is on is defined, as whoever asks expects.
+    match expander.table.get(name)? {
+        Meaning::Setting(setting) if !expander.reads.is_on(setting) => {}
+        _ => return None,
+    }
+    // A default for compilers that know no settings.
+    let gives_default = |part: &Part| matches!(part, Part::Directive(Directive::Define(given), _) if given.name == name);
+    if negated && module.parts.get(index + 1).is_some_and(gives_default) {
+        return None;
+    }
+    let macro_name = expander.table.spellings.text(name);
+    let sign = if negated { "!" } else { "" };
+    let message = format!("the setting `{macro_name}` is always defined, as 0 where it is off");
+    let label = if negated { "never holds" } else { "always holds" };
+    Some(
+        Diagnostic::warning(codes::ALWAYS_DEFINED, message)
+            .at(*span, label)
+            .note(format!("help: ask for its value: `#if {sign}{macro_name}`")),
+    )
+}
+
+/// The macro that a directive asks for the existence of, and whether it should be missing.
+fn asked(module: &Module, directive: &Directive) -> Option<(Symbol, bool)> {
+    match directive {
+        Directive::Ifdef { name: Ok(name), negated, .. } => Some((*name, *negated)),
+        Directive::If { condition, .. } | Directive::Elif { condition, .. } => {
+            let tokens = &module.tokens[condition.start as usize..condition.end as usize];
+            let symbols: Vec<Symbol> = tokens.iter().map(|token| token.symbol).collect();
+            let (negated, rest) = match symbols.split_first()? {
+                (first, rest) if *first == known::NOT => (true, rest),
+                _ => (false, &symbols[..]),
+            };
+            match rest {
+                [word, name] if *word == known::DEFINED => Some((*name, negated)),
+                [word, open, name, _] if *word == known::DEFINED && *open == known::OPEN => {
+                    Some((*name, negated))
+                }
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,72 @@
+//! Numbers of permutations as a lock file has them, in a form that code can be written from.
+
+use crate::permute::{Axis, Lock, Mode, Program};
+
+/// How the keys of a program become numbers and back.
+pub struct Ordinals {
+    /// What axes add that keys leave out.
+    pub constant: u64,
+    /// For each axis of keys, what each of its values adds.
+    pub of_values: Vec<Vec<u64>>,
+    pub digits: Vec<Digit>,
+}
+
+/// One digit of a number: `number / weight % radix`.
+pub struct Digit {
+    pub weight: u64,
+    pub radix: u64,
+    /// Index of the axis among those of keys.
+    pub axis: usize,
+    /// What each value of the digit says.
+    pub says: Vec<Says>,
+}
+
+/// What a digit says of its axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Says {
+    /// The axis has the value of that index.
+    Value(usize),
+    /// Another digit of the axis says it.
+    Nothing,
+    /// A value that the manifest has no longer.
+    Gone,
+}
+
+/// The numbers of a program's keys; `None` if the lock lacks a value of it, or if a number may be
+/// larger than `most`.
+pub fn ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinals> {
+    let space = &program.space;
+    let default = lock.dense(&program.name, space, &space.default_assignment())?;
+    let axes: Vec<&Axis> = super::axes(program).collect();
+    let mut of_values: Vec<Vec<u64>> = axes.iter().map(|axis| vec![0; axis.values.len()]).collect();
+    let (mut digits, mut range) = (Vec::new(), 1u128);
+    for (weight, line) in lock.digits(&program.name) {
+        let weight = u64::try_from(weight?).ok()?;
+        range = u128::from(weight).checked_mul(line.radix())?;
+        let Some(axis) = axes.iter().position(|axis| axis.name == line.axis) else { continue };
+        let says: Vec<Says> =
+            (0..line.radix()).map(|digit| said(axes[axis], line.setting(digit), digit)).collect();
+        for (digit, says) in says.iter().enumerate() {
+            if let Says::Value(value) = says {
+                of_values[axis][*value] += weight * digit as u64;
+            }
+        }
+        digits.push(Digit { weight, radix: line.radix() as u64, axis, says });
+    }
+    if range > u128::from(most) {
+        return None;
+    }
+    // Dynamic axes are digits too, and always at their defaults.
+    let of_axes: u64 = axes.iter().zip(&of_values).map(|(axis, values)| values[axis.default]).sum();
+    let constant = u64::try_from(default).ok()?.checked_sub(of_axes)?;
+    debug_assert!(space.axes().iter().any(|axis| axis.mode == Mode::Dynamic) || constant == 0);
+    Some(Ordinals { constant, of_values, digits })
+}
+
+fn said(axis: &Axis, setting: Option<&crate::permute::Setting>, digit: u128) -> Says {
+    match setting {
+        None if digit == 0 => Says::Nothing,
+        None => Says::Gone,
+        Some(setting) => axis.ordinal(setting).map_or(Says::Gone, Says::Value),
+    }
+}

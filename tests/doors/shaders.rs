@@ -1,0 +1,156 @@
+//! What shader authors slip on: conditions, versions, names, marks at the start of files.
+
+use super::package::Package;
+use super::{Case, Outcome};
+
+pub const CASES: &[Case] = &[
+    ("settings_are_always_defined", always_defined),
+    ("defaults_for_other_compilers", defaults),
+    ("shaders_without_a_version", versions),
+    ("byte_order_marks", marks),
+    ("conversions_from_the_other_end", conversions),
+    ("names_of_packages", packages),
+    ("spec_axes_that_are_read", spec_axes),
+    ("conditions_that_lists_settle", settled),
+];
+
+const HEAD: &str = "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() {\n";
+const GLSL: &str = "[program.p]\nglsl = { fragment = \"p.frag.glsl\" }\ntargets = [\"wgsl\"]\n\
+    [program.p.axis]\nfog = { values = [false, true] }\n\
+    shadow = { values = [\"none\", \"hard\"] }\n";
+
+fn shader(condition: &str) -> String {
+    format!("{HEAD}{condition}\nc = vec4(0.5);\n#else\nc = vec4(1.0);\n#endif\n}}\n")
+}
+
+/// `#ifdef FOG` holds in every permutation, since a setting that is off is 0.
+fn always_defined() -> Outcome {
+    let package = Package::new(&[("lamplight.toml", GLSL)])?;
+    let told = [
+        ("#ifdef FOG", "always holds", "`#if FOG`"),
+        ("#ifndef FOG", "never holds", "`#if !FOG`"),
+        ("#if defined(FOG)", "always holds", "`#if FOG`"),
+        ("#if !defined FOG", "never holds", "`#if !FOG`"),
+        ("#ifdef SHADOW", "always holds", "`#if SHADOW`"),
+    ];
+    for (condition, label, help) in told {
+        package.write("p.frag.glsl", &shader(condition))?;
+        for command in ["gen --no-cache --force", "lint"] {
+            let run = package.run(command)?.ends(0)?;
+            run.says(&["warning[always-defined]", "p.frag.glsl:4:1", label, help])?;
+        }
+    }
+    package.write("alone.frag", &shader("#ifdef SPECULAR"))?;
+    let off = package.run("compile alone.frag --feature SPECULAR=false --target wgsl")?.ends(0)?;
+    off.says(&["warning[always-defined]"])?;
+    let on = package.run("compile alone.frag --feature SPECULAR --target wgsl")?.ends(0)?;
+    on.says(&["0.5"])?.is_silent_of(&["warning"])?;
+    Ok(())
+}
+
+/// A file may give a setting a value for compilers that know of none, and ask for its value.
+fn defaults() -> Outcome {
+    let conditions =
+        ["#ifndef FOG\n#define FOG 0\n#endif\n#if FOG", "#if FOG", "#if defined(FOG) && FOG"];
+    let manifest = GLSL.replace("shadow = { values = [\"none\", \"hard\"] }\n", "");
+    let package = Package::new(&[("lamplight.toml", &manifest)])?;
+    for condition in conditions {
+        package.write("p.frag.glsl", &shader(condition))?;
+        package.run("gen --no-cache --force")?.ends(0)?.is_silent_of(&["warning"])?;
+    }
+    Ok(())
+}
+
+/// Other compilers read a shader without `#version` as GLSL 1.10.
+fn versions() -> Outcome {
+    let package = Package::new(&[
+        ("p.frag", "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(1.0); }\n"),
+        ("part.glsl", "float half_of(float x) { return 0.5 * x; }\n"),
+    ])?;
+    let run = package.run("compile p.frag --target wgsl")?.ends(0)?;
+    run.says(&["warning[missing-version]", "p.frag:1:1", "begin the file with `#version 450`"])?;
+    package.run("lint part.glsl")?.ends(0)?.is_silent_of(&["warning["])?;
+    Ok(())
+}
+
+/// Editors of Windows put a mark before the text, in both languages and in manifests.
+fn marks() -> Outcome {
+    let wesl = "\u{feff}@fragment fn m() -> @location(0) vec4f { return vec4f(nothing); }\n";
+    let manifest = format!("\u{feff}{GLSL}");
+    let package = Package::new(&[
+        ("p.frag.glsl", &format!("\u{feff}{}", shader("#if FOG || SHADOW == SHADOW_HARD"))),
+        ("w.wesl", wesl),
+        ("lamplight.toml", &manifest),
+    ])?;
+    package.run("gen --no-cache")?.ends(0)?.is_silent_of(&["warning", "error"])?;
+    let run = package.run("compile w.wesl --target wgsl --diagnostics short")?.ends(1)?;
+    run.says(&["w.wesl:1:55: error"])?;
+    Ok(())
+}
+
+/// `linear_to_srgb` is called from the other end here, and its inverse has the nearer name.
+fn conversions() -> Outcome {
+    let text = "import lamplight::color::transfer::linear_to_srgb;
+@fragment fn m() -> @location(0) vec4f { return vec4f(linear_to_srgb(0.5)); }\n";
+    let run = Package::new(&[("a.wesl", text)])?.run("compose a.wesl")?.ends(1)?;
+    run.says(&["did you mean `srgb_from_linear`?", "a.wesl:1:36"])?;
+    Ok(())
+}
+
+/// The wrong name is underlined, once.
+fn packages() -> Outcome {
+    let use_it = "@fragment fn m() -> @location(0) vec4f { return vec4f(a() + b()); }\n";
+    let wrong = [
+        ("import lamplite::brdf::{a, b};\n", "a.wesl:1:8: error[unknown-package]", "`lamplight`"),
+        ("import pakage::brdf::{a, b};\n", "a.wesl:1:8: error[unknown-package]", "`package`"),
+        (
+            "import lamplight::brdf::specluar::{a, b};\n",
+            "a.wesl:1:8: error[missing-module]",
+            "`lamplight::brdf::specular`",
+        ),
+    ];
+    for (import, place, meant) in wrong {
+        let package = Package::new(&[("a.wesl", &format!("{import}{use_it}"))])?;
+        let run =
+            package.run("compose a.wesl --diagnostics short")?.ends(1)?.says(&[place, meant])?;
+        if run.err.lines().count() != 1 {
+            return Err(run.err.into());
+        }
+    }
+    Ok(())
+}
+
+const WESL: &str = "[program.p]\nwesl = \"p.wesl\"\ntargets = [\"wgsl\"]\n";
+
+/// A `spec` axis that is read as a constant is asked for: that is what such an axis is for.
+fn spec_axes() -> Outcome {
+    let package = Package::new(&[
+        (
+            "lamplight.toml",
+            &format!(
+                "{WESL}[program.p.axis]\nwrap = {{ values = [false, true], mode = \"spec\" }}\n"
+            ),
+        ),
+        (
+            "p.wesl",
+            "import constants::wrap;\n@fragment fn m(@location(0) x: f32) -> @location(0) vec4f {\n    if wrap { return vec4f(fract(x)); }\n    return vec4f(x);\n}\n",
+        ),
+    ])?;
+    package.run("gen --no-cache")?.ends(0)?.is_silent_of(&["warning"])?;
+    Ok(())
+}
+
+/// A condition that the manifest's lists settle decides something as soon as they are longer.
+fn settled() -> Outcome {
+    let text = "@fragment fn m(@location(0) x: f32) -> @location(0) vec4f {\n    @if(wrap) { return vec4f(fract(x)); }\n    return vec4f(x);\n}\n";
+    let axis = "[program.p.axis]\nwrap = { values = [false, true] }\n";
+    let package = Package::new(&[("p.wesl", text), ("asked.txt", "p wrap\n")])?;
+    for list in
+        ["only = [{ wrap = true }]", "exclude = [{ wrap = false }]", "usage = \"asked.txt\""]
+    {
+        package.write("lamplight.toml", &format!("{WESL}{list}\n{axis}"))?;
+        let run = package.run("gen --no-cache --force")?.ends(0)?;
+        run.says(&["1 permutation"])?.is_silent_of(&["constant-condition"])?;
+    }
+    Ok(())
+}
