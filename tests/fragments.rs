@@ -5,6 +5,7 @@
 //! specification gives no bound.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use lamplight::eval::{self, Bounded, Filter, Function, Kind, Machine, Number, Program, Resources};
@@ -69,7 +70,13 @@ impl Watched<'_> {
         let pixels = quads.map(move |(x, y)| {
             [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * width + x + i) as usize)
         });
-        pixels.filter(|quad| quad.iter().all(|pixel| self.is_drawn(*pixel)))
+        pixels.filter(|quad| quad.iter().all(|pixel| self.is_covered(*pixel)))
+    }
+
+    /// Whether the fragment was given something, even if it was discarded then.
+    fn is_covered(&self, pixel: usize) -> bool {
+        let told = self.targets.get(1).unwrap_or(&self.targets[0]);
+        four(told, pixel) != [SENTINEL; 4]
     }
 
     pub fn is_drawn(&self, pixel: usize) -> bool {
@@ -98,6 +105,20 @@ pub fn recompute(
     step: usize,
     tally: &mut Tally,
 ) -> Result<(), String> {
+    let frames = std::slice::from_ref(watched);
+    for found in recompute_each(stage, resources, frames, step)? {
+        tally.add(&found?);
+    }
+    Ok(())
+}
+
+/// [`recompute`] for frames of several drivers: what was given the same is computed once.
+pub fn recompute_each(
+    stage: &Composed,
+    resources: Resources,
+    frames: &[Watched<'_>],
+    step: usize,
+) -> Result<Vec<Result<Tally, String>>, String> {
     let program = Program::new(&stage.validated.module, &stage.validated.info)
         .map_err(|error| error.to_string())?;
     // GLSL has a plain function of that name too; entry points come after functions.
@@ -109,21 +130,65 @@ pub fn recompute(
     let signature = program.signature(id).ok_or("no entry point")?;
     let mut machine = Machine::<Bounded>::new(&program).map_err(|error| error.to_string())?;
     machine.bind(resources).map_err(|error| error.to_string())?;
-    for quad in watched.quads().step_by(step) {
-        let arguments = quad.map(|pixel| slots(signature, watched, pixel));
-        machine.forget();
-        let wanted = machine
-            .quad(id, [0, 1, 2, 3].map(|lane| arguments[lane].as_slice()))
-            .map_err(|error| error.to_string())?;
-        let doubt = !machine.findings().is_empty();
-        for (pixel, wanted) in quad.into_iter().zip(wanted) {
-            judge(watched, pixel, &wanted, doubt, tally)?;
+    let mut known: BTreeMap<Vec<u32>, Wanted> = BTreeMap::new();
+    let mut tallies = Vec::new();
+    for watched in frames {
+        let mut tally = Ok(Tally::default());
+        for quad in watched.quads().step_by(step) {
+            let given = quad.into_iter().flat_map(|pixel| watched.inputs(pixel)).collect();
+            let wanted = match known.entry(given) {
+                Entry::Occupied(entry) => entry.into_mut(),
+                Entry::Vacant(entry) => {
+                    let arguments = quad.map(|pixel| slots(signature, watched, pixel));
+                    machine.forget();
+                    let results = machine
+                        .quad(id, [0, 1, 2, 3].map(|lane| arguments[lane].as_slice()))
+                        .map_err(|error| error.to_string())?;
+                    let discarded = machine.quad_discarded();
+                    let doubt = !machine.findings().is_empty();
+                    entry.insert(Wanted { results, discarded, doubt })
+                }
+            };
+            tally = tally.and_then(|tally| judge(watched, quad, wanted, tally));
         }
+        tallies.push(tally);
     }
-    Ok(())
+    Ok(tallies)
+}
+
+/// What the evaluator says of a quad.
+struct Wanted {
+    results: [Vec<Bounded>; 4],
+    discarded: [bool; 4],
+    /// Whether a comparison on the way was too close to call.
+    doubt: bool,
 }
 
 fn judge(
+    watched: &Watched<'_>,
+    quad: [usize; 4],
+    wanted: &Wanted,
+    mut tally: Tally,
+) -> Result<Tally, String> {
+    for (lane, pixel) in quad.into_iter().enumerate() {
+        let is_discarded = wanted.discarded[lane];
+        if is_discarded == watched.is_drawn(pixel) {
+            tally.tried += 1;
+            match wanted.doubt {
+                true => tally.open += 1,
+                false if is_discarded => return Err(format!("pixel {pixel}: was not discarded")),
+                false => return Err(format!("pixel {pixel}: was discarded")),
+            }
+        } else if is_discarded {
+            tally.tried += 1;
+        } else {
+            judge_colour(watched, pixel, &wanted.results[lane], wanted.doubt, &mut tally)?;
+        }
+    }
+    Ok(tally)
+}
+
+fn judge_colour(
     watched: &Watched<'_>,
     pixel: usize,
     wanted: &[Bounded],

@@ -2,6 +2,8 @@
 //! computed again by the evaluator. `shipped` draws the WGSL of a bundle, put together from functions of
 //! many permutations, and computes from the composed text.
 
+mod shipped;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -22,6 +24,7 @@ use lamplight::validate::{Validated, validate};
 use libtest_mimic::{Failed, Trial};
 
 use crate::fragments::{self, Tally, Watched};
+use crate::metal::scrambled;
 
 /// Pixels from left to right, and from top to bottom.
 const WIDTH: u32 = 256;
@@ -50,6 +53,7 @@ pub fn trials() -> Vec<Trial> {
                 run(language, backend)
             })
         })
+        .chain(shipped::trials())
         .collect()
 }
 
@@ -59,7 +63,7 @@ fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(),
         let mut sources = Sources::load(*language)?;
         let points = covering(&sources.space);
         if *name == SHIPPED {
-            sources.bundle = Some(bundle(&sources, &points, Target::WGSL)?);
+            sources.bundle = Some(bundle(&sources, &points, &[Target::WGSL])?);
         }
         let (mut total, mut failures) = (Tally::default(), Vec::new());
         for point in &points {
@@ -97,6 +101,25 @@ pub fn covering(space: &Space) -> Vec<Assignment> {
             new.or_else(|| allowed.iter().nth(turn % allowed.len())).unwrap_or_default()
         };
         next = pin.and_then(|pin| space.pick_valid(&[pin], choose));
+    }
+    points
+}
+
+/// All pairs of values, and more points until there are so many.
+pub fn points(space: &Space, least: usize) -> Vec<Assignment> {
+    let mut points = cover::pairwise(space).points;
+    let mut seed = 1;
+    while points.len() < least {
+        let choose = |axis: usize, allowed: ValueSet| {
+            seed += 1;
+            let turn = scrambled(seed + axis as u32) as usize % allowed.len();
+            allowed.iter().nth(turn).unwrap_or_default()
+        };
+        match space.pick_valid(&[], choose) {
+            Some(point) if !points.contains(&point) => points.push(point),
+            Some(_) => {}
+            None => break,
+        }
     }
     points
 }
@@ -160,15 +183,19 @@ impl Sources {
     }
 }
 
-/// What a target has of the points and of all pairs of values, in one bundle.
-pub fn bundle(sources: &Sources, points: &[Assignment], target: Target) -> Result<Bundle, String> {
+/// What targets have of the points and of all pairs of values, in one bundle.
+pub fn bundle(
+    sources: &Sources,
+    points: &[Assignment],
+    targets: &[Target],
+) -> Result<Bundle, String> {
     let mut manifest = sources.programs.manifest().clone();
     let program = manifest
         .programs
         .iter_mut()
         .find(|program| program.name == "forward")
         .ok_or("no forward")?;
-    program.targets = vec![target];
+    program.targets = targets.to_vec();
     match sources.language {
         Language::Wesl => program.glsl = None,
         Language::Glsl => program.wesl = None,
@@ -257,7 +284,7 @@ fn number(path: &str) -> Vec<f64> {
 }
 
 /// A texture or sampler for a binding: smooth colours, depths with an edge.
-fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
+pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
     let sampler =
         |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
     match kind {

@@ -19,8 +19,8 @@ pub fn all(
     manifest: &Manifest,
     step: usize,
 ) -> Result<(), Failed> {
-    let linker = Linker::new(Target::ALL);
     for program in &manifest.programs {
+        let linker = Linker::new(&program.targets);
         let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
         let glsl = glsl.map(|file| (file, Language::Glsl));
         let wesl = program.wesl.iter().map(|file| (file, Language::Wesl));
@@ -42,7 +42,7 @@ pub fn all(
                     let options = Options { keep, ..Options::default() };
                     let composed = compose(&graph, &settings, &options)
                         .map_err(|errors| format!("{errors:?}"))?;
-                    one(&composed, entry, &linker)
+                    one(&composed, entry, &program.targets, &linker)
                         .map_err(|error| format!("[{}] {error}", program.space.key(point)))?;
                 }
             }
@@ -51,11 +51,15 @@ pub fn all(
     Ok(())
 }
 
-fn one(composed: &Composed, entry: &str, linker: &Linker<'_>) -> Result<(), String> {
+fn one(
+    composed: &Composed,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<(), String> {
     let lean = lean(composed);
     let text = Text { composed, lean: &lean };
-    let made =
-        compile(&text, entry, Target::ALL, linker).map_err(|errors| format!("{errors:?}"))?;
+    let made = compile(&text, entry, targets, linker).map_err(|errors| format!("{errors:?}"))?;
     if let Some(whole) = made.whole.first() {
         return Err(format!("{entry} is compiled as a whole: {whole:?}"));
     }
@@ -63,7 +67,7 @@ fn one(composed: &Composed, entry: &str, linker: &Linker<'_>) -> Result<(), Stri
     let functions: Vec<String> =
         functions.flat_map(|part| &part.names).map(|name| plain(name)).collect();
     let validated = validate(&lean).map_err(|errors| format!("{errors:?}"))?;
-    for target in Target::ALL {
+    for target in targets {
         let whole = emit(&validated, entry, *target).map_err(|error| error.message)?.bytes;
         let linked = &made.unit.targets[target.name()].bytes;
         let (whole, linked) = match *target {

@@ -13,6 +13,7 @@ mod numbers;
 mod outside;
 mod program;
 mod random;
+mod run;
 mod shrink;
 mod stages;
 mod statements;
@@ -25,22 +26,30 @@ use std::path::{Path, PathBuf};
 
 use judge::{Finding, Output, Verdict};
 use lamplight::bundle::Target;
+use lamplight::execute::on_thread;
 use libtest_mimic::{Failed, Trial};
 use program::Program;
 use random::Random;
+use run::{Ran, Runnable, Runner};
 
 /// How many programs the tests make, and from which seed on.
-const PROGRAMS: u64 = 60;
+const PROGRAMS: u64 = 200;
 const SEED: u64 = 1;
 /// The judges beside the crate see one program in so many.
-const JUDGED: u64 = 6;
+const JUDGED: u64 = 20;
+/// Outputs of one program in so many are run.
+const RUN: u64 = 2;
 /// Programs whose outputs are judged together.
 const BATCH: u64 = 64;
 /// Programs of a hundred that the crate may refuse, since the generator does not know everything.
 const REFUSED: usize = 10;
 
 pub fn trials() -> Vec<Trial> {
-    vec![Trial::test("link::random", random_programs)]
+    vec![Trial::test("link::random", || {
+        on_thread(|| random_programs().map_err(|failed| failed.message().unwrap_or("").to_owned()))
+            .ok_or("panicked")?
+            .map_err(Failed::from)
+    })]
 }
 
 /// A number from the environment.
@@ -59,11 +68,14 @@ fn random_programs() -> Result<(), Failed> {
         println!("{}\n{}", program.manifest, program.text);
     }
     let every = number("LAMPLIGHT_LINK_JUDGED", JUDGED)?.max(1);
+    let often = number("LAMPLIGHT_LINK_RUN", RUN)?;
     let mut tally = Tally::default();
+    let runner = if often > 0 { Some(Runner::open()?) } else { None };
+    let how = How { every, often, runner };
     let mut next = seed;
     while next < seed + programs {
         let end = (next + BATCH).min(seed + programs);
-        batch(next..end, every, &mut tally)?;
+        batch(next..end, &how, &mut tally)?;
         next = end;
         if programs > PROGRAMS {
             println!("{tally}");
@@ -71,7 +83,7 @@ fn random_programs() -> Result<(), Failed> {
     }
     println!("{tally}");
     for (kind, found) in &tally.findings {
-        told(kind, found)?;
+        told(kind, found, how.runner.as_ref())?;
     }
     let refused: usize = tally.refused.values().sum();
     if refused * 100 > REFUSED * tally.programs {
@@ -81,6 +93,15 @@ fn random_programs() -> Result<(), Failed> {
         true => Ok(()),
         false => Err(format!("{tally}").into()),
     }
+}
+
+/// How much is asked of the programs.
+struct How {
+    /// The judges beside the crate see one program in so many.
+    every: u64,
+    /// Outputs of one program in so many are run.
+    often: u64,
+    runner: Option<Runner>,
 }
 
 /// What became of the programs.
@@ -93,6 +114,10 @@ struct Tally {
     refused: BTreeMap<String, usize>,
     /// Compiled as a whole, by reason and target: how many, and the seed of the first.
     whole: BTreeMap<String, (usize, u64)>,
+    /// Stages that were run.
+    ran: BTreeMap<Target, Ran>,
+    /// Programs of which nothing was run, since they have no fragment stage.
+    vertex_alone: usize,
     /// By kind: how many, and the first.
     findings: BTreeMap<String, Found>,
 }
@@ -115,7 +140,12 @@ impl std::fmt::Display for Tally {
         let Self { programs, outputs, judged, .. } = self;
         write!(f, "{programs} programs, {outputs} outputs, {judged} judged by others")?;
         let refused: usize = self.refused.values().sum();
-        write!(f, "; {refused} refused; as a whole: {:?}; findings:", self.whole)?;
+        write!(f, "; {refused} refused; as a whole: {:?}", self.whole)?;
+        self.ran.iter().try_for_each(|(target, ran)| write!(f, "\n  {target}: {ran}"))?;
+        if self.vertex_alone > 0 {
+            write!(f, "\n  {} not run: vertex stages alone", self.vertex_alone)?;
+        }
+        f.write_str("\n  findings:")?;
         for (kind, Found { count, seed, .. }) in &self.findings {
             write!(f, "\n  {count} x {kind} (seed {seed})")?;
         }
@@ -123,8 +153,9 @@ impl std::fmt::Display for Tally {
     }
 }
 
-fn batch(seeds: std::ops::Range<u64>, every: u64, tally: &mut Tally) -> Result<(), Failed> {
+fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<(), Failed> {
     let (mut outputs, mut owners): (Vec<Output>, Vec<u64>) = Default::default();
+    let mut runnables: Vec<Runnable> = Vec::new();
     for seed in seeds {
         tally.programs += 1;
         match judged(seed) {
@@ -143,7 +174,11 @@ fn batch(seeds: std::ops::Range<u64>, every: u64, tally: &mut Tally) -> Result<(
                     let place = format!("{reason:?} in {target}");
                     tally.whole.entry(place).or_insert((0, seed)).0 += 1;
                 }
-                if seed % every == 0 {
+                if how.often > 0 && seed % how.often == 0 {
+                    tally.vertex_alone += usize::from(sound.runnable.is_none());
+                    runnables.extend(sound.runnable.map(|one| *one));
+                }
+                if seed % how.every == 0 {
                     owners.extend(sound.outputs.iter().map(|_| seed));
                     outputs.extend(sound.outputs);
                 }
@@ -154,6 +189,11 @@ fn batch(seeds: std::ops::Range<u64>, every: u64, tally: &mut Tally) -> Result<(
     let views: Vec<&Output> = outputs.iter().collect();
     for (index, words) in outside::refused(&views)? {
         tally.find(owners[index], refusal(&outputs[index], &words));
+    }
+    if let Some(runner) = &how.runner {
+        for (index, finding) in runner.run(&runnables, &mut tally.ran)? {
+            tally.find(runnables[index].seed, finding);
+        }
     }
     Ok(())
 }
@@ -190,15 +230,15 @@ fn guarded(program: &Program, seed: u64) -> Result<Verdict, Finding> {
 }
 
 /// Writes the first program of a kind of finding, as small as it can be made.
-fn told(kind: &str, found: &Found) -> Result<(), Failed> {
+fn told(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<(), Failed> {
     let folder = findings();
     std::fs::create_dir_all(&folder)?;
     let program = Program::new(found.seed);
     let (mut small, mut about) = (program.clone(), found.finding.about.clone());
     if std::env::var_os("LAMPLIGHT_LINK_SHRINK").is_some() {
-        let has = |program: &Program| again(program, found.seed, kind).is_some();
+        let has = |program: &Program| again(program, found.seed, kind, runner).is_some();
         small = shrink::shrunk(&program, &has);
-        about = again(&small, found.seed, kind).map_or(about, |finding| finding.about);
+        about = again(&small, found.seed, kind, runner).map_or(about, |finding| finding.about);
     }
     let mut text = format!("seed {}: {kind}\n\n{}\n{}\n", found.seed, small.manifest, small.text);
     let _ = write!(text, "\n{about}\n");
@@ -215,7 +255,7 @@ fn findings() -> PathBuf {
 }
 
 /// What is wrong with a program, if it is of that kind.
-fn again(program: &Program, seed: u64, kind: &str) -> Option<Finding> {
+fn again(program: &Program, seed: u64, kind: &str, runner: Option<&Runner>) -> Option<Finding> {
     match guarded(program, seed) {
         Err(finding) => (finding.kind == kind).then_some(finding),
         Ok(Verdict::Refused(_)) => None,
@@ -223,9 +263,15 @@ fn again(program: &Program, seed: u64, kind: &str) -> Option<Finding> {
             let is_wanted = |output: &&Output| kind.starts_with(output.target.name());
             let views: Vec<&Output> = sound.outputs.iter().filter(is_wanted).collect();
             let refused = outside::refused(&views).ok()?;
-            let findings = refused.iter().map(|(index, words)| refusal(views[*index], words));
-            let mut same = findings.filter(|finding| finding.kind == kind);
-            same.next()
+            let refused = refused.iter().map(|(index, words)| refusal(views[*index], words));
+            let ran = match (runner, &sound.runnable) {
+                (Some(runner), Some(runnable)) => {
+                    runner.run(std::slice::from_ref(&**runnable), &mut BTreeMap::new()).ok()?
+                }
+                _ => Vec::new(),
+            };
+            let mut all = refused.chain(ran.into_iter().map(|(_, finding)| finding));
+            all.find(|finding| finding.kind == kind)
         }
     }
 }

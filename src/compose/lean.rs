@@ -7,6 +7,7 @@
 //! Type aliases are replaced by what they stand for. naga gives an alias a type of its own, and
 //! Metal would take an array and its alias for two types.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::{Composed, Part, PartKind, SourceMap};
@@ -23,15 +24,19 @@ const ALIAS_BYTES: usize = 1 << 16;
 pub fn lean(composed: &Composed) -> Composed {
     let mut text = String::with_capacity(composed.text.len() / 2);
     let mut parts = Vec::with_capacity(composed.parts.len());
+    let mut squeezer = Squeezer::new(composed);
     if composed.parts.is_empty() {
-        text = squeeze(composed.language, &composed.text);
+        squeezer.append(&composed.text, &mut text);
     }
     for part in &composed.parts {
         let start = text.len();
-        let whole = expanded(composed, part);
+        let author = &composed.text[part.range.clone()];
+        let whole = match part.aliases.is_empty() {
+            true => Some(Cow::Borrowed(author)),
+            false => expanded(composed, part).map(Cow::Owned),
+        };
         if part.kind != PartKind::Alias || whole.is_none() {
-            let written = whole.as_deref().unwrap_or(&composed.text[part.range.clone()]);
-            text.push_str(&squeeze(composed.language, written));
+            squeezer.append(whole.as_deref().unwrap_or(author), &mut text);
         }
         let (range, names) = (start..text.len(), part.names.clone());
         let (uses, aliases) = (part.uses.clone(), Vec::new());
@@ -51,16 +56,35 @@ pub fn lean(composed: &Composed) -> Composed {
     }
 }
 
-fn squeeze(language: Language, text: &str) -> String {
-    match language {
-        Language::Wesl => wgsl(text),
-        // A backslash continues a line, comments too; a line may end with a carriage return alone,
-        // and be asked for its number.
-        Language::Glsl if text.contains(['\\', '\r']) || text.contains("__LINE__") => {
-            text.to_owned()
-        }
-        Language::Glsl => glsl(text),
+/// Writes parts without their comments and layout, each at the beginning of a line.
+struct Squeezer {
+    language: Language,
+    /// Some part may have lines that have to stay as they are.
+    has_odd_lines: bool,
+    /// GLSL without its comments, for one part at a time.
+    plain: String,
+}
+
+impl Squeezer {
+    fn new(composed: &Composed) -> Self {
+        let is_glsl = composed.language == Language::Glsl;
+        let has_odd_lines = is_glsl && has_odd_lines(&composed.text);
+        Self { language: composed.language, has_odd_lines, plain: String::new() }
     }
+
+    fn append(&mut self, text: &str, lean: &mut String) {
+        match self.language {
+            Language::Wesl => append_wgsl(text, lean),
+            Language::Glsl if self.has_odd_lines && has_odd_lines(text) => lean.push_str(text),
+            Language::Glsl => append_glsl(text, &mut self.plain, lean),
+        }
+    }
+}
+
+/// A backslash continues a line, comments too; a line may end with a carriage return alone, and be
+/// asked for its number.
+fn has_odd_lines(text: &str) -> bool {
+    text.contains('\\') || text.contains('\r') || text.contains("__LINE__")
 }
 
 /// A part with what its aliases stand for; `None` where they cannot be expanded.
@@ -119,18 +143,22 @@ fn declares(declaration: &str, name: &str) -> Option<usize> {
 /// block comments nest.
 pub fn wgsl(text: &str) -> String {
     let mut lean = String::with_capacity(text.len());
+    append_wgsl(text, &mut lean);
+    lean
+}
+
+fn append_wgsl(text: &str, lean: &mut String) {
     let mut at = 0;
     while at < text.len() {
         let rest = &text[at..];
         let gap = gap(rest);
         if gap > 0 && gap < rest.len() {
-            part(&mut lean, &rest[gap..]);
+            part(lean, &rest[gap..]);
         }
         let token = token(&rest[gap..]);
         lean.push_str(&rest[gap..gap + token]);
         at += gap + token;
     }
-    lean
 }
 
 /// Writes a blank where what comes next could become one token with what is there.
@@ -194,7 +222,13 @@ fn comment(text: &str) -> Option<usize> {
 /// GLSL without comments and layout. Directives end with their line, so lines stay; block comments
 /// do not nest.
 pub fn glsl(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
+    let mut lean = String::with_capacity(text.len());
+    append_glsl(text, &mut String::new(), &mut lean);
+    lean
+}
+
+fn append_glsl(text: &str, plain: &mut String, lean: &mut String) {
+    plain.clear();
     let mut rest = text;
     while let Some(start) = rest.find('/') {
         let (before, comment) = rest.split_at(start);
@@ -208,20 +242,22 @@ pub fn glsl(text: &str) -> String {
         rest = &comment[length.max(1)..];
     }
     plain.push_str(rest);
-    let mut lean = String::with_capacity(plain.len());
-    for line in plain.lines().filter(|line| !line.trim_ascii().is_empty()) {
-        let is_directive = line.trim_ascii().starts_with('#');
+    for line in plain.lines() {
+        let line = line.trim_ascii();
+        if line.is_empty() {
+            continue;
+        }
+        let is_directive = line.starts_with('#');
         for word in line.split_ascii_whitespace() {
             // A blank before a bracket matters in a directive: `#define F(x)` has a parameter,
             // `#define F (x)` has none.
             if is_directive && !lean.ends_with('\n') && !lean.is_empty() {
                 lean.push(' ')
             } else {
-                part(&mut lean, word)
+                part(lean, word)
             }
             lean.push_str(word);
         }
         lean.push('\n');
     }
-    lean
 }

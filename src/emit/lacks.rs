@@ -1,34 +1,44 @@
-//! Functions that GLSL 3.30 and GLSL ES 3.00 do not have: both are older than these, and naga
-//! writes their names all the same.
+//! What naga writes in GLSL although the language does not have it, or means something else by it.
+//!
+//! GLSL 3.30 and GLSL ES 3.00 are older than some functions, whose names naga writes all the same;
+//! for `frexp` it writes one of its own, by `log2`, which is wrong for negative numbers and small
+//! ones. In std140 a column of a matrix of two rows takes 16 bytes, in WGSL and in a reflection 8.
 
 use naga::back::glsl::Version;
-use naga::{Expression, MathFunction, Module, Span};
+use naga::{
+    AddressSpace, Binding, BuiltIn, Expression, Function, Handle, ImageClass, ImageQuery,
+    MathFunction, Module, Span, Type, TypeInner, VectorSize,
+};
 
 use crate::bundle::Target;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
-/// Functions of WGSL, as GLSL calls what naga writes for them.
+/// Functions of WGSL, as GLSL calls what naga writes for them; the newest GLSL has them all.
 const LATER: &[(MathFunction, &str)] = &[
-    (MathFunction::CountOneBits, "bitCount"),
-    (MathFunction::CountTrailingZeros, "findLSB"),
-    (MathFunction::Dot4I8Packed, "bitfieldExtract"),
-    (MathFunction::Dot4U8Packed, "bitfieldExtract"),
-    (MathFunction::ExtractBits, "bitfieldExtract"),
-    (MathFunction::FirstLeadingBit, "findMSB"),
-    (MathFunction::FirstTrailingBit, "findLSB"),
-    (MathFunction::InsertBits, "bitfieldInsert"),
-    (MathFunction::Ldexp, "ldexp"),
-    (MathFunction::Pack4xI8, "bitfieldInsert"),
-    (MathFunction::Pack4xI8Clamp, "bitfieldInsert"),
-    (MathFunction::Pack4xU8, "bitfieldInsert"),
-    (MathFunction::Pack4xU8Clamp, "bitfieldInsert"),
-    (MathFunction::ReverseBits, "bitfieldReverse"),
-    (MathFunction::Unpack4xI8, "bitfieldExtract"),
-    (MathFunction::Unpack4xU8, "bitfieldExtract"),
+    (MathFunction::CountOneBits, "`bitCount`"),
+    (MathFunction::CountTrailingZeros, "`findLSB`"),
+    (MathFunction::Dot4I8Packed, "`bitfieldExtract`"),
+    (MathFunction::Dot4U8Packed, "`bitfieldExtract`"),
+    (MathFunction::ExtractBits, "`bitfieldExtract`"),
+    (MathFunction::FirstLeadingBit, "`findMSB`"),
+    (MathFunction::FirstTrailingBit, "`findLSB`"),
+    (MathFunction::Frexp, "`frexp`"),
+    (MathFunction::InsertBits, "`bitfieldInsert`"),
+    (MathFunction::Ldexp, "`ldexp`"),
+    (MathFunction::Pack4xI8, "`bitfieldInsert`"),
+    (MathFunction::Pack4xI8Clamp, "`bitfieldInsert`"),
+    (MathFunction::Pack4xU8, "`bitfieldInsert`"),
+    (MathFunction::Pack4xU8Clamp, "`bitfieldInsert`"),
+    (MathFunction::ReverseBits, "`bitfieldReverse`"),
+    (MathFunction::Unpack4xI8, "`bitfieldExtract`"),
+    (MathFunction::Unpack4xU8, "`bitfieldExtract`"),
 ];
 
-/// Refuses functions that targets do not have, in the author's places where `composed` knows them.
+const TWO_ROWS: &str =
+    "a matrix of two rows in a uniform block is laid out otherwise in GLSL: use vectors";
+
+/// Refuses what targets do not have, in the author's places where `composed` knows them.
 ///
 /// # Errors
 /// `emit-failed` for each.
@@ -38,53 +48,165 @@ pub fn check(composed: &Composed, module: &Module, targets: &[Target]) -> Result
         if !targets.contains(target) {
             continue;
         }
-        for (name, span) in lacking(module, *version) {
+        let functions = lacking(module, *version)
+            .map(|(what, span)| (told(*target, what), span, "it is written so"));
+        let blocks = two_rows(module)
+            .map(|span| (format!("target `{target}`: {TWO_ROWS}"), span, "it is in here"));
+        for (message, span, label) in functions.chain(blocks) {
             let place = span.to_range().and_then(|range| composed.map.lookup(range));
-            let error = Diagnostic::error(codes::EMIT_FAILED, told(*target, name));
-            found.push(
-                place.into_iter().fold(error, |error, span| error.at(span, "it is written so")),
-            );
+            let error = Diagnostic::error(codes::EMIT_FAILED, message);
+            found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
         }
     }
     if found.is_empty() { Ok(()) } else { Err(found) }
 }
 
-const VERSIONS: &[(Target, Version)] =
-    &[(Target::GLSL330, Version::Desktop(330)), (Target::ESSL300, Version::new_gles(300))];
+const VERSIONS: &[(Target, Version)] = &[
+    (Target::GLSL450, Version::Desktop(450)),
+    (Target::GLSL330, Version::Desktop(330)),
+    (Target::ESSL300, Version::new_gles(300)),
+];
 
-fn told(target: Target, name: &str) -> String {
-    format!("target `{target}`: the language has no `{name}`, which is needed here")
+fn told(target: Target, what: &str) -> String {
+    format!("target `{target}`: the language has no {what}, which is needed here")
 }
 
-/// The first function that a version does not have.
+/// The first thing that a version does not have.
 pub fn first(module: &Module, version: Version) -> Option<String> {
-    let (name, _) = lacking(module, version).next()?;
-    Some(format!("the language has no `{name}`, which is needed"))
+    if two_rows(module).next().is_some() {
+        return Some(TWO_ROWS.to_owned());
+    }
+    if asks_for_sample(module, version) {
+        return Some("the language has no `gl_SampleID`, which is needed".to_owned());
+    }
+    let (what, _) = lacking(module, version).next()?;
+    Some(format!("the language has no {what}, which is needed"))
+}
+
+/// Uniform blocks with matrices of two rows.
+fn two_rows(module: &Module) -> impl Iterator<Item = Span> {
+    let blocks = module.global_variables.iter();
+    let blocks = blocks.filter(|(_, one)| one.space == AddressSpace::Uniform);
+    blocks
+        .filter(|(_, one)| has_two_rows(module, one.ty))
+        .map(|(handle, _)| module.global_variables.get_span(handle))
+}
+
+fn has_two_rows(module: &Module, ty: Handle<Type>) -> bool {
+    match &module.types[ty].inner {
+        TypeInner::Matrix { rows, .. } => *rows == VectorSize::Bi,
+        TypeInner::Array { base, .. } => has_two_rows(module, *base),
+        TypeInner::Struct { members, .. } => {
+            members.iter().any(|member| has_two_rows(module, member.ty))
+        }
+        _ => false,
+    }
 }
 
 fn lacking(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
-    let is_old = VERSIONS.iter().any(|(_, known)| *known == version);
     let points = module.entry_points.iter().map(|point| &point.function);
     let all = module.functions.iter().map(|(_, function)| function).chain(points);
-    let all = all.filter(move |_| is_old);
-    all.flat_map(move |function| {
+    let expressions = all.flat_map(move |function| {
         let expressions = function.expressions.iter();
         expressions.filter_map(move |(handle, expression)| {
-            Some((later(version, expression)?, function.expressions.get_span(handle)))
+            let what = later(module, function, version, expression)?;
+            Some((what, function.expressions.get_span(handle)))
         })
+    });
+    expressions.chain(arrays_of_arrays(module, version))
+}
+
+fn arrays_of_arrays(
+    module: &Module,
+    version: Version,
+) -> impl Iterator<Item = (&'static str, Span)> {
+    let types = module.types.iter().filter(move |_| version != NEWEST);
+    types.filter_map(|(handle, ty)| match &ty.inner {
+        TypeInner::Array { base, .. } => {
+            let is_array = matches!(module.types[*base].inner, TypeInner::Array { .. });
+            is_array.then(|| ("array of arrays", place_of(module, handle)))
+        }
+        _ => None,
     })
 }
 
-/// What GLSL calls a function that a version does not have.
-fn later(version: Version, expression: &Expression) -> Option<&'static str> {
+/// Where a type without a name is first asked for.
+fn place_of(module: &Module, ty: Handle<Type>) -> Span {
+    let points = module.entry_points.iter().map(|point| &point.function);
+    let functions = module.functions.iter().map(|(_, function)| function).chain(points);
+    let in_functions = functions.flat_map(|function| {
+        let locals = function.local_variables.iter().filter(move |(_, local)| local.ty == ty);
+        let made = function.expressions.iter().filter(move |(_, one)| {
+            matches!(one, Expression::Compose { ty: own, .. } | Expression::ZeroValue(own) if *own == ty)
+        });
+        let locals = locals.map(|(handle, _)| function.local_variables.get_span(handle));
+        locals.chain(made.map(|(handle, _)| function.expressions.get_span(handle)))
+    });
+    let globals = module.global_variables.iter().filter(|(_, global)| global.ty == ty);
+    let globals = globals.map(|(handle, _)| module.global_variables.get_span(handle));
+    let holders = module.types.iter().filter(|(_, one)| match &one.inner {
+        TypeInner::Struct { members, .. } => members.iter().any(|member| member.ty == ty),
+        _ => false,
+    });
+    let holders = holders.map(|(handle, _)| module.types.get_span(handle));
+    let mut all = globals.chain(holders).chain(in_functions);
+    all.find(Span::is_defined).unwrap_or_default()
+}
+
+/// What GLSL calls something that a version does not have.
+fn later(
+    module: &Module,
+    function: &Function,
+    version: Version,
+    expression: &Expression,
+) -> Option<&'static str> {
+    let is_old = version != NEWEST;
     match expression {
-        Expression::Math { fun: MathFunction::QuantizeToF16, .. } => {
-            (version == Version::Desktop(330)).then_some("unpackHalf2x16")
+        Expression::ImageSample { image, depth_ref: None, .. }
+            if is_depth(module, function, *image) =>
+        {
+            Some(PLAIN_DEPTH)
         }
-        Expression::Math { fun, .. } => {
+        Expression::Math { fun: MathFunction::QuantizeToF16, .. } => {
+            (version == Version::Desktop(330)).then_some("`unpackHalf2x16`")
+        }
+        Expression::Math { fun, .. } if is_old => {
             LATER.iter().find(|(known, _)| known == fun).map(|(_, name)| *name)
         }
-        Expression::ImageSample { gather: Some(_), .. } => Some("textureGather"),
+        Expression::ImageSample { gather: Some(_), .. } if is_old => Some("`textureGather`"),
+        Expression::ImageQuery { query: ImageQuery::NumLevels, .. } if is_old => {
+            Some("`textureQueryLevels`")
+        }
+        Expression::ImageQuery { query: ImageQuery::NumSamples, .. } if is_old => {
+            Some("`textureSamples`")
+        }
         _ => None,
     }
+}
+
+const NEWEST: Version = Version::Desktop(450);
+const PLAIN_DEPTH: &str = "depth texture that is sampled without a comparison";
+
+fn is_depth(module: &Module, function: &Function, image: Handle<Expression>) -> bool {
+    let ty = match &function.expressions[image] {
+        Expression::GlobalVariable(variable) => module.global_variables[*variable].ty,
+        Expression::FunctionArgument(index) => function.arguments[*index as usize].ty,
+        _ => return false,
+    };
+    let depth = ImageClass::Depth { multi: false };
+    matches!(&module.types[ty].inner, TypeInner::Image { class, .. } if *class == depth)
+}
+
+/// Whether an entry point of GLSL ES 3.00 asks for the number of a sample.
+fn asks_for_sample(module: &Module, version: Version) -> bool {
+    let is_it = |ty: Handle<Type>, binding: Option<&Binding>| match &module.types[ty].inner {
+        TypeInner::Struct { members, .. } => {
+            members.iter().any(|one| one.binding == Some(Binding::BuiltIn(BuiltIn::SampleIndex)))
+        }
+        _ => binding == Some(&Binding::BuiltIn(BuiltIn::SampleIndex)),
+    };
+    let mut points = module.entry_points.iter().map(|point| &point.function);
+    version != NEWEST
+        && points
+            .any(|one| one.arguments.iter().any(|given| is_it(given.ty, given.binding.as_ref())))
 }

@@ -5,6 +5,8 @@ use naga::{Function, Module, Type, TypeInner};
 /// The module with other names in the place of those that are taken; `None` where there are none.
 /// The name of the entry point is changed too.
 pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Module> {
+    // naga leaves out underscores at the end, and all but one of those that follow each other.
+    let is_taken = |name: &str| is_taken(name) || is_taken(&plain(name));
     if !names(module).any(is_taken) {
         return None;
     }
@@ -42,6 +44,17 @@ pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Modul
         change_function(&mut point.function);
     }
     Some(module)
+}
+
+/// A name as naga writes it, but for what it adds.
+fn plain(name: &str) -> String {
+    let mut plain = String::with_capacity(name.len());
+    for letter in name.trim_end_matches('_').chars() {
+        if letter != '_' || !plain.ends_with('_') {
+            plain.push(letter);
+        }
+    }
+    plain
 }
 
 /// Every name of a module.

@@ -18,7 +18,19 @@ pub struct Entry {
     /// `None` if the executor draws no frames.
     pub samples: Option<u32>,
     /// Opens a device.
-    pub open: fn() -> Result<Box<dyn Session>, Unavailable>,
+    pub open: Open,
+    /// What it draws from the bytes of a bundle.
+    pub shipping: Option<Shipping>,
+}
+
+/// Opens a session.
+pub type Open = fn() -> Result<Box<dyn Session>, Unavailable>;
+
+/// A target, and what opens a session that draws its files as they are. Each target has one
+/// executor that does.
+pub struct Shipping {
+    pub target: Target,
+    pub open: Open,
 }
 
 /// Why an executor cannot be used on this machine.
@@ -72,6 +84,12 @@ pub fn prepare(entries: &[&Entry]) {
         without_windows();
     }
     entries.iter().filter_map(|entry| entry.before_threads).for_each(|prepare| prepare());
+}
+
+/// The executor that draws a target's files as they are.
+pub fn shipping(target: Target) -> Option<(&'static Entry, &'static Shipping)> {
+    let mut all = ALL.iter().filter_map(|entry| Some((*entry, entry.shipping.as_ref()?)));
+    all.find(|(_, shipping)| shipping.target == target)
 }
 
 /// Tells Mesa's layers that there is no window system, where there is none: they look for Wayland in

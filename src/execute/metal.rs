@@ -4,15 +4,16 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::Session;
 use super::fixture::Fixture;
 use super::frame::{Drawing, EntryPoint, Frame};
 use super::gpu::{batched, emitted, input_texels, unpack};
 use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH};
-use super::raster::{Compiled, Shipped};
+use super::raster::Compiled;
+use super::shipped::Shipped;
+use super::{Pair, Session};
 use crate::bundle::{Native, Target};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::emit::{self, Emitted};
+use crate::emit::Emitted;
 use crate::eval::{Sampler, Shape, Texture};
 use crate::metal::request::{Bound, Format, Fragment, Image, ImageLevel};
 use crate::metal::{Missing, Program, version};
@@ -122,11 +123,23 @@ impl Session for Metal {
     }
 
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        let shipped = |stage: EntryPoint<'_>| Shipped::of(stage, Target::MSL);
         let mut stages = vec![shipped(drawing.vertex)?];
         stages.extend(drawing.fragment.map(shipped).transpose()?);
         let fragment = stages.len().checked_sub(2).map(|_| 1);
         let compiled = Compiled::new(stages).map_err(|missing| failed(missing.reason))?;
         compiled.draw(0, fragment, drawing)
+    }
+
+    fn draw_shipped(
+        &self,
+        pair: Pair<'_>,
+        drawing: &Drawing<'_>,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        let targets = pair.fragment.targets().map_err(failed)?.len() as u32;
+        let stages = vec![pair.vertex.clone(), pair.fragment.clone()];
+        let compiled = Compiled::new(stages).map_err(|missing| failed(missing.reason))?;
+        compiled.draw(0, Some(1), &Drawing { targets, ..*drawing })
     }
 }
 
@@ -137,14 +150,6 @@ fn failed(message: impl Into<String>) -> Diagnostic {
 fn text(emitted: Emitted) -> Result<(String, Native), Diagnostic> {
     let text = String::from_utf8(emitted.bytes).map_err(|error| failed(error.to_string()))?;
     Ok((text, emitted.native))
-}
-
-/// An entry point as it would be shipped.
-fn shipped(stage: EntryPoint<'_>) -> Result<Shipped, Diagnostic> {
-    let (emitted, validated) = emitted::of_module(stage.module, stage.entry, Target::MSL)?;
-    let reflection = emit::reflect(&validated, stage.entry)?;
-    let (text, native) = text(emitted)?;
-    Ok(Shipped { text, native, reflection })
 }
 
 /// The fragments at four places.

@@ -5,7 +5,7 @@
 //! [`kernel`] wraps a function into a fragment shader, an executor of [`executors`] runs it over
 //! rows of arguments; [`fixture`] is what textures and samplers hold. Devices of wgpu are in
 //! `gpu`; the evaluator runs kernels in `interpreter`, compiled MSL in `metal`, and both draw
-//! [`frame`]s in [`raster`].
+//! [`frame`]s in [`raster`]. Frames are drawn from the bytes of a bundle too: [`shipped`].
 
 pub mod executors;
 pub mod fixture;
@@ -16,10 +16,12 @@ pub mod kernel;
 mod metal;
 pub mod raster;
 pub(crate) mod sampling;
+pub mod shipped;
 
 use crate::diagnostic::{Diagnostic, codes};
 use frame::{Drawing, Frame};
 use kernel::Kernel;
+use shipped::Shipped;
 
 /// Stack of a thread that compiles shaders: naga recurses along expressions.
 pub(crate) const STACK: usize = 64 << 20;
@@ -56,6 +58,23 @@ pub trait Session: Send {
     fn draw_frames(&self, _: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         Err(draws_none())
     }
+
+    /// Draws with stages as they are shipped, in the place of those that the drawing names.
+    /// Targets hold the bits of what the fragment stage returns at each of its locations.
+    /// Executors that [`executors::shipping`] names draw so; the others refuse.
+    ///
+    /// # Errors
+    /// Those of [`Self::draw_frames`]; `executor-lacks` for what the driver cannot be given.
+    fn draw_shipped(&self, _: Pair<'_>, _: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        Err(draws_none())
+    }
+}
+
+/// A vertex and a fragment stage.
+#[derive(Debug, Clone, Copy)]
+pub struct Pair<'a> {
+    pub vertex: &'a Shipped,
+    pub fragment: &'a Shipped,
 }
 
 fn draws_none() -> Diagnostic {

@@ -14,8 +14,9 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::link::Reason;
 use crate::permute::{Assignment, Key, ReadTree, Space};
 
-/// Permutations composed before their new texts are compiled: bounds the memory that texts take.
-const BATCH: usize = 1024;
+/// Permutations composed before their new texts are compiled: bounds the memory that texts take,
+/// which a small batch finds in the processor's caches.
+const BATCH: usize = 256;
 
 /// An entry point, compiled for every permutation.
 pub struct Woven {
@@ -70,6 +71,8 @@ pub fn weave(
                 woven.whole.entry((reason, target)).or_insert_with(|| (0, example())).0 += 1;
             }
         }
+        // Texts are many small pieces.
+        jobs.into_par_iter().for_each(drop);
         at(batch.end);
     }
     Ok(looms.into_iter().map(|loom| loom.woven).collect())

@@ -54,7 +54,7 @@ pub struct Recipe<'s> {
 pub fn recipe<'s>(
     outline: &Outline<'_>,
     unit: Unit,
-    summaries: &[Option<&'s Summary>],
+    summaries: &dyn Fn(usize) -> Option<&'s Summary>,
 ) -> Result<Recipe<'s>, Reason> {
     let entry = outline.entry();
     let (function, callees): (Option<usize>, Vec<usize>) = match (unit, outline.language) {
@@ -62,9 +62,8 @@ pub fn recipe<'s>(
         (Unit::Entry, Language::Wesl) => (Some(entry), outline.callees(entry).collect()),
         (Unit::Function(function), _) => (Some(function), outline.callees(function).collect()),
     };
-    let stubs = callees
-        .into_iter()
-        .map(|callee| summaries.get(callee).copied().flatten().map(|summary| (callee, summary)));
+    let stubs =
+        callees.into_iter().map(|callee| summaries(callee).map(|summary| (callee, summary)));
     let stubs: Vec<(usize, &Summary)> = stubs.collect::<Option<_>>().ok_or(Reason::Recursion)?;
     let mut open: Vec<usize> = Vec::new();
     open.extend(function.iter().flat_map(|function| &outline.declarations[*function].uses));
@@ -116,22 +115,28 @@ fn is_built_in(name: &str) -> bool {
 impl Recipe<'_> {
     /// Covers every byte of the text and every fact that is added to its module.
     pub fn key(&self, outline: &Outline<'_>) -> Key {
-        let declared = |index: &usize| outline.declarations[*index].hash;
+        let declared = |index: &usize| &outline.declarations[*index].hash[..];
         let unit = match self.unit {
             Unit::Entry => "entry",
             Unit::Function(_) => "function",
         };
-        let head = format!("{unit} {:?} {:?}", outline.language, outline.stage);
-        let mut parts: Vec<Vec<u8>> = vec![head.into_bytes(), outline.header.clone().into_bytes()];
-        let lists = [&self.others, &self.variables];
-        parts.extend(lists.map(|list| list.iter().flat_map(declared).collect::<Vec<u8>>()));
-        for (stub, summary) in &self.stubs {
-            parts.push(outline.declarations[*stub].head.as_bytes().to_vec());
-            parts.push(format!("{summary:?}").into_bytes());
+        let language = match outline.language {
+            Language::Wesl => "wesl",
+            Language::Glsl => "glsl",
+        };
+        let stage = if outline.stage == ShaderStage::Vertex { "vertex" } else { "fragment" };
+        let head = [unit, language, stage, &outline.header];
+        let mut parts: Vec<&[u8]> = head.map(str::as_bytes).to_vec();
+        for list in [&self.others, &self.variables] {
+            parts.extend(list.iter().map(declared).chain([&[][..]]));
         }
-        parts.push(self.function.iter().flat_map(declared).collect());
-        parts.push(self.interface.iter().flat_map(declared).collect());
-        hash(parts.iter().map(Vec::as_slice))
+        for (stub, summary) in &self.stubs {
+            parts.extend([outline.declarations[*stub].head.as_bytes(), &summary.key]);
+        }
+        for one in [&self.function, &self.interface] {
+            parts.push(one.as_ref().map_or(&[], declared));
+        }
+        hash(parts)
     }
 
     /// Bytes of the declarations that the text is made of.

@@ -1,8 +1,10 @@
 //! An output of a canonical text, divided: what is the unit's own, and what it shares.
 
 use std::collections::{BTreeSet, HashMap};
+use std::hash::{BuildHasherDefault, Hash, Hasher};
 
 use super::mark::{self, Mark, SCRATCH};
+use super::mixer::Mixer;
 use super::reason::Reason;
 use super::text::{self, Declared};
 use super::words::words;
@@ -41,18 +43,25 @@ pub struct Shared {
 }
 
 /// A part of an output. References to the author's declarations are apart from all other text.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Fragment {
     /// The text, with nothing in the places of the references.
     pub text: String,
+    /// In the order of their places.
     pub references: Vec<Reference>,
-    /// Identifiers that are no references: those that the function declares, and all others.
+    /// Identifiers that are no references, and that the function declares.
     pub locals: Vec<String>,
-    pub words: Vec<String>,
+}
+
+/// Nearly all that differ do so in their text.
+impl Hash for Fragment {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.text.hash(state);
+    }
 }
 
 /// A name of the author's.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reference {
     /// Where it stands in the text.
     pub at: usize,
@@ -101,7 +110,7 @@ fn share(
     bound: &BTreeSet<&str>,
     names: &[String],
 ) -> Result<Vec<Shared>, Reason> {
-    let mut by_name: HashMap<&str, Vec<usize>> = HashMap::new();
+    let mut by_name: HashMap<&str, Vec<usize>, BuildHasherDefault<Mixer>> = HashMap::default();
     for index in shared {
         by_name.entry(declared[*index].name).or_default().push(*index);
     }
@@ -119,7 +128,7 @@ fn share(
     let one = |index: &usize| {
         let Declared { kind, name, text } = declared[*index];
         // Without its entry point, what is bound is not there.
-        if words(text).any(|word| bound.contains(word.text)) {
+        if !bound.is_empty() && words(text).any(|word| bound.contains(word.text)) {
             return Err(Reason::Shape);
         }
         // A declaration names others that come before it. Functions of one name are apart.
@@ -179,23 +188,24 @@ impl Fragment {
             at = mark.end;
         }
         fragment.text.push_str(&text[at..]);
-        let plain = words(text).filter(|word| word.before != b'.' && !mark::occurs(word.text));
-        let plain: BTreeSet<&str> = plain.map(|word| word.text).collect();
-        fragment.words = plain.into_iter().map(str::to_owned).collect();
         Ok(fragment)
     }
 
-    /// The text with names in the places of the references.
-    pub fn render(&self, name: &dyn Fn(&Reference) -> String) -> String {
-        let mut text = String::with_capacity(self.text.len() + 16 * self.references.len());
-        let mut at = 0;
-        for reference in &self.references {
-            text.push_str(&self.text[at..reference.at]);
-            text.push_str(&name(reference));
-            at = reference.at;
-        }
-        text.push_str(&self.text[at..]);
-        text
+    /// Identifiers that have nothing of a reference, but for members.
+    pub fn words(&self) -> impl Iterator<Item = &str> {
+        let mut references = self.references.iter().map(|reference| reference.at).peekable();
+        let mut last = 0;
+        words(&self.text).filter_map(move |word| {
+            let end = word.at + word.text.len();
+            while let Some(at) = references.next_if(|at| *at < word.at) {
+                last = at;
+            }
+            let is_plain = references.peek().is_none_or(|at| *at > end);
+            // A member follows its dot, with no reference in between.
+            let after_dot = || self.text[..word.at].trim_end().len();
+            let is_member = word.before == b'.' && last < after_dot();
+            (is_plain && !is_member).then_some(word.text)
+        })
     }
 }
 
@@ -217,23 +227,6 @@ impl Fragment {
         (self.text, self.references) = (text, kept);
         self.locals.push(name.to_owned());
     }
-
-    /// Names of the writer's own that hold a reference.
-    pub fn derived(&self, name: &dyn Fn(&Reference) -> String) -> Vec<String> {
-        let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
-        let bytes = self.text.as_bytes();
-        let one = |reference: &Reference| {
-            let before =
-                bytes[..reference.at].iter().rev().take_while(|byte| is_part(byte)).count();
-            let after = bytes[reference.at..].iter().take_while(|byte| is_part(byte)).count();
-            let text = |from: usize, to: usize| self.text[from..to].to_owned();
-            (before + after > 0).then(|| {
-                let (start, at, end) = (reference.at - before, reference.at, reference.at + after);
-                text(start, at) + &name(reference) + &text(at, end)
-            })
-        };
-        self.references.iter().filter_map(one).collect()
-    }
 }
 
 impl Cut {
@@ -241,15 +234,30 @@ impl Cut {
     /// names, which naga writes with an underscore or a number behind them. The entry point is no
     /// local, even where one is called like it.
     pub fn add_locals(&mut self, bases: &BTreeSet<&str>, entry: &str) {
-        let is_local = |word: &String| {
-            if word == entry {
+        let is_local = |word: &&str| {
+            if *word == entry {
                 return false;
             }
             let stem = word.trim_end_matches(|end: char| end.is_ascii_digit());
-            let stem = if stem.ends_with('_') { stem.trim_end_matches('_') } else { word };
+            let stem = if stem.ends_with('_') { stem.trim_end_matches('_') } else { *word };
             bases.contains(stem) || bases.contains(word.trim_end_matches('_'))
         };
-        let words = std::mem::take(&mut self.body.words);
-        (self.body.locals, self.body.words) = words.into_iter().partition(is_local);
+        let words: BTreeSet<&str> = self.body.words().collect();
+        let locals = words.into_iter().filter(|word| is_local(word)).map(str::to_owned);
+        self.body.locals = locals.collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_plain_where_no_reference_touches_them() {
+        let names = ["".to_owned(), "author".to_owned()];
+        let mark = mark::mark(1);
+        let text = format!("a.b Make{mark} {mark}_1 c+{mark} d .{mark} e . f {mark}(g)h1{mark}x");
+        let fragment = Fragment::read(&text, &names).unwrap();
+        assert_eq!(fragment.words().collect::<Vec<_>>(), ["a", "c", "d", "e", "g"]);
     }
 }

@@ -46,14 +46,17 @@ mod canonical;
 mod compile;
 mod cut;
 mod mark;
+mod mixer;
 mod module;
 mod names;
 mod outline;
 mod pool;
+mod ready;
 mod reason;
 mod spirv;
 mod summary;
 mod text;
+mod texts;
 mod translate;
 mod words;
 
@@ -140,8 +143,9 @@ impl<'a> Linker<'a> {
         });
         let parts = Parts { functions: named.collect(), entry };
         let pool = self.pool.read().unwrap_or_else(PoisonError::into_inner);
-        let targets = self.targets.iter().enumerate();
-        let targets = targets.map(|(index, target)| pool.link(&parts, index, *target)).collect();
+        let (targets, mut text) = (self.targets.iter().enumerate(), String::new());
+        let targets = targets.map(|(index, target)| pool.link(&parts, index, *target, &mut text));
+        let targets = targets.collect();
         Ok(Linked { reflection, targets, suspect })
     }
 
@@ -176,9 +180,10 @@ impl<'a> Linker<'a> {
         units: &[Option<Arc<Unit>>],
         left: &mut usize,
     ) -> Result<Arc<Unit>, Reason> {
-        let summaries: Vec<Option<&Summary>> =
-            units.iter().map(|unit| unit.as_ref().map(|unit| &unit.summary)).collect();
-        let recipe: Recipe<'_> = recipe(outline, unit, &summaries)?;
+        let summary = |function: usize| -> Option<&Summary> {
+            units.get(function)?.as_ref().map(|unit| &unit.summary)
+        };
+        let recipe: Recipe<'_> = recipe(outline, unit, &summary)?;
         *left = left.checked_sub(recipe.bytes(outline)).ok_or(Reason::Large)?;
         let key = recipe.key(outline);
         self.asked.fetch_add(1, Ordering::Relaxed);

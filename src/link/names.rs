@@ -9,6 +9,7 @@ use naga::valid::{ValidationFlags, Validator};
 use naga::{Constant, Expression, Literal, Module, Scalar, Span, Type, TypeInner};
 
 use super::cut::Reference;
+use super::ready::{Bits, Identifier, Ready};
 use super::reason::Reason;
 use super::text;
 use crate::bundle::Target;
@@ -27,12 +28,13 @@ pub struct Names {
     words: HashMap<String, u32>,
 }
 
-/// The identifiers of one fragment of a text.
-pub struct Used<'u> {
-    pub names: &'u [u32],
-    pub captured: &'u [u32],
-    pub words: &'u [u32],
-    pub locals: &'u [String],
+/// What the names of a text become.
+pub struct Chosen {
+    pub renames: Renames,
+    /// The names that have others than usual.
+    pub renamed: Bits,
+    /// By the number of an identifier: whether a name has it as usual.
+    taken: Bits,
 }
 
 /// Names that a text cannot have as usual, with what they are instead.
@@ -49,7 +51,7 @@ impl Names {
             return Ok(*number);
         }
         let usual = self.target.and_then(|target| plain_name(name, target)).ok_or(Reason::Shape)?;
-        let word = self.word(usual.clone());
+        let word = self.word(&usual);
         let number = self.usual.len() as u32;
         self.usual.push((name.to_owned(), usual, word));
         self.numbers.insert(name.to_owned(), number);
@@ -57,14 +59,23 @@ impl Names {
     }
 
     /// The number of an identifier, new or known.
-    pub fn word(&mut self, word: String) -> u32 {
-        let next = self.words.len() as u32;
-        *self.words.entry(word).or_insert(next)
+    pub fn word(&mut self, word: &str) -> u32 {
+        if let Some(number) = self.words.get(word) {
+            return *number;
+        }
+        let number = self.words.len() as u32;
+        self.words.insert(word.to_owned(), number);
+        number
     }
 
     /// What naga calls a name.
     pub fn usual(&self, number: u32) -> &str {
         self.usual.get(number as usize).map_or("", |(_, usual, _)| usual)
+    }
+
+    /// The number of what naga calls a name.
+    pub fn usual_word(&self, number: u32) -> u32 {
+        self.usual.get(number as usize).map_or(u32::MAX, |(_, _, word)| *word)
     }
 
     /// What a reference nearly always is.
@@ -74,51 +85,79 @@ impl Names {
         self.numbers.get(name).map_or("", |number| self.usual(*number))
     }
 
-    /// What a reference is in a text with some other names.
-    pub fn renamed(&self, reference: &Reference, renames: &Renames) -> String {
-        let number = self.numbers.get(&reference.name).filter(|_| !reference.small);
-        let renamed = number.and_then(|number| renames.get(number));
-        renamed.cloned().unwrap_or_else(|| self.usual_of(reference).to_owned())
-    }
-
     /// The names of a text that cannot be as usual.
-    pub fn choose(&self, fragments: &[Used<'_>]) -> Result<Renames, Reason> {
-        let mut words = vec![false; self.words.len()];
-        let mut names = vec![false; self.usual.len()];
-        let mut captured = vec![false; self.usual.len()];
-        for used in fragments {
-            used.words.iter().for_each(|word| words[*word as usize] = true);
-            used.names.iter().for_each(|name| names[*name as usize] = true);
-            used.captured.iter().for_each(|name| captured[*name as usize] = true);
+    pub fn choose(&self, fragments: &[&Ready]) -> Result<Chosen, Reason> {
+        let mut words = Bits::new(self.words.len());
+        let mut names = Bits::new(self.usual.len());
+        let mut captured = Bits::new(self.usual.len());
+        for ready in fragments {
+            ready.words.add_to(&mut words);
+            ready.names.add_to(&mut names);
+            ready.captured.iter().for_each(|name| _ = captured.insert(*name as usize));
         }
-        let mut renames = Renames::new();
-        let mut taken = vec![false; self.words.len()];
-        let mut open = Vec::new();
-        let named = (0..self.usual.len()).filter(|name| names[*name]);
-        let mut named: Vec<usize> = named.collect();
-        // Numbers depend on what was met before; names do not.
-        named.sort_by(|one, other| self.usual[*one].0.cmp(&self.usual[*other].0));
-        for name in named {
+        let mut taken = Bits::new(self.words.len());
+        let (mut open, mut wanted_twice) = (Vec::new(), Vec::new());
+        for name in names.numbers() {
             let word = self.usual[name].2 as usize;
-            if words[word] || captured[name] || std::mem::replace(&mut taken[word], true) {
+            if words.has(word) || captured.has(name) {
                 open.push(name);
+            } else if taken.insert(word) {
+                wanted_twice.push(word);
             }
         }
+        // Numbers depend on what was met before; names do not.
+        let author = |name: &usize| &self.usual[*name].0;
+        wanted_twice.sort_unstable();
+        wanted_twice.dedup();
+        for word in wanted_twice {
+            let wants = |name: &usize| self.usual[*name].2 as usize == word && !captured.has(*name);
+            let first = names.numbers().filter(wants).min_by_key(author);
+            open.extend(names.numbers().filter(wants).filter(|name| Some(*name) != first));
+        }
+        open.sort_by_key(author);
+        let renames = self.numbered(&open, fragments, |word| words.has(word) || taken.has(word))?;
+        let mut renamed = Bits::new(self.usual.len());
+        open.iter().for_each(|name| _ = renamed.insert(*name));
+        Ok(Chosen { renames, renamed, taken })
+    }
+
+    /// Numbers some names, so that each is new in the text.
+    fn numbered(
+        &self,
+        open: &[usize],
+        fragments: &[&Ready],
+        is_used: impl Fn(usize) -> bool,
+    ) -> Result<Renames, Reason> {
+        let mut renames = Renames::new();
         let mut chosen: BTreeSet<String> = BTreeSet::new();
         for name in open {
-            let base = self.usual[name].1.trim_end_matches('_');
+            let base = self.usual[*name].1.trim_end_matches('_');
+            let is_local =
+                |word: &u32| fragments.iter().any(|ready| ready.locals.binary_search(word).is_ok());
             let is_free = |candidate: &String| {
-                let word = self.words.get(candidate).map(|word| *word as usize);
-                !word.is_some_and(|word| words[word] || taken[word])
+                let word = self.words.get(candidate);
+                !word.is_some_and(|word| is_used(*word as usize) || is_local(word))
                     && !chosen.contains(candidate)
-                    && !fragments.iter().any(|used| used.locals.contains(candidate))
             };
             let mut numbered = (1..u32::MAX).map(|number| format!("{base}_{number}"));
             let free = numbered.find(is_free).ok_or(Reason::Clash)?;
             chosen.insert(free.clone());
-            renames.insert(name as u32, free);
+            renames.insert(*name as u32, free);
         }
         Ok(renames)
+    }
+
+    /// Whether an identifier is what one of a text's names became.
+    pub fn is_name(&self, identifier: &Identifier, chosen: &Chosen) -> bool {
+        let (text, word) = match identifier {
+            Identifier::Usual(word) => (None, Some(*word)),
+            Identifier::Text(text) => (Some(text), self.words.get(text).copied()),
+        };
+        word.is_some_and(|word| chosen.taken.has(word as usize))
+            || chosen.renames.values().any(|renamed| match text {
+                Some(text) => text == renamed,
+                None => self.words.get(renamed).copied() == word,
+            })
     }
 }
 

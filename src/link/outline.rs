@@ -1,10 +1,12 @@
 //! The declarations of a lean text, in the order in which its functions can be translated.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::hash::BuildHasherDefault;
 
 use naga::ShaderStage;
 
 use super::mark;
+use super::mixer::Mixer;
 use super::reason::Reason;
 use super::words::words;
 use crate::bundle::{Language, Stage};
@@ -27,7 +29,7 @@ pub struct Declaration<'a> {
     pub text: &'a str,
     /// Of a function: its text before the body. Of others: all of it.
     pub head: &'a str,
-    /// Declarations that it names; those of its head alone.
+    /// Declarations that it names; of a function those of its head alone.
     pub uses: Vec<usize>,
     pub head_uses: Vec<usize>,
     pub hash: Key,
@@ -53,6 +55,8 @@ pub struct Outline<'a> {
     pub functions: Vec<usize>,
     /// The structure that the entry point returns.
     pub interface: Option<usize>,
+    /// All but functions by their names.
+    named: HashMap<&'a str, usize, BuildHasherDefault<Mixer>>,
 }
 
 impl<'a> Outline<'a> {
@@ -71,11 +75,13 @@ impl<'a> Outline<'a> {
         let text = |part: &Part| &lean.text[part.range.clone()];
         let directives = lean.parts.iter().filter(|part| part.kind == PartKind::Directive);
         let header = directives.map(text).collect::<Vec<_>>().concat();
+        let declarations = declarations(lean)?;
         let mut outline = Outline {
             language: lean.language,
             stage,
             header,
-            declarations: declarations(lean)?,
+            named: named(&declarations),
+            declarations,
             functions: Vec::new(),
             interface: None,
         };
@@ -98,11 +104,7 @@ impl<'a> Outline<'a> {
 
     /// The declaration of a name.
     pub fn find(&self, name: &str) -> Option<usize> {
-        let declares = |declaration: &Declaration<'_>| {
-            declaration.kind != PartKind::Function
-                && declaration.names.iter().any(|known| known == name)
-        };
-        self.declarations.iter().position(declares)
+        self.named.get(name).copied()
     }
 
     /// The structure that a WGSL entry point returns.
@@ -115,6 +117,19 @@ impl<'a> Outline<'a> {
         let named = words(result).filter(|word| word.before != b'@').last()?.text;
         self.find(named).filter(|found| self.declarations[*found].kind == PartKind::Struct)
     }
+}
+
+/// The first declaration of each name, functions left out.
+fn named<'a>(declared: &[Declaration<'a>]) -> HashMap<&'a str, usize, BuildHasherDefault<Mixer>> {
+    let mut named = HashMap::default();
+    for (index, declaration) in declared.iter().enumerate() {
+        if declaration.kind != PartKind::Function {
+            for name in declaration.names {
+                named.entry(name.as_str()).or_insert(index);
+            }
+        }
+    }
+    named
 }
 
 /// The stage of the one entry point.
@@ -162,10 +177,15 @@ fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
     for (number, (index, _)) in kept.iter().enumerate() {
         numbers[*index] = number;
     }
-    let mut functions = BTreeSet::new();
+    let mut functions: HashSet<&String, BuildHasherDefault<Mixer>> = HashSet::default();
+    // Few texts have any, so that most need not look for it in each declaration.
+    let asks_line = lean.language == Language::Glsl && lean.text.contains("__LINE__");
     for (_, part) in &kept {
         let text = &lean.text[part.range.clone()];
         refuse(part, text, lean.language)?;
+        if asks_line && text.contains("__LINE__") {
+            return Err(Reason::Declaration);
+        }
         if part.kind == PartKind::Function && !part.names.iter().all(|name| functions.insert(name))
         {
             return Err(Reason::Overload);
@@ -196,9 +216,13 @@ fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
     // What stands in a head is told by its words: a parameter that has the name of a declaration
     // counts as a use too, and changes no more than the key.
     for index in 0..declared.len() {
-        let heads: BTreeSet<&str> = words(declared[index].head).map(|word| word.text).collect();
-        let named = |used: &usize| declared[*used].names.iter().any(|name| heads.contains(&**name));
-        declared[index].head_uses = declared[index].uses.iter().copied().filter(named).collect();
+        if declared[index].kind == PartKind::Function {
+            let head: Vec<&str> = words(declared[index].head).map(|word| word.text).collect();
+            let named =
+                |used: &usize| declared[*used].names.iter().any(|name| head.contains(&&**name));
+            declared[index].head_uses =
+                declared[index].uses.iter().copied().filter(named).collect();
+        }
     }
     if lean.language == Language::Glsl && initialised_by_variables(&declared) {
         return Err(Reason::Initialiser);
@@ -239,7 +263,6 @@ fn refuse(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
         PartKind::Alias => Err(Reason::Declaration),
         PartKind::Variable if is_storage(text) => Err(Reason::StorageBuffer),
         PartKind::Variable if text.contains("binding_array") => Err(Reason::BindingArray),
-        _ if language == Language::Glsl && text.contains("__LINE__") => Err(Reason::Declaration),
         _ => Ok(()),
     }
 }
@@ -256,11 +279,9 @@ fn initialised_by_variables(declared: &[Declaration<'_>]) -> bool {
 /// The functions that the entry point reaches, callees first.
 fn order(declared: &[Declaration<'_>], entry: &str) -> Result<Vec<usize>, Reason> {
     let is_function = |index: usize| declared[index].kind == PartKind::Function;
-    let names: HashMap<&str, usize> = (0..declared.len())
-        .filter(|index| is_function(*index))
-        .map(|index| (declared[index].name(), index))
-        .collect();
-    let root = *names.get(entry).ok_or(Reason::EntryPoint)?;
+    let mut functions = (0..declared.len()).filter(|index| is_function(*index));
+    let root = functions.rfind(|index| declared[*index].name() == entry);
+    let root = root.ok_or(Reason::EntryPoint)?;
     let mut walk = Walk { declared, state: vec![State::New; declared.len()], order: Vec::new() };
     walk.visit(root, 0)?;
     Ok(walk.order)

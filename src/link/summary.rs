@@ -8,6 +8,8 @@ use naga::{
     SampleLevel, ShaderStage, Statement, TypeInner,
 };
 
+use super::outline::{Key, hash};
+
 /// Facts that writers, the reflection and the lints take from a callee.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Summary {
@@ -22,6 +24,8 @@ pub struct Summary {
     pub parted: bool,
     /// It cannot be called in a vertex stage.
     pub only_fragments: bool,
+    /// Of all of the above.
+    pub key: Key,
 }
 
 /// A texture and a sampler that are used together.
@@ -89,7 +93,9 @@ pub fn summarise<'s>(
     }
     let mut walk = Walk { module, function, callee, summary, parted: false };
     walk.block(&function.body, false)?;
-    Some(walk.summary)
+    let mut summary = walk.summary;
+    summary.key = hash([format!("{summary:?}").as_bytes()]);
+    Some(summary)
 }
 
 fn derives(expression: &Expression) -> bool {

@@ -4,6 +4,8 @@
 #[derive(Debug, Clone, Copy)]
 pub struct Word<'a> {
     pub text: &'a str,
+    /// Where it starts.
+    pub at: usize,
     /// The last byte before it that is not blank; a blank at the start of the text.
     pub before: u8,
 }
@@ -19,7 +21,7 @@ pub fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
             let last = before;
             before = if byte.is_ascii_whitespace() { before } else { bytes[at - 1] };
             if begins_word(byte) {
-                return Some(Word { text: &text[start..at], before: last });
+                return Some(Word { text: &text[start..at], at: start, before: last });
             }
         }
         None

@@ -70,12 +70,15 @@ pub struct Draft {
     pub bindings: u32,
     /// It has functions that GLSL 3.30 and GLSL ES 3.00 lack, and is not for them.
     pub is_modern: bool,
+    /// It has matrices of two rows in blocks, which GLSL lays out otherwise, and is not for GLSL.
+    pub has_two_rows: bool,
 }
 
 impl Draft {
     pub fn new(mut random: Random, spelling: Spelling) -> Self {
         let axes = 1 + random.below(AXES.len());
         let is_modern = random.chance(40);
+        let has_two_rows = !spelling.is_glsl() && random.chance(25);
         Self {
             random,
             names: Names::new(spelling.is_glsl()),
@@ -90,6 +93,7 @@ impl Draft {
             built_ins: BTreeSet::new(),
             bindings: 0,
             is_modern,
+            has_two_rows,
         }
     }
 
@@ -265,7 +269,7 @@ impl Draft {
             2 => Type::Vector(4, Scalar::Int),
             // Two rows are refused where the source is GLSL.
             3 | 4 => {
-                let rows = if self.spelling.is_glsl() { 4 } else { 2 };
+                let rows = if self.has_two_rows { 2 } else { 4 };
                 Type::Matrix(2 + self.random.below(3), rows)
             }
             5 => Type::Matrix(3, 3 + self.random.below(2)),

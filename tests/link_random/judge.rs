@@ -16,6 +16,7 @@ use lamplight::validate::validate;
 
 use super::program::Program;
 use super::random::Random;
+use super::run::{Runnable, is_fragment};
 
 /// Something is wrong: what kind of thing, and all that is known of it.
 #[derive(Debug, Clone)]
@@ -45,6 +46,8 @@ pub struct Sound {
     pub outputs: Vec<Output>,
     /// Why targets were compiled as a whole.
     pub whole: Vec<(String, Reason)>,
+    /// One of its fragment stages, any of its permutations.
+    pub runnable: Option<Box<Runnable>>,
 }
 
 /// What became of a program.
@@ -189,6 +192,12 @@ impl Case {
                 Finding::new(format!("order: {kind}"), format!("{entry} {index}\n{about}"))
             })?;
             sound.keep(&made.unit, &mut seen);
+            if sound.runnable.is_none() && is_fragment(&made.unit) {
+                let (entry, unit) = (name.to_owned(), made.unit);
+                let seed = source.seed;
+                let runnable = Runnable { seed, composed, entry, unit };
+                sound.runnable = Some(Box::new(runnable));
+            }
         }
         sound.outputs.iter().try_for_each(read_again)?;
         Ok(sound)

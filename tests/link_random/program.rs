@@ -12,6 +12,7 @@ use super::types::{AXES, FLOAT, INT, Scalar, Spelling, Type, UINT, When};
 /// What is given to the crate.
 #[derive(Debug, Clone)]
 pub struct Program {
+    pub seed: u64,
     pub language: Language,
     pub manifest: String,
     pub targets: Vec<Target>,
@@ -45,6 +46,10 @@ impl Program {
         if draft.is_modern {
             targets.retain(|target| !matches!(*target, Target::GLSL330 | Target::ESSL300));
         }
+        if draft.has_two_rows {
+            let glsl = [Target::GLSL450, Target::GLSL330, Target::ESSL300];
+            targets.retain(|target| !glsl.contains(target));
+        }
         let manifest = manifest(key, &targets, draft.axes);
         let text = match language {
             Language::Glsl => format!("#version 450\n{}", draft.items.concat()),
@@ -54,7 +59,7 @@ impl Program {
                 draft.items.concat()
             }
         };
-        Self { language, manifest, targets, file, text }
+        Self { seed, language, manifest, targets, file, text }
     }
 }
 

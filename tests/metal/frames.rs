@@ -6,15 +6,14 @@ use std::collections::BTreeMap;
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::eval::Program;
 use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
-use lamplight::execute::raster::{Compiled, Shipped};
-use lamplight::permute::axis::ValueSet;
-use lamplight::permute::{Assignment, Space, cover};
+use lamplight::execute::raster::Compiled;
+use lamplight::execute::shipped::Shipped;
 use lamplight::picture::frame::Composed;
 use libtest_mimic::{Failed, Trial};
 use naga::{Binding, BuiltIn};
 
 use crate::fragments::{self, Tally, Watched};
-use crate::frames::{Scene, Sources, bundle};
+use crate::frames::{Scene, Sources, bundle, points};
 
 /// Permutations of each language, with all pairs of values among them.
 const LEAST_POINTS: usize = 200;
@@ -41,8 +40,8 @@ pub fn trials() -> Vec<Trial> {
 
 fn drawn(language: Language) -> Result<(), String> {
     let sources = Sources::load(language)?;
-    let points = points(&sources.space);
-    let bundle = bundle(&sources, &points, Target::MSL)?;
+    let points = points(&sources.space, LEAST_POINTS);
+    let bundle = bundle(&sources, &points, &[Target::MSL])?;
     let (mut total, mut failures) = (Tally::default(), Vec::new());
     for points in points.chunks(BATCH) {
         let scenes =
@@ -67,25 +66,6 @@ fn drawn(language: Language) -> Result<(), String> {
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
 
-/// All pairs of values, and more points until there are enough.
-fn points(space: &Space) -> Vec<Assignment> {
-    let mut points = cover::pairwise(space).points;
-    let mut seed = 1;
-    while points.len() < LEAST_POINTS {
-        let choose = |axis: usize, allowed: ValueSet| {
-            seed += 1;
-            let turn = super::scrambled(seed + axis as u32) as usize % allowed.len();
-            allowed.iter().nth(turn).unwrap_or_default()
-        };
-        match space.pick_valid(&[], choose) {
-            Some(point) if !points.contains(&point) => points.push(point),
-            Some(_) => {}
-            None => break,
-        }
-    }
-    points
-}
-
 /// Distinct stages of some permutations.
 #[derive(Default)]
 struct Stages {
@@ -106,12 +86,12 @@ impl Stages {
                 .program("forward")
                 .and_then(|program| program.entry(language, entry)?.get(key, Target::MSL))
                 .map_err(|error| error.to_string())?;
-            let text = String::from_utf8(found.bytes).map_err(|error| error.to_string())?;
-            if let Some(known) = self.shipped.iter().position(|stage| stage.text == text) {
+            let bytes = found.bytes;
+            if let Some(known) = self.shipped.iter().position(|stage| stage.bytes == bytes) {
                 return Ok(known);
             }
             let (native, reflection) = ((*found.native).clone(), (*found.reflection).clone());
-            self.shipped.push(Shipped { text, native, reflection });
+            self.shipped.push(Shipped { target: Target::MSL, bytes, native, reflection });
             Ok(self.shipped.len() - 1)
         };
         // The entry points of GLSL are all called `main`: a bundle calls them by their stage.

@@ -7,6 +7,7 @@ mod ci;
 mod create;
 mod docs;
 mod faults;
+mod frames;
 mod fuzz;
 mod generate;
 mod machine;
@@ -84,6 +85,11 @@ const COMMANDS: &[Command] = &[
         "fuzz",
         "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...; or `link`",
         fuzz::run,
+    ),
+    (
+        "frames",
+        "draw permutations of `forward` from the bytes of every target: [--permutations N] [--target T]",
+        frames::run,
     ),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];

@@ -40,7 +40,8 @@ fn piece(rest: &str) -> Piece<'_> {
     if let Some(inner) = rest.strip_prefix("/*") {
         return Piece::Comment(&rest[..inner.find("*/").map_or(rest.len(), |end| end + 4)]);
     }
-    Piece::Space(&rest[..rest[1..].find('/').map_or(rest.len(), |end| end + 1)])
+    let slash = rest.bytes().skip(1).position(|byte| byte == b'/');
+    Piece::Space(&rest[..slash.map_or(rest.len(), |end| end + 1)])
 }
 
 /// Newlines that no `\` continues.

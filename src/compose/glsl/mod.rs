@@ -13,6 +13,7 @@ mod table;
 mod token;
 mod write;
 
+use std::cell::Cell;
 use std::ops::Range;
 
 use crate::bundle::{Language, Stage};
@@ -26,6 +27,15 @@ use preprocess::{Preprocessed, preprocess};
 use token::{NO_SETTING, Tok};
 use write::Writer;
 
+/// Tokens for which room is kept from one composition to the next.
+const ROOM_TOKENS: usize = 1 << 16;
+
+thread_local! {
+    /// The tokens of the thread's last composition: as many are needed again, and a new allocation
+    /// of that size is slow.
+    static ROOM: Cell<Vec<Tok>> = const { Cell::new(Vec::new()) };
+}
+
 /// One permutation of a GLSL file: `#version`, extensions and pragmas, then the items that are kept.
 ///
 /// The settings are macros: `two_sided` is `TWO_SIDED` (1 or 0), `max_lights` is `MAX_LIGHTS`, and
@@ -37,7 +47,7 @@ pub fn compose(
     options: &Options,
 ) -> Result<Composed, Diagnostics> {
     let stage = stage(graph, &options.keep)?;
-    let preprocessed = preprocess(graph, settings)?;
+    let preprocessed = preprocess(graph, settings, ROOM.take())?;
     let items = items::split(&preprocessed.tokens, &graph.modules).map_err(|error| vec![error])?;
     let kept = reach::reach(&preprocessed.tokens, &items, &preprocessed.spellings, &options.keep)?;
     let (writer, ranges) = write(graph, &preprocessed, &items, &kept, &options.keep);
@@ -164,6 +174,9 @@ fn reads(
                 );
             }
         }
+    }
+    if tokens.capacity() <= ROOM_TOKENS {
+        ROOM.set(tokens);
     }
     if errors.is_empty() { Ok(reads.finish()) } else { Err(errors) }
 }

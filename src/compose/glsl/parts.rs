@@ -31,15 +31,15 @@ pub fn parts(
             range,
         ));
     }
-    let mut declared: Vec<Vec<u32>> = vec![Vec::new(); spellings.count()];
+    let mut declared = Declared::new(spellings.count(), items.names.len());
     for (symbol, item) in &items.names {
         let number = numbers[*item as usize];
         if number != u32::MAX {
             parts[number as usize].names.push(spellings.text(*symbol).to_owned());
-            declared[symbol.index()].push(number);
+            declared.add(*symbol, number);
         }
     }
-    if declared.iter().any(|parts| parts.len() > OF_ONE_NAME) {
+    if items.names.iter().any(|(symbol, _)| declared.of(*symbol).nth(OF_ONE_NAME).is_some()) {
         return Vec::new();
     }
     for index in kept {
@@ -54,6 +54,35 @@ pub fn parts(
         }),
     );
     parts
+}
+
+/// Parts by the names that they declare.
+struct Declared {
+    /// For each symbol one more than the number of the last of `links` that declares it; 0 for none.
+    heads: Vec<u32>,
+    /// Part, and the link before it of the same name in the same form.
+    links: Vec<(u32, u32)>,
+}
+
+impl Declared {
+    fn new(symbols: usize, names: usize) -> Self {
+        Self { heads: vec![0; symbols], links: Vec::with_capacity(names) }
+    }
+
+    fn add(&mut self, symbol: Symbol, part: u32) {
+        let head = &mut self.heads[symbol.index()];
+        self.links.push((part, *head));
+        *head = self.links.len() as u32;
+    }
+
+    fn of(&self, symbol: Symbol) -> impl Iterator<Item = u32> {
+        let mut next = self.heads[symbol.index()];
+        std::iter::from_fn(move || {
+            let (part, before) = *self.links.get(next.checked_sub(1)? as usize)?;
+            next = before;
+            Some(part)
+        })
+    }
 }
 
 fn part(kind: PartKind, range: Range<usize>) -> Part {
@@ -79,18 +108,18 @@ fn kind(tokens: &[Tok], item: &Item) -> PartKind {
 }
 
 /// The parts that an item names, itself left out.
-fn uses(item: &[Tok], own: u32, declared: &[Vec<u32>], parts: &[Part]) -> Vec<u32> {
+fn uses(item: &[Tok], own: u32, declared: &Declared, parts: &[Part]) -> Vec<u32> {
     let mut uses = Vec::new();
     let mut previous = known::SEMICOLON;
     for (index, token) in item.iter().enumerate() {
         // A function is named only to be called; a local variable may have its name.
         let is_call = item.get(index + 1).is_some_and(|next| next.symbol == known::OPEN);
-        let is_use = |part: &&u32| {
-            **part != own && (is_call || parts[**part as usize].kind != PartKind::Function)
+        let is_use = |part: &u32| {
+            *part != own && (is_call || parts[*part as usize].kind != PartKind::Function)
         };
         // What follows a dot is a member, not a name of this scope.
         if token.kind == Kind::Identifier && previous != known::DOT {
-            uses.extend(declared[token.symbol.index()].iter().filter(is_use));
+            uses.extend(declared.of(token.symbol).filter(is_use));
         }
         previous = token.symbol;
     }

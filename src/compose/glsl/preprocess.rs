@@ -30,10 +30,14 @@ pub struct Preprocessed<'g, 's> {
 }
 
 /// Preprocesses the root of a graph; all errors that were found, at least one, otherwise.
+///
+/// `tokens` is room for the active text.
 pub fn preprocess<'g, 's>(
     graph: &'g Graph,
     settings: &'s Settings,
+    mut tokens: Vec<Tok>,
 ) -> Result<Preprocessed<'g, 's>, Diagnostics> {
+    tokens.clear();
     let (number, es) = language(&graph.modules[0]);
     let mut reads = Reads::new(settings);
     let mut table = Table::new(&graph.symbols, number, es);
@@ -43,14 +47,7 @@ pub fn preprocess<'g, 's>(
         expander: Expander::new(graph, table, reads, es),
         open: vec![Open { module: 0, part: 0, line_shift: 0, file_number: 0, directive: None }],
         once: vec![false; graph.modules.len()],
-        tokens: Vec::with_capacity(
-            graph
-                .modules
-                .iter()
-                .map(|module| module.tokens.len())
-                .sum::<usize>()
-                .min(LIMITS.tokens),
-        ),
+        tokens,
         version: None,
         header: Vec::new(),
         decisions: Vec::new(),

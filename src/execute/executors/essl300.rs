@@ -1,7 +1,8 @@
 //! The emitted GLSL ES 3.00 as it is, on OpenGL ES 3.0.
 
-use super::Entry;
+use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;
+use crate::execute::Session;
 use crate::execute::gpu::Api;
 
 pub const EXECUTOR: Entry = Entry {
@@ -10,5 +11,10 @@ pub const EXECUTOR: Entry = Entry {
     needs: &["libegl1", "libgles2", "libgl1-mesa-dri"],
     before_threads: None,
     samples: None,
-    open: || super::opened_opengl(Api::Embedded(3, 0), Target::ESSL300),
+    open,
+    shipping: Some(Shipping { target: Target::ESSL300, open }),
 };
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    super::opened_opengl(Api::Embedded(3, 0), Target::ESSL300)
+}

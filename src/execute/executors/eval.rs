@@ -14,6 +14,7 @@ pub const EXECUTOR: Entry = Entry {
     before_threads: None,
     samples: Some(1),
     open: || Ok::<_, Unavailable>(Box::new(Cpu::default())),
+    shipping: None,
 };
 
 /// The program of the last kernel: rows of one kernel follow each other.

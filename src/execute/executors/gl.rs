@@ -16,4 +16,5 @@ pub const EXECUTOR: Entry = Entry {
             shaders: Shaders::Translated,
         })
     },
+    shipping: None,
 };

@@ -1,7 +1,8 @@
 //! The emitted GLSL 4.50 as it is, on OpenGL 4.5.
 
-use super::Entry;
+use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;
+use crate::execute::Session;
 use crate::execute::gpu::Api;
 
 pub const EXECUTOR: Entry = Entry {
@@ -10,5 +11,10 @@ pub const EXECUTOR: Entry = Entry {
     needs: &["libegl1", "libgl1-mesa-dri"],
     before_threads: None,
     samples: None,
-    open: || super::opened_opengl(Api::Core(4, 5), Target::GLSL450),
+    open,
+    shipping: Some(Shipping { target: Target::GLSL450, open }),
 };
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    super::opened_opengl(Api::Core(4, 5), Target::GLSL450)
+}

@@ -1,7 +1,8 @@
 //! The emitted GLSL 3.30 as it is, on OpenGL 3.3 with the core profile.
 
-use super::Entry;
+use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;
+use crate::execute::Session;
 use crate::execute::gpu::Api;
 
 pub const EXECUTOR: Entry = Entry {
@@ -10,5 +11,10 @@ pub const EXECUTOR: Entry = Entry {
     needs: &["libegl1", "libgl1-mesa-dri"],
     before_threads: None,
     samples: None,
-    open: || super::opened_opengl(Api::Core(3, 3), Target::GLSL330),
+    open,
+    shipping: Some(Shipping { target: Target::GLSL330, open }),
 };
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    super::opened_opengl(Api::Core(3, 3), Target::GLSL330)
+}

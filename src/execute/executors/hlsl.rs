@@ -1,8 +1,9 @@
 //! The emitted HLSL, compiled to SPIR-V by glslangValidator, on SwiftShader: its sampler heaps are
 //! arrays that a number from a buffer indexes, which lavapipe cannot do.
 
-use super::{Entry, Unavailable, swiftshader};
+use super::{Entry, Shipping, Unavailable, swiftshader};
 use crate::bundle::Target;
+use crate::execute::Session;
 use crate::execute::gpu::{Named, Shaders, Wanted};
 use crate::tools::{GLSLANG, SPIRV_OPT};
 
@@ -12,15 +13,18 @@ pub const EXECUTOR: Entry = Entry {
     needs: &["glslang-tools", "spirv-tools", "chromium", "libvulkan1"],
     before_threads: Some(swiftshader::announce),
     samples: None,
-    open: || {
-        if let Some(tool) = [GLSLANG, SPIRV_OPT].iter().find(|tool| tool.path().is_none()) {
-            return Err(Unavailable { reason: format!("`{}` is not installed", tool.program) });
-        }
-        swiftshader::installed()?;
-        super::opened(Wanted {
-            backend: wgpu::Backends::VULKAN,
-            named: Named::With(swiftshader::NAME),
-            shaders: Shaders::Emitted(Target::HLSL),
-        })
-    },
+    open,
+    shipping: Some(Shipping { target: Target::HLSL, open }),
 };
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    if let Some(tool) = [GLSLANG, SPIRV_OPT].iter().find(|tool| tool.path().is_none()) {
+        return Err(Unavailable { reason: format!("`{}` is not installed", tool.program) });
+    }
+    swiftshader::installed()?;
+    super::opened(Wanted {
+        backend: wgpu::Backends::VULKAN,
+        named: Named::With(swiftshader::NAME),
+        shaders: Shaders::Emitted(Target::HLSL),
+    })
+}

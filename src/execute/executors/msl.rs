@@ -1,6 +1,8 @@
 //! The emitted MSL as it is, compiled for the CPU by clang with headers of our own.
 
-use super::{Entry, Unavailable};
+use super::{Entry, Shipping, Unavailable};
+use crate::bundle::Target;
+use crate::execute::Session;
 use crate::execute::metal::Metal;
 use crate::tools::CLANG;
 
@@ -10,8 +12,13 @@ pub const EXECUTOR: Entry = Entry {
     needs: &[CLANG.package],
     before_threads: None,
     samples: Some(1),
-    open: || match Metal::open() {
+    open,
+    shipping: Some(Shipping { target: Target::MSL, open }),
+};
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    match Metal::open() {
         Ok(metal) => Ok(Box::new(metal)),
         Err(missing) => Err(Unavailable { reason: missing.reason }),
-    },
-};
+    }
+}

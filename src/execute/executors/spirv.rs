@@ -1,6 +1,6 @@
 //! The emitted SPIR-V as it is, on the driver of `vulkan`.
 
-use super::{Entry, swiftshader};
+use super::{Entry, Shipping, swiftshader};
 use crate::bundle::Target;
 use crate::execute::gpu::{Named, Shaders, Wanted};
 
@@ -17,4 +17,16 @@ pub const EXECUTOR: Entry = Entry {
             shaders: Shaders::Emitted(Target::SPIRV),
         })
     },
+    shipping: Some(Shipping {
+        target: Target::SPIRV,
+        // lavapipe crashes where a stage has four uniform blocks.
+        open: || {
+            swiftshader::installed()?;
+            super::opened(Wanted {
+                backend: wgpu::Backends::VULKAN,
+                named: Named::With(swiftshader::NAME),
+                shaders: Shaders::Emitted(Target::SPIRV),
+            })
+        },
+    }),
 };

@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::sync::Once;
 
-use super::{DEVICE_SAMPLES, Entry, Unavailable};
+use super::{DEVICE_SAMPLES, Entry, Shipping, Unavailable};
+use crate::bundle::Target;
+use crate::execute::Session;
 use crate::execute::gpu::{Named, Shaders, Wanted};
 
 pub const EXECUTOR: Entry = Entry {
@@ -12,15 +14,19 @@ pub const EXECUTOR: Entry = Entry {
     needs: &["chromium", "libvulkan1"],
     before_threads: Some(announce),
     samples: Some(DEVICE_SAMPLES),
-    open: || {
-        installed()?;
-        super::opened(Wanted {
-            backend: wgpu::Backends::VULKAN,
-            named: Named::With(NAME),
-            shaders: Shaders::Translated,
-        })
-    },
+    open,
+    // wgpu reads WGSL itself.
+    shipping: Some(Shipping { target: Target::WGSL, open }),
 };
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    installed()?;
+    super::opened(Wanted {
+        backend: wgpu::Backends::VULKAN,
+        named: Named::With(NAME),
+        shaders: Shaders::Translated,
+    })
+}
 
 /// Whether the driver is there; it is announced if it is.
 pub fn installed() -> Result<(), Unavailable> {

@@ -1,6 +1,7 @@
 //! Draws meshes with a program into targets of words, depth, or both.
 
 mod bindings;
+mod shipped;
 mod target;
 
 use std::borrow::Cow;
@@ -10,9 +11,10 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, StorageAccess};
 use wgpu::util::DeviceExt;
 
-use super::{Gpu, TARGET_FORMAT, failed};
+use super::{Gpu, failed};
 use crate::diagnostic::Diagnostic;
 use crate::execute::frame::{Drawing, EntryPoint, Frame, Mesh, Place, Side, State};
+use crate::execute::shipped::Format;
 use bindings::Bindings;
 use target::{DEPTH_FORMAT, Targets};
 
@@ -53,31 +55,24 @@ impl Gpu {
         used: BTreeSet<Place>,
         as_storage: &BTreeSet<Place>,
     ) -> Result<Vec<target::Pending>, Diagnostic> {
-        let pipeline = self.mesh_pipeline(drawing, as_storage);
+        let vertex = (self.shader(drawing.vertex, as_storage), drawing.vertex.entry);
+        let fragment = drawing.fragment.map(|stage| (self.shader(stage, as_storage), stage.entry));
+        let stages = Stages {
+            vertex: (&vertex.0, vertex.1),
+            fragment: fragment.as_ref().map(|(module, entry)| (module, *entry)),
+        };
+        let formats = vec![Format::Uint; drawing.targets as usize];
+        let pipeline = self.mesh_pipeline(drawing, stages, None, &formats);
         let bindings = Bindings::new(self, drawing, used)?;
-        let meshes: Vec<_> =
-            drawing.items.iter().map(|item| Uploaded::new(self, item.mesh)).collect();
+        let meshes = Meshes::new(self, drawing);
+        let layout = |index| Some(pipeline.get_bind_group_layout(index));
         let mut frames = Vec::new();
         for view in drawing.views {
-            let groups: Vec<_> = drawing
-                .items
-                .iter()
-                .map(|item| bindings.groups(self, drawing, view, item, &pipeline))
+            let items = drawing.items.iter();
+            let groups: Vec<_> = items
+                .map(|item| bindings.groups(self, drawing, view, item, &layout))
                 .collect::<Result<_, _>>()?;
-            let targets = Targets::new(&self.device, drawing);
-            let mut encoder = self.device.create_command_encoder(&Default::default());
-            targets.pass(&mut encoder, |pass| {
-                pass.set_pipeline(&pipeline);
-                for (mesh, groups) in meshes.iter().zip(&groups) {
-                    groups
-                        .iter()
-                        .for_each(|(index, group)| pass.set_bind_group(*index, group, &[]));
-                    mesh.draw(pass);
-                }
-            });
-            let pending = targets.download(self, &mut encoder);
-            self.queue.submit([encoder.finish()]);
-            frames.push(pending);
+            frames.push(meshes.pass(self, drawing, &pipeline, &groups, &formats));
         }
         Ok(frames)
     }
@@ -87,36 +82,40 @@ impl Gpu {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
 
+    /// Without a layout, it is made from what the stages use.
     fn mesh_pipeline(
         &self,
         drawing: &Drawing<'_>,
-        as_storage: &BTreeSet<Place>,
+        stages: Stages<'_>,
+        layout: Option<&wgpu::PipelineLayout>,
+        formats: &[Format],
     ) -> wgpu::RenderPipeline {
         let mesh = drawing.items.first().map(|item| item.mesh);
         let attributes = mesh.map(Mesh::layout).unwrap_or_default();
-        let layout = wgpu::VertexBufferLayout {
+        let vertices = wgpu::VertexBufferLayout {
             array_stride: mesh.map_or(0, Mesh::stride),
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         };
-        let buffers = if attributes.is_empty() { Vec::new() } else { vec![Some(layout)] };
-        let targets =
-            vec![Some(wgpu::ColorTargetState::from(TARGET_FORMAT)); drawing.targets as usize];
-        let fragment = drawing.fragment.map(|stage| (self.shader(stage, as_storage), stage.entry));
+        let buffers = if attributes.is_empty() { Vec::new() } else { vec![Some(vertices)] };
+        let targets: Vec<_> = formats
+            .iter()
+            .map(|format| Some(wgpu::ColorTargetState::from(target::format(*format))))
+            .collect();
         let compilation_options = wgpu::PipelineCompilationOptions::default();
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
-            layout: None,
+            layout,
             vertex: wgpu::VertexState {
-                module: &self.shader(drawing.vertex, as_storage),
-                entry_point: Some(drawing.vertex.entry),
+                module: stages.vertex.0,
+                entry_point: Some(stages.vertex.1),
                 compilation_options: compilation_options.clone(),
                 buffers: &buffers,
             },
             primitive: primitive(drawing.state),
             depth_stencil: drawing.state.depth_test.then(|| depth_state(drawing.state)),
             multisample: Default::default(),
-            fragment: fragment.as_ref().map(|(module, entry)| wgpu::FragmentState {
+            fragment: stages.fragment.map(|(module, entry)| wgpu::FragmentState {
                 module,
                 entry_point: Some(entry),
                 compilation_options,
@@ -155,6 +154,48 @@ fn depth_state(state: State) -> wgpu::DepthStencilState {
         depth_compare: Some(wgpu::CompareFunction::Less),
         stencil: Default::default(),
         bias: wgpu::DepthBiasState { constant: constant as i32, slope_scale, clamp: 0.0 },
+    }
+}
+
+/// Shaders of the device with their entry points.
+#[derive(Clone, Copy)]
+struct Stages<'a> {
+    vertex: (&'a wgpu::ShaderModule, &'a str),
+    fragment: Option<(&'a wgpu::ShaderModule, &'a str)>,
+}
+
+/// What is drawn into every frame, on the device.
+struct Meshes(Vec<Uploaded>);
+
+/// Bind groups of an item, by their index.
+type Groups = Vec<(u32, wgpu::BindGroup)>;
+
+impl Meshes {
+    fn new(gpu: &Gpu, drawing: &Drawing<'_>) -> Self {
+        Self(drawing.items.iter().map(|item| Uploaded::new(gpu, item.mesh)).collect())
+    }
+
+    /// Draws one frame, each item with its groups, and has it copied to where it can be read.
+    fn pass(
+        &self,
+        gpu: &Gpu,
+        drawing: &Drawing<'_>,
+        pipeline: &wgpu::RenderPipeline,
+        groups: &[Groups],
+        formats: &[Format],
+    ) -> target::Pending {
+        let targets = Targets::new(&gpu.device, drawing, formats);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        targets.pass(&mut encoder, |pass| {
+            pass.set_pipeline(pipeline);
+            for (mesh, groups) in self.0.iter().zip(groups) {
+                groups.iter().for_each(|(index, group)| pass.set_bind_group(*index, group, &[]));
+                mesh.draw(pass);
+            }
+        });
+        let pending = targets.download(gpu, &mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        pending
     }
 }
 

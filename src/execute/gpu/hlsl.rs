@@ -22,6 +22,40 @@ const BINDING: u32 = 33;
 const DESCRIPTOR_SET: u32 = 34;
 const USER_SEMANTIC: u32 = 5635;
 
+/// What of a text means something else to glslangValidator than to a compiler of Direct3D, so that
+/// it cannot be run by way of it.
+pub fn lacks(text: &str) -> Option<&'static str> {
+    if is_misplaced(text) {
+        return Some(
+            "glslangValidator puts what follows a matrix of three rows or an array in a constant \
+             buffer 16 bytes further than Direct3D does",
+        );
+    }
+    let named = |name: &str| {
+        let behind = text.split(name).skip(1);
+        let before = text.split(name).map(|part| part.chars().next_back());
+        let is_word =
+            |letter: Option<char>| letter.is_some_and(|one| one.is_alphanumeric() || one == '_');
+        before.zip(behind).any(|(before, behind)| !is_word(before) && behind.starts_with('('))
+    };
+    if named("frexp") {
+        return Some("frexp of Direct3D drops the sign, and that of glslangValidator keeps it");
+    }
+    named("ldexp").then_some("glslangValidator takes no integer for the exponent of ldexp")
+}
+
+/// Whether a constant buffer has members that glslangValidator puts elsewhere than Direct3D: the
+/// last row of a matrix or element of an array ends at its last number, and naga fills the rest
+/// with a member of its own.
+fn is_misplaced(text: &str) -> bool {
+    let is_short = |line: &str| {
+        let is_matrix = line.contains("row_major float") && line.contains("x3 ");
+        is_matrix || line.trim_end().ends_with("];")
+    };
+    let is_filler = |line: &str| line.trim_start().starts_with("int _pad");
+    text.lines().zip(text.lines().skip(1)).any(|(line, next)| is_short(line) && is_filler(next))
+}
+
 /// The text as SPIR-V, its samplers' heaps in bind group `group`.
 ///
 /// # Errors

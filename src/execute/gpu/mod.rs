@@ -19,7 +19,7 @@ use std::time::Duration;
 
 use super::frame::{Drawing, Frame};
 use super::kernel::{ECHO, INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
-use super::{Session, draws_none};
+use super::{Pair, Session, draws_none};
 use crate::bundle::Stage;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::emit::Emitted;
@@ -40,6 +40,8 @@ pub struct Gpu {
     faults: Arc<Mutex<Vec<String>>>,
     vertex: wgpu::ShaderModule,
     prepared: HashMap<u64, Prepared>,
+    /// Shipped stages as SPIR-V, by their bytes and the group of their heaps.
+    binaries: Mutex<HashMap<(Vec<u8>, u32), Binary>>,
     runs: u32,
 }
 
@@ -57,6 +59,14 @@ impl Session for Gpu {
             Shaders::Translated => self.frames(drawing),
             Shaders::Emitted(_) => Err(draws_none()),
         }
+    }
+
+    fn draw_shipped(
+        &self,
+        pair: Pair<'_>,
+        drawing: &Drawing<'_>,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        self.shipped_frames(pair, drawing)
     }
 }
 

@@ -102,6 +102,7 @@ pub fn open(wanted: Wanted) -> Result<Gpu, String> {
         faults,
         vertex,
         prepared: HashMap::new(),
+        binaries: Mutex::new(HashMap::new()),
         runs: 0,
     })
 }

@@ -169,10 +169,10 @@ fn binding_type(class: ResourceClass, fixture: &Fixture, filterable: bool) -> wg
         ResourceClass::Sampler { comparison: true } => {
             wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)
         }
-        ResourceClass::Sampler { comparison: false } => wgpu::BindingType::Sampler(match fixture {
-            Fixture::Sampler(sampler) if sampler.linear => wgpu::SamplerBindingType::Filtering,
-            _ => wgpu::SamplerBindingType::NonFiltering,
-        }),
+        ResourceClass::Sampler { comparison: false } => match fixture {
+            Fixture::Sampler(sampler) => sampler_type(Sampler { compare: None, ..*sampler }),
+            _ => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+        },
         ResourceClass::Texture { dim, class, .. } => {
             let dimension = match dim {
                 naga::ImageDimension::Cube => wgpu::TextureViewDimension::Cube,
@@ -187,7 +187,17 @@ fn binding_type(class: ResourceClass, fixture: &Fixture, filterable: bool) -> wg
     }
 }
 
-fn texture_type(
+/// The type of a sampler's binding.
+pub fn sampler_type(settings: Sampler) -> wgpu::BindingType {
+    wgpu::BindingType::Sampler(match settings {
+        Sampler { compare: Some(_), .. } => wgpu::SamplerBindingType::Comparison,
+        Sampler { linear: true, .. } => wgpu::SamplerBindingType::Filtering,
+        _ => wgpu::SamplerBindingType::NonFiltering,
+    })
+}
+
+/// The type of a texture's binding.
+pub fn texture_type(
     sample_type: wgpu::TextureSampleType,
     view_dimension: wgpu::TextureViewDimension,
 ) -> wgpu::BindingType {

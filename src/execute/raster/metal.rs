@@ -6,21 +6,13 @@ use naga::BuiltIn;
 
 use super::corners::{Corner, Source, attribute};
 use super::{Quad, Shaded, Shading};
-use crate::bundle::{Native, Reflection};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::eval::{Number, Resources};
 use crate::execute::frame::{Buffers, Drawing, Frame, Mesh};
+use crate::execute::shipped::Shipped;
 use crate::metal::interface::{Interface, Part, Role};
 use crate::metal::request::{Bound, Fragment, Vertex};
 use crate::metal::{Missing, Program};
-
-/// One stage as it is shipped: its text, and what is said of it.
-#[derive(Debug, Clone)]
-pub struct Shipped {
-    pub text: String,
-    pub native: Native,
-    pub reflection: Reflection,
-}
 
 /// Stages of any number of programs, compiled together.
 pub struct Compiled {
@@ -34,7 +26,8 @@ impl Compiled {
     /// # Errors
     /// clang is missing or cannot be run.
     pub fn new(stages: Vec<Shipped>) -> Result<Self, Missing> {
-        let texts: Vec<&str> = stages.iter().map(|stage| stage.text.as_str()).collect();
+        let texts: Vec<_> = stages.iter().map(Shipped::text).collect();
+        let texts: Vec<&str> = texts.iter().map(AsRef::as_ref).collect();
         let program = Mutex::new(Program::build(&texts)?);
         Ok(Self { stages, program })
     }

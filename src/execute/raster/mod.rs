@@ -21,7 +21,7 @@ use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh};
 use crate::execute::kernel::SENTINEL;
 use corners::{Corner, Source};
 pub use evaluated::Evaluated;
-pub use metal::{Compiled, Shipped};
+pub use metal::Compiled;
 use triangles::{Seen, Triangle};
 
 /// What runs the two stages of a program.

@@ -16,7 +16,9 @@ pub use assemble::assemble;
 pub use split::split;
 
 use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
+use std::hash::BuildHasherDefault;
+
+use super::mixer::Mixer;
 
 /// Magic number, version 1.0 and the generator number: other writers lay their modules out otherwise.
 const HEADER: [u32; 3] = [0x0723_0203, 0x0001_0000, 28];
@@ -94,37 +96,6 @@ const SHELVES: [Shelf; 3] = [Shelf::Import, Shelf::Global, Shelf::Function];
 struct Declaration {
     shelf: Shelf,
     piece: Piece,
-}
-
-/// Hashes words faster than the default, which guards against attacks that a pool need not fear.
-#[derive(Default)]
-struct Mixer(u64);
-
-impl Mixer {
-    fn mix(&mut self, value: u64) {
-        self.0 = (self.0.rotate_left(5) ^ value).wrapping_mul(0x517c_c1b7_2722_0a95);
-    }
-}
-
-impl Hasher for Mixer {
-    fn write(&mut self, bytes: &[u8]) {
-        let (chunks, rest) = bytes.as_chunks();
-        chunks.iter().for_each(|&chunk| self.mix(u64::from_le_bytes(chunk)));
-        rest.iter().for_each(|&byte| self.mix(byte.into()));
-    }
-
-    fn write_u32(&mut self, value: u32) {
-        self.mix(value.into());
-    }
-
-    fn write_usize(&mut self, value: usize) {
-        self.mix(value as u64);
-    }
-
-    /// The map takes the low bits, and multiplication mixes the high ones best.
-    fn finish(&self) -> u64 {
-        self.0.rotate_left(26)
-    }
 }
 
 /// Declarations (types, constants, module variables, imports, helper functions), each once, by content.

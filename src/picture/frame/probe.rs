@@ -22,21 +22,29 @@ pub fn watched(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find(module, entry)?);
     let inner = inner(&mut module, index)?;
     let mut body = Body::new(&mut module, index);
-    let colour = body.colour(inner)?;
-    let types: Vec<_> = body.function.arguments.iter().map(|argument| argument.ty).collect();
-    let mut words = Vec::new();
-    for (value, ty) in body.arguments().into_iter().zip(types) {
-        body.flatten(value, ty, &mut words);
-    }
-    let zero = body.literal(0);
-    words.resize(words.len().next_multiple_of(4), zero);
-    let ty = body.words();
-    let mut components = vec![colour];
-    components.extend(
-        words.chunks(4).map(|four| body.add(Expression::Compose { ty, components: four.to_vec() })),
-    );
+    let mut components = vec![body.colour(inner)?];
+    components.extend(body.inputs());
     let targets = components.len() as u32;
     body.finish(components, index);
+    Some(Watched { module, targets })
+}
+
+/// The name of an entry point of [`told`].
+pub const TELLS: &str = "lamplight_tells";
+
+/// A module with a fragment entry point that does nothing but tell what it was given, from
+/// location 0 on. It is called [`TELLS`]. `None` without such an entry point, or where it is given nothing.
+pub fn told(module: &Module, entry: &str) -> Option<Watched> {
+    let (mut module, index) = (module.clone(), find(module, entry)?);
+    let mut body = Body::new(&mut module, index);
+    let components = body.inputs();
+    let targets = components.len() as u32;
+    (targets > 0).then(|| body.finish(components, index))?;
+    // Nothing else is left, and no writer changes the name.
+    let mut told = module.entry_points.swap_remove(index);
+    told.name = TELLS.to_owned();
+    (module.functions, module.global_variables) = Default::default();
+    module.entry_points = vec![told];
     Some(Watched { module, targets })
 }
 
@@ -85,6 +93,20 @@ impl<'a> Body<'a> {
         (0..self.function.arguments.len() as u32)
             .map(|index| self.add(Expression::FunctionArgument(index)))
             .collect()
+    }
+
+    /// The words of all arguments, four by four; 0 behind the last one.
+    fn inputs(&mut self) -> Vec<Value> {
+        let types: Vec<_> = self.function.arguments.iter().map(|argument| argument.ty).collect();
+        let mut words = Vec::new();
+        for (value, ty) in self.arguments().into_iter().zip(types) {
+            self.flatten(value, ty, &mut words);
+        }
+        let zero = self.literal(0);
+        words.resize(words.len().next_multiple_of(4), zero);
+        let ty = self.words();
+        let four = |four: &[Value]| Expression::Compose { ty, components: four.to_vec() };
+        words.chunks(4).map(|words| self.add(four(words))).collect()
     }
 
     /// The bits of what the function returns at location 0.

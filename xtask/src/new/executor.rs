@@ -29,5 +29,6 @@ pub const EXECUTOR: Entry = Entry {
     before_threads: None,
     samples: None,
     open: || Err(Unavailable { reason: "nothing opens it yet".to_owned() }),
+    shipping: None,
 };
 "#;

@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::{Gpu, failed, fixtures};
+use super::super::{Gpu, failed, fixtures, pipeline};
+use super::Groups;
 use crate::diagnostic::Diagnostic;
-use crate::execute::fixture::Fixture;
+use crate::execute::fixture::{Address, Fixture, Sampler};
 use crate::execute::frame::{Buffers, Drawing, Item, Place};
 
 /// The places that the stages use, their textures and samplers uploaded.
@@ -40,8 +41,8 @@ impl Bindings {
         drawing: &Drawing<'_>,
         view: &Buffers,
         item: &Item<'_>,
-        pipeline: &wgpu::RenderPipeline,
-    ) -> Result<Vec<(u32, wgpu::BindGroup)>, Diagnostic> {
+        layout: &dyn Fn(u32) -> Option<wgpu::BindGroupLayout>,
+    ) -> Result<Groups, Diagnostic> {
         let buffers = self.buffers(gpu, drawing, view, item)?;
         let indices: BTreeSet<u32> = self.used.iter().map(|(group, _)| *group).collect();
         let group = |index: u32| {
@@ -52,17 +53,57 @@ impl Bindings {
                     resource: kept.resource(),
                 })
                 .collect();
-            let layout = &pipeline.get_bind_group_layout(index);
-            (
-                index,
-                gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: None,
-                    layout,
-                    entries: &entries,
-                }),
-            )
+            let layout = layout(index)?;
+            let descriptor =
+                wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries };
+            Some((index, gpu.device.create_bind_group(&descriptor)))
         };
-        Ok(indices.into_iter().map(group).collect())
+        Ok(indices.into_iter().filter_map(group).collect())
+    }
+
+    /// With samplers that nothing reads at those numbers of its groups that are left out: wgpu
+    /// numbers bindings without gaps, and a shipped stage has the author's numbers.
+    pub fn without_gaps(mut self, gpu: &Gpu) -> Self {
+        let last: BTreeMap<u32, u32> = self.used.iter().copied().collect();
+        for place in last.iter().flat_map(|(group, last)| (0..*last).map(|one| (*group, one))) {
+            if !self.used.contains(&place) {
+                let settings = Sampler { compare: None, linear: false, address: Address::Clamp };
+                let sampler = fixtures::sampler(&gpu.device, settings);
+                self.kept.insert(place, Kept::Sampler(sampler));
+            }
+        }
+        self
+    }
+
+    /// The layouts of all groups.
+    pub fn layouts(
+        &self,
+        gpu: &Gpu,
+        drawing: &Drawing<'_>,
+    ) -> BTreeMap<u32, wgpu::BindGroupLayout> {
+        let places: BTreeSet<Place> = self.used.iter().chain(self.kept.keys()).copied().collect();
+        let fixture = |place: &Place| drawing.fixtures.get(place).map(|fixture| &**fixture);
+        // Not every device filters textures of f32: only stages that filter need one that does.
+        let is_filter = |fixture: &Fixture| matches!(fixture, Fixture::Sampler(one) if one.linear && one.compare.is_none());
+        let filters = self.used.iter().filter_map(fixture).any(is_filter);
+        let entry = |place: &Place| wgpu::BindGroupLayoutEntry {
+            binding: place.1,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: match (self.used.contains(place), fixture(place)) {
+                (true, Some(fixture)) => binding_type(fixture, filters),
+                (true, None) => UNIFORM,
+                (false, _) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+            },
+            count: None,
+        };
+        let groups: BTreeSet<u32> = places.iter().map(|(group, _)| *group).collect();
+        let layout = |group: u32| {
+            let own = places.iter().filter(|(other, _)| *other == group);
+            let entries: Vec<_> = own.map(entry).collect();
+            let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+            (group, gpu.device.create_bind_group_layout(&descriptor))
+        };
+        groups.into_iter().map(layout).collect()
     }
 
     fn buffers(
@@ -93,6 +134,31 @@ impl Kept {
             Self::View(view) => wgpu::BindingResource::TextureView(view),
             Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
         }
+    }
+}
+
+const UNIFORM: wgpu::BindingType = wgpu::BindingType::Buffer {
+    ty: wgpu::BufferBindingType::Uniform,
+    has_dynamic_offset: false,
+    min_binding_size: None,
+};
+
+fn binding_type(fixture: &Fixture, filterable: bool) -> wgpu::BindingType {
+    match fixture {
+        Fixture::Texture(texture) => {
+            let is_cube = texture.kind.layers() == 6;
+            let dimension = if is_cube {
+                wgpu::TextureViewDimension::Cube
+            } else {
+                wgpu::TextureViewDimension::D2
+            };
+            let sample = match texture.kind.is_depth() {
+                true => wgpu::TextureSampleType::Depth,
+                false => wgpu::TextureSampleType::Float { filterable },
+            };
+            pipeline::texture_type(sample, dimension)
+        }
+        Fixture::Sampler(settings) => pipeline::sampler_type(*settings),
     }
 }
 

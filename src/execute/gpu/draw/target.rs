@@ -4,6 +4,7 @@ use super::super::{Gpu, TARGET_FORMAT, pipeline};
 use crate::diagnostic::Diagnostic;
 use crate::execute::frame::{Drawing, Frame};
 use crate::execute::kernel::SENTINEL;
+use crate::execute::shipped::Format;
 
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -21,7 +22,7 @@ const DEPTH: &str = "
 /// The attachments of one frame.
 pub struct Targets {
     size: [u32; 2],
-    color: Vec<wgpu::Texture>,
+    color: Vec<(wgpu::Texture, Format)>,
     depth: Option<wgpu::Texture>,
     keep_depth: bool,
 }
@@ -34,15 +35,16 @@ pub struct Pending {
 }
 
 impl Targets {
-    pub fn new(device: &wgpu::Device, drawing: &Drawing<'_>) -> Self {
+    pub fn new(device: &wgpu::Device, drawing: &Drawing<'_>, formats: &[Format]) -> Self {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let depth_usage =
             wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let size = drawing.size;
         Self {
             size,
-            color: (0..drawing.targets)
-                .map(|_| create(device, size, TARGET_FORMAT, usage))
+            color: formats
+                .iter()
+                .map(|one| (create(device, size, format(*one), usage), *one))
                 .collect(),
             depth: drawing
                 .state
@@ -58,9 +60,13 @@ impl Targets {
         encoder: &mut wgpu::CommandEncoder,
         draws: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
-        let views: Vec<_> =
-            self.color.iter().map(|target| target.create_view(&Default::default())).collect();
-        let attachments: Vec<_> = views.iter().map(|view| Some(color_attachment(view))).collect();
+        let views: Vec<_> = self
+            .color
+            .iter()
+            .map(|(target, format)| (target.create_view(&Default::default()), *format))
+            .collect();
+        let attachments: Vec<_> =
+            views.iter().map(|(view, format)| Some(color_attachment(view, *format))).collect();
         let depth = self.depth.as_ref().map(|depth| depth.create_view(&Default::default()));
         let depth_stencil_attachment =
             depth.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
@@ -82,7 +88,7 @@ impl Targets {
     /// Has everything copied to where it can be read.
     pub fn download(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Pending {
         let color =
-            self.color.iter().map(|target| copied(gpu, encoder, target, self.size)).collect();
+            self.color.iter().map(|(target, _)| copied(gpu, encoder, target, self.size)).collect();
         let kept = self.depth.as_ref().filter(|_| self.keep_depth);
         let depth = kept.map(|depth| {
             let target = as_words(gpu, encoder, depth, self.size);
@@ -113,8 +119,22 @@ impl Pending {
     }
 }
 
-fn color_attachment(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
-    let cleared = f64::from(SENTINEL);
+/// The texture format of a target.
+pub fn format(of: Format) -> wgpu::TextureFormat {
+    match of {
+        Format::Float => wgpu::TextureFormat::Rgba32Float,
+        Format::Uint => TARGET_FORMAT,
+    }
+}
+
+fn color_attachment(
+    view: &wgpu::TextureView,
+    format: Format,
+) -> wgpu::RenderPassColorAttachment<'_> {
+    let cleared = match format {
+        Format::Float => f64::from(f32::from_bits(SENTINEL)),
+        Format::Uint => f64::from(SENTINEL),
+    };
     let load = wgpu::LoadOp::Clear(wgpu::Color { r: cleared, g: cleared, b: cleared, a: cleared });
     wgpu::RenderPassColorAttachment {
         view,
@@ -207,7 +227,7 @@ fn as_words(
         wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
     );
     let view = target.create_view(&Default::default());
-    let attachments = [Some(color_attachment(&view))];
+    let attachments = [Some(color_attachment(&view, Format::Uint))];
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &attachments,
         ..Default::default()

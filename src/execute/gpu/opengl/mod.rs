@@ -5,6 +5,7 @@
 //! and it opens one kind of context only.
 
 mod context;
+mod frame;
 mod program;
 mod texture;
 
@@ -18,9 +19,10 @@ use super::{emitted, failed, input_texels, unpack};
 use crate::bundle::{Combined, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::emit::Emitted;
-use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Sampler};
+use crate::execute::frame::{Drawing, Frame};
 use crate::execute::kernel::{INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
+use crate::execute::{Pair, Session};
 use context::Context;
 
 /// Group and binding of a kernel's input texture.
@@ -55,15 +57,21 @@ impl OpenGl {
         Ok(Self { context: Context::open(api)?, target, kept: HashMap::new(), runs: 0 })
     }
 
+    fn has_extensions(&self, text: &[u8]) -> Result<(), Diagnostic> {
+        let missing = self.context.with(|gl| Ok(program::missing_extension(gl, text)));
+        match missing.map_err(failed)? {
+            None => Ok(()),
+            Some(name) => {
+                let message = format!("the driver has no {name}, which the emitted text requires");
+                Err(Diagnostic::error(codes::EXECUTOR_LACKS, message))
+            }
+        }
+    }
+
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
         if !self.kept.contains_key(&kernel.id) {
             let emitted = emitted::emit(kernel, self.target)?;
-            let missing =
-                self.context.with(|gl| Ok(program::missing_extension(gl, &emitted.bytes)));
-            if let Some(name) = missing.map_err(failed)? {
-                let message = format!("the driver has no {name}, which the emitted text requires");
-                return Err(Diagnostic::error(codes::EXECUTOR_LACKS, message));
-            }
+            self.has_extensions(&emitted.bytes)?;
             let vertex = program::triangle(self.context.api());
             let kept = self.context.with(|gl| keep(gl, kernel, &vertex, &emitted));
             self.kept.insert(kernel.id, kept.map_err(failed)?);
@@ -96,6 +104,21 @@ impl Session for OpenGl {
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
         super::batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+    }
+
+    fn draw_shipped(
+        &self,
+        pair: Pair<'_>,
+        drawing: &Drawing<'_>,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        for stage in [pair.vertex, pair.fragment] {
+            if stage.target != self.target {
+                return Err(failed(format!("this executor draws no {}", stage.target)));
+            }
+            self.has_extensions(&stage.bytes)?;
+        }
+        let api = self.context.api();
+        self.context.with(|gl| frame::draw(gl, api, pair, drawing)).map_err(failed)
     }
 }
 

@@ -68,6 +68,16 @@ pub fn set_unit(gl: &glow::Context, program: glow::Program, name: &str, unit: u3
     }
 }
 
+/// Puts a uniform block on a binding. One that the driver dropped needs none.
+pub fn set_block(gl: &glow::Context, program: glow::Program, name: &str, binding: u32) {
+    // SAFETY: the context is current and the program is of it.
+    unsafe {
+        if let Some(index) = gl.get_uniform_block_index(program, name) {
+            gl.uniform_block_binding(program, index, binding);
+        }
+    }
+}
+
 /// The first error since the last look, in words.
 pub fn check(gl: &glow::Context) -> Result<(), String> {
     // SAFETY: the context is current.

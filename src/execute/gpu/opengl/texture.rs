@@ -44,7 +44,24 @@ pub fn upload(gl: &glow::Context, texture: &Texture) -> Result<(u32, glow::Textu
 /// A texture of words, bound to unit 0.
 pub fn words(
     gl: &glow::Context,
+    size: [u32; 2],
+    texels: Option<&[u8]>,
+) -> Result<glow::Texture, String> {
+    made(gl, size, (glow::RGBA32UI, glow::RGBA_INTEGER, glow::UNSIGNED_INT), texels)
+}
+
+/// A texture to draw into: of four floats, or four words.
+pub fn target(gl: &glow::Context, size: [u32; 2], is_float: bool) -> Result<glow::Texture, String> {
+    match is_float {
+        true => made(gl, size, (glow::RGBA32F, glow::RGBA, glow::FLOAT), None),
+        false => words(gl, size, None),
+    }
+}
+
+fn made(
+    gl: &glow::Context,
     [width, height]: [u32; 2],
+    (internal, format, ty): (u32, u32, u32),
     texels: Option<&[u8]>,
 ) -> Result<glow::Texture, String> {
     // SAFETY: the context is current, and the slice has 16 bytes a texel.
@@ -55,12 +72,12 @@ pub fn words(
         gl.tex_image_2d(
             glow::TEXTURE_2D,
             0,
-            glow::RGBA32UI as i32,
+            internal as i32,
             width as i32,
             height as i32,
             0,
-            glow::RGBA_INTEGER,
-            glow::UNSIGNED_INT,
+            format,
+            ty,
             glow::PixelUnpackData::Slice(texels),
         );
         nearest(gl, glow::TEXTURE_2D);

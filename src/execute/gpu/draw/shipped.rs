@@ -1,0 +1,168 @@
+//! Frames from the bytes of a bundle: what a driver of Vulkan takes as it is, and WGSL.
+
+use std::collections::BTreeSet;
+
+use super::super::passthrough::Binary;
+use super::super::{Gpu, Shaders, failed, heaps, hlsl, lock};
+use super::bindings::Bindings;
+use super::{LAVAPIPE_BLOCKS, Meshes, Stages};
+use crate::bundle::{SamplerHeap, Stage, Target, Varying};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::execute::Pair;
+use crate::execute::fixture::{Fixture, Sampler};
+use crate::execute::frame::{Drawing, Frame, Place};
+use crate::execute::shipped::{Format, Shipped};
+
+/// A stage that the device has.
+struct Loaded {
+    module: wgpu::ShaderModule,
+    entry: String,
+    heaps: Vec<SamplerHeap>,
+}
+
+impl Gpu {
+    /// Draws the frame of every view with shipped stages and reads it back.
+    pub fn shipped_frames(
+        &self,
+        pair: Pair<'_>,
+        drawing: &Drawing<'_>,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        self.can_draw(pair)?;
+        let formats = pair.fragment.targets().map_err(failed)?;
+        let frames = self.guarded(|gpu| gpu.submit_shipped(pair, drawing, &formats))??;
+        frames.into_iter().map(|frame| frame.read(self, None)).collect()
+    }
+
+    fn can_draw(&self, pair: Pair<'_>) -> Result<(), Diagnostic> {
+        let own = match self.shaders {
+            Shaders::Translated => Target::WGSL,
+            Shaders::Emitted(target) => target,
+        };
+        let stages = [pair.vertex, pair.fragment];
+        if let Some(stage) = stages.iter().find(|stage| stage.target != own) {
+            return Err(failed(format!("this executor draws no {}", stage.target)));
+        }
+        if let Some(reason) = lacks(pair.fragment) {
+            return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
+        }
+        if self.is_lavapipe() && stages.iter().any(|one| one.blocks().count() > LAVAPIPE_BLOCKS) {
+            let message = "lavapipe crashes where a branch reads a stage's fourth uniform block";
+            return Err(Diagnostic::error(codes::EXECUTOR_LACKS, message));
+        }
+        Ok(())
+    }
+
+    fn submit_shipped(
+        &self,
+        pair: Pair<'_>,
+        drawing: &Drawing<'_>,
+        formats: &[Format],
+    ) -> Result<Vec<super::target::Pending>, Diagnostic> {
+        let used = places(pair);
+        let group = used.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
+        let vertex = self.loaded(pair.vertex, group)?;
+        let fragment = self.loaded(pair.fragment, group)?;
+        let bindings = Bindings::new(self, drawing, used)?.without_gaps(self);
+        let layouts = bindings.layouts(self, drawing);
+        let all = [vertex.heaps, fragment.heaps].concat();
+        let heaps = match all.is_empty() {
+            true => None,
+            false => {
+                let sampler = |place: [u32; 2]| sampler(drawing, place);
+                Some(heaps::bind(&self.device, &all, &sampler).map_err(failed)?)
+            }
+        };
+        let mut in_order: Vec<Option<&wgpu::BindGroupLayout>> =
+            (0..group).map(|index| layouts.get(&index)).collect();
+        in_order.extend(heaps.as_ref().map(|(layout, _)| Some(layout)));
+        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &in_order,
+            immediate_size: 0,
+        });
+        let stages = Stages {
+            vertex: (&vertex.module, &vertex.entry),
+            fragment: Some((&fragment.module, &fragment.entry)),
+        };
+        let pipeline = self.mesh_pipeline(drawing, stages, Some(&layout), formats);
+        let meshes = Meshes::new(self, drawing);
+        let mut frames = Vec::new();
+        for view in drawing.views {
+            let groups: Vec<_> = drawing
+                .items
+                .iter()
+                .map(|item| {
+                    let layout = |index| layouts.get(&index).cloned();
+                    let mut groups = bindings.groups(self, drawing, view, item, &layout)?;
+                    groups.extend(heaps.as_ref().map(|(_, bound)| (group, bound.clone())));
+                    Ok(groups)
+                })
+                .collect::<Result<_, Diagnostic>>()?;
+            frames.push(meshes.pass(self, drawing, &pipeline, &groups, formats));
+        }
+        Ok(frames)
+    }
+
+    /// The stage as the driver takes it; sampler heaps go into the bind group `heaps`.
+    fn loaded(&self, shipped: &Shipped, heaps: u32) -> Result<Loaded, Diagnostic> {
+        let Shipped { target, native, reflection, .. } = shipped;
+        if *target == Target::WGSL {
+            let source = wgpu::ShaderSource::Wgsl(shipped.text());
+            let descriptor = wgpu::ShaderModuleDescriptor { label: None, source };
+            let module = self.device.create_shader_module(descriptor);
+            return Ok(Loaded { module, entry: native.entry_name.clone(), heaps: Vec::new() });
+        }
+        let binary = self.binary(shipped, heaps)?;
+        let label = if reflection.stage == Stage::Vertex { "vertex" } else { "fragment" };
+        let module = binary.module(&self.device, label);
+        Ok(Loaded { module, entry: binary.entry().to_owned(), heaps: binary.heaps })
+    }
+}
+
+impl Gpu {
+    /// The stage as SPIR-V. Vertex stages are drawn with again and again, and translating takes
+    /// two programs.
+    fn binary(&self, shipped: &Shipped, heaps: u32) -> Result<Binary, Diagnostic> {
+        let key = (shipped.bytes.clone(), heaps);
+        if let Some(known) = lock(&self.binaries).get(&key) {
+            return Ok(known.clone());
+        }
+        let Shipped { target, bytes, native, reflection } = shipped;
+        let binary = Binary::new(*target, reflection.stage, bytes, native, heaps);
+        let binary = binary.map_err(failed)?;
+        lock(&self.binaries).insert(key, binary.clone());
+        Ok(binary)
+    }
+}
+
+/// What the way to the device cannot do with a fragment stage.
+fn lacks(stage: &Shipped) -> Option<&'static str> {
+    let outputs = &stage.reflection.outputs;
+    let is_small = |one: &Varying| one.location.is_some() && !one.ty.starts_with("vec4");
+    match stage.target {
+        Target::WGSL if outputs.iter().any(|one| one.builtin.as_deref() == Some("frag_depth")) => {
+            Some("wgpu asks for a depth target where a stage writes depth")
+        }
+        Target::WGSL if outputs.iter().any(is_small) => Some(
+            "wgpu asks for targets of as many numbers as a stage writes, and there are none of three",
+        ),
+        Target::HLSL => hlsl::lacks(&stage.text()),
+        _ => None,
+    }
+}
+
+/// Everything that one of the stages reads.
+fn places(pair: Pair<'_>) -> BTreeSet<Place> {
+    let stages = [pair.vertex, pair.fragment].into_iter();
+    stages
+        .flat_map(|stage| &stage.reflection.bindings)
+        .map(|binding| (binding.group, binding.binding))
+        .collect()
+}
+
+fn sampler(drawing: &Drawing<'_>, [group, binding]: [u32; 2]) -> Option<Sampler> {
+    match drawing.fixtures.get(&(group, binding)).map(|fixture| &**fixture) {
+        Some(Fixture::Sampler(settings)) => Some(*settings),
+        _ => None,
+    }
+}

@@ -1,0 +1,268 @@
+//! Frames from the texts of a bundle.
+
+use std::collections::BTreeMap;
+
+use glow::HasContext as _;
+
+use super::{Unit, plain_state, program, texture};
+use crate::bundle::{Combined, FrontFace, Slot};
+use crate::execute::Pair;
+use crate::execute::fixture::{Fixture, Sampler};
+use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh, Place, State};
+use crate::execute::gpu::opengl::context::Api;
+use crate::execute::kernel::SENTINEL;
+use crate::execute::shipped::{Format, Shipped};
+
+/// A program with what stays the same over its frames.
+struct Ready {
+    program: glow::Program,
+    units: Vec<Unit>,
+    /// The binding of each uniform block.
+    blocks: BTreeMap<Place, u32>,
+}
+
+/// Draws the frame of every view. Errors are in words.
+pub fn draw(
+    gl: &glow::Context,
+    api: Api,
+    pair: Pair<'_>,
+    drawing: &Drawing<'_>,
+) -> Result<Vec<Frame>, String> {
+    if drawing.state != State::default() || !drawing.levels.is_empty() {
+        return Err("shipped texts are drawn without depth test, culling and smaller levels".into());
+    }
+    let formats = pair.fragment.targets()?;
+    let ready = prepare(gl, pair, drawing)?;
+    let turned = pair.vertex.native.clip.is_some_and(|clip| clip.front_face == FrontFace::Reversed);
+    plain_state(gl, api);
+    // SAFETY: the context is current.
+    unsafe { gl.front_face(if turned { glow::CW } else { glow::CCW }) };
+    let frames = drawing
+        .views
+        .iter()
+        .map(|view| frame(gl, &ready, drawing, view, &formats))
+        .collect::<Result<_, _>>();
+    // SAFETY: the context is current and every name is of it.
+    unsafe {
+        gl.delete_program(ready.program);
+        for unit in ready.units {
+            gl.delete_texture(unit.texture);
+            unit.sampler.into_iter().for_each(|sampler| gl.delete_sampler(sampler));
+        }
+    }
+    program::check(gl)?;
+    frames
+}
+
+fn prepare(gl: &glow::Context, pair: Pair<'_>, drawing: &Drawing<'_>) -> Result<Ready, String> {
+    let program = program::link(gl, &pair.vertex.text(), &pair.fragment.text())?;
+    let (mut blocks, mut units) = (BTreeMap::new(), Vec::new());
+    for stage in [pair.vertex, pair.fragment] {
+        for place in stage.blocks() {
+            let slot = slot(stage, place)?;
+            let next = blocks.len() as u32;
+            let number = *blocks.entry(place).or_insert(slot.index.unwrap_or(next));
+            if let (None, Some(name)) = (slot.index, &slot.name) {
+                program::set_block(gl, program, name, number);
+            }
+        }
+        for combined in &stage.native.combined {
+            let next = units.len() as u32;
+            units.push(unit(gl, program, stage, combined, next, drawing)?);
+        }
+    }
+    program::check(gl)?;
+    Ok(Ready { program, units, blocks })
+}
+
+fn slot(stage: &Shipped, (group, binding): Place) -> Result<&Slot, String> {
+    let mut slots = stage.native.slots.iter();
+    slots
+        .find(|slot| (slot.group, slot.binding) == (group, binding))
+        .ok_or_else(|| format!("group {group}, binding {binding} has no slot"))
+}
+
+/// A combined sampler on the unit that the text declares, or where the language cannot say, on the
+/// next one by name.
+fn unit(
+    gl: &glow::Context,
+    program: glow::Program,
+    stage: &Shipped,
+    combined: &Combined,
+    next: u32,
+    drawing: &Drawing<'_>,
+) -> Result<Unit, String> {
+    let [group, binding] = combined.texture;
+    let fixture = drawing.fixtures.get(&(group, binding)).map(|fixture| &**fixture);
+    let Some(Fixture::Texture(fixture)) = fixture else {
+        return Err(format!("`{}` has no fixture", combined.name));
+    };
+    let index = slot(stage, (group, binding))?.index.unwrap_or_else(|| {
+        program::set_unit(gl, program, &combined.name, next);
+        next
+    });
+    let settings = combined.sampler.and_then(|place| sampler(drawing, place));
+    let sampler = settings.map(|settings| texture::sampler(gl, settings)).transpose()?;
+    let (target, texture) = texture::upload(gl, fixture)?;
+    Ok(Unit { index, target, texture, sampler })
+}
+
+fn sampler(drawing: &Drawing<'_>, [group, binding]: [u32; 2]) -> Option<Sampler> {
+    match drawing.fixtures.get(&(group, binding)).map(|fixture| &**fixture) {
+        Some(Fixture::Sampler(settings)) => Some(*settings),
+        _ => None,
+    }
+}
+
+fn frame(
+    gl: &glow::Context,
+    ready: &Ready,
+    drawing: &Drawing<'_>,
+    view: &Buffers,
+    formats: &[Format],
+) -> Result<Frame, String> {
+    let targets = formats
+        .iter()
+        .map(|format| texture::target(gl, drawing.size, *format == Format::Float))
+        .collect::<Result<Vec<_>, _>>()?;
+    let [width, height] = drawing.size.map(|size| size as i32);
+    // SAFETY: the context is current, and every name is of it.
+    unsafe {
+        let framebuffer = gl.create_framebuffer()?;
+        gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
+        let points: Vec<u32> =
+            (0..targets.len() as u32).map(|index| glow::COLOR_ATTACHMENT0 + index).collect();
+        for (point, target) in points.iter().zip(&targets) {
+            let of = glow::TEXTURE_2D;
+            gl.framebuffer_texture_2d(glow::FRAMEBUFFER, *point, of, Some(*target), 0);
+        }
+        gl.draw_buffers(&points);
+        if gl.check_framebuffer_status(glow::FRAMEBUFFER) != glow::FRAMEBUFFER_COMPLETE {
+            return Err("the driver draws into no such targets".to_owned());
+        }
+        gl.viewport(0, 0, width, height);
+        clear(gl, formats);
+        gl.use_program(Some(ready.program));
+        for unit in &ready.units {
+            gl.active_texture(glow::TEXTURE0 + unit.index);
+            gl.bind_texture(unit.target, Some(unit.texture));
+            gl.bind_sampler(unit.index, unit.sampler);
+        }
+        for item in drawing.items {
+            draw_item(gl, ready, drawing, view, item)?;
+        }
+        let read = points.iter().zip(formats).map(|(point, format)| {
+            gl.read_buffer(*point);
+            read(gl, [width, height], *format)
+        });
+        let words = read.collect();
+        gl.bind_framebuffer(glow::FRAMEBUFFER, None);
+        gl.delete_framebuffer(framebuffer);
+        targets.into_iter().for_each(|target| gl.delete_texture(target));
+        program::check(gl)?;
+        Ok(Frame { targets: words, depth: Vec::new(), detour: None })
+    }
+}
+
+unsafe fn clear(gl: &glow::Context, formats: &[Format]) {
+    for (index, format) in (0..).zip(formats) {
+        // SAFETY: a framebuffer with so many targets is bound.
+        unsafe {
+            match format {
+                Format::Float => {
+                    let value = f32::from_bits(SENTINEL);
+                    gl.clear_buffer_f32_slice(glow::COLOR, index, &[value; 4]);
+                }
+                Format::Uint => gl.clear_buffer_u32_slice(glow::COLOR, index, &[SENTINEL; 4]),
+            }
+        }
+    }
+}
+
+/// The words of the target that is read from, row by row from the first in memory: the top one, as
+/// outputs turn their positions over.
+unsafe fn read(gl: &glow::Context, [width, height]: [i32; 2], format: Format) -> Vec<u32> {
+    let mut bytes = vec![0u8; width as usize * height as usize * 16];
+    let (format, ty) = match format {
+        Format::Float => (glow::RGBA, glow::FLOAT),
+        Format::Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_INT),
+    };
+    // SAFETY: `bytes` holds the whole target.
+    unsafe {
+        let slice = glow::PixelPackData::Slice(Some(&mut bytes));
+        gl.read_pixels(0, 0, width, height, format, ty, slice);
+    }
+    bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect()
+}
+
+unsafe fn draw_item(
+    gl: &glow::Context,
+    ready: &Ready,
+    drawing: &Drawing<'_>,
+    view: &Buffers,
+    item: &Item<'_>,
+) -> Result<(), String> {
+    // SAFETY: the context is current and the program is in use.
+    unsafe {
+        let mut made = Vec::new();
+        for (place, number) in &ready.blocks {
+            let bytes = drawing.buffer(view, item, *place);
+            let bytes = bytes.ok_or_else(|| format!("nothing is given for {place:?}"))?;
+            let buffer = buffer(gl, glow::UNIFORM_BUFFER, bytes)?;
+            gl.bind_buffer_base(glow::UNIFORM_BUFFER, *number, Some(buffer));
+            made.push(buffer);
+        }
+        let array = gl.create_vertex_array()?;
+        gl.bind_vertex_array(Some(array));
+        made.extend(attributes(gl, item.mesh)?);
+        if item.mesh.indices.is_empty() {
+            gl.draw_arrays(glow::TRIANGLES, 0, item.mesh.vertices() as i32);
+        } else {
+            made.push(buffer(gl, glow::ELEMENT_ARRAY_BUFFER, &bytes(&item.mesh.indices))?);
+            let count = item.mesh.indices.len() as i32;
+            gl.draw_elements(glow::TRIANGLES, count, glow::UNSIGNED_INT, 0);
+        }
+        gl.bind_vertex_array(None);
+        gl.delete_vertex_array(array);
+        made.into_iter().for_each(|buffer| gl.delete_buffer(buffer));
+    }
+    Ok(())
+}
+
+/// The attributes of a mesh for the array that is bound, and the buffer they are in.
+unsafe fn attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow::Buffer>, String> {
+    if mesh.attributes.is_empty() {
+        return Ok(None);
+    }
+    let stride = mesh.stride() as i32;
+    // SAFETY: the offsets are those of the interleaved words.
+    unsafe {
+        let vertices = buffer(gl, glow::ARRAY_BUFFER, &bytes(&mesh.words))?;
+        for attribute in mesh.layout() {
+            let size = attribute.format.size() as i32 / 4;
+            let (location, offset) = (attribute.shader_location, attribute.offset as i32);
+            gl.enable_vertex_attrib_array(location);
+            if attribute.format == wgpu::VertexFormat::Uint32 {
+                let ty = glow::UNSIGNED_INT;
+                gl.vertex_attrib_pointer_i32(location, size, ty, stride, offset);
+            } else {
+                gl.vertex_attrib_pointer_f32(location, size, glow::FLOAT, false, stride, offset);
+            }
+        }
+        Ok(Some(vertices))
+    }
+}
+
+unsafe fn buffer(gl: &glow::Context, of: u32, bytes: &[u8]) -> Result<glow::Buffer, String> {
+    // SAFETY: the context is current.
+    unsafe {
+        let buffer = gl.create_buffer()?;
+        gl.bind_buffer(of, Some(buffer));
+        gl.buffer_data_u8_slice(of, bytes, glow::STATIC_DRAW);
+        Ok(buffer)
+    }
+}
+
+fn bytes(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_ne_bytes()).collect()
+}

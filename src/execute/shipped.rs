@@ -1,0 +1,70 @@
+//! Stages as a bundle holds them.
+
+use super::frame::EntryPoint;
+use super::gpu::emitted;
+use crate::bundle::{Kind, Native, Reflection, Stage, Target};
+use crate::diagnostic::Diagnostic;
+use crate::emit::{self, Emitted};
+
+/// One stage as it is shipped: its bytes in a target, and what is said of them.
+#[derive(Debug, Clone)]
+pub struct Shipped {
+    pub target: Target,
+    pub bytes: Vec<u8>,
+    pub native: Native,
+    pub reflection: Reflection,
+}
+
+/// What a colour target of a shipped stage holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    /// Bits of floats.
+    Float,
+    Uint,
+}
+
+impl Shipped {
+    /// An entry point as it would be shipped.
+    ///
+    /// # Errors
+    /// `executor-lacks` where the target's language has no word for something in it.
+    pub fn of(stage: EntryPoint<'_>, target: Target) -> Result<Self, Diagnostic> {
+        let (emitted, validated) = emitted::of_module(stage.module, stage.entry, target)?;
+        let Emitted { bytes, native } = emitted;
+        let reflection = emit::reflect(&validated, stage.entry)?;
+        Ok(Self { target, bytes, native, reflection })
+    }
+
+    /// Its bytes as text; of a binary target, not what anyone wants to read.
+    pub fn text(&self) -> std::borrow::Cow<'_, str> {
+        String::from_utf8_lossy(&self.bytes)
+    }
+
+    /// What it draws into, by location.
+    ///
+    /// # Errors
+    /// In words: a type that no target is made for.
+    pub(super) fn targets(&self) -> Result<Vec<Format>, String> {
+        if self.reflection.stage != Stage::Fragment {
+            return Ok(Vec::new());
+        }
+        let located = self.reflection.outputs.iter().filter_map(|output| {
+            let format = match output.ty.as_str() {
+                ty if ty.contains("f32") => Ok(Format::Float),
+                ty if ty.contains("u32") => Ok(Format::Uint),
+                ty => Err(format!("no target is made for outputs of type {ty}")),
+            };
+            output.location.map(|location| format.map(|format| (location, format)))
+        });
+        let located: Vec<(u32, Format)> = located.collect::<Result<_, _>>()?;
+        let count = located.iter().map(|(location, _)| location + 1).max().unwrap_or(0);
+        let format = |location: u32| located.iter().find(|(other, _)| *other == location);
+        Ok((0..count).map(|location| format(location).map_or(Format::Float, |one| one.1)).collect())
+    }
+
+    /// Groups and bindings of its uniform buffers.
+    pub(super) fn blocks(&self) -> impl Iterator<Item = (u32, u32)> {
+        let blocks = self.reflection.bindings.iter().filter(|one| one.kind == Kind::Uniform);
+        blocks.map(|one| (one.group, one.binding))
+    }
+}

@@ -1,0 +1,303 @@
+//! What is written of a fragment: its text with the names that naga would choose, and the places
+//! where a text can have others.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use super::cut::Fragment;
+use super::names::{Chosen, Names, Renames};
+use super::reason::Reason;
+use super::words::words;
+
+/// A text whose references have their usual names.
+pub struct Template {
+    pub text: String,
+    spots: Vec<Spot>,
+}
+
+/// Where a reference stands, and the number of its name.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    start: usize,
+    end: usize,
+    name: u32,
+}
+
+impl Template {
+    /// A reference in small letters keeps its usual name.
+    pub fn new(fragment: &Fragment, names: &mut Names) -> Result<Self, Reason> {
+        for reference in &fragment.references {
+            names.number(&reference.name)?;
+        }
+        let length = fragment.text.len() + 16 * fragment.references.len();
+        let (mut text, mut at) = (String::with_capacity(length), 0);
+        let mut spots = Vec::with_capacity(fragment.references.len());
+        for reference in &fragment.references {
+            text.push_str(&fragment.text[at..reference.at]);
+            at = reference.at;
+            let start = text.len();
+            text.push_str(names.usual_of(reference));
+            if !reference.small {
+                let name = names.number(&reference.name)?;
+                spots.push(Spot { start, end: text.len(), name });
+            }
+        }
+        text.push_str(&fragment.text[at..]);
+        Ok(Self { text, spots })
+    }
+
+    /// Whether it has references.
+    pub fn is_plain(&self) -> bool {
+        self.spots.is_empty()
+    }
+
+    pub fn is_renamed(&self, renames: &Renames) -> bool {
+        self.spots.iter().any(|spot| renames.contains_key(&spot.name))
+    }
+
+    /// Appends the text, with names in the places of some that it usually has.
+    pub fn write(&self, renames: &Renames, out: &mut String) {
+        self.write_part(0..self.text.len(), &self.spots, renames, out);
+    }
+
+    fn write_part(&self, part: Range<usize>, spots: &[Spot], renames: &Renames, out: &mut String) {
+        let mut at = part.start;
+        for spot in spots {
+            if let Some(name) = renames.get(&spot.name) {
+                out.push_str(&self.text[at..spot.start]);
+                out.push_str(name);
+                at = spot.end;
+            }
+        }
+        out.push_str(&self.text[at..part.end]);
+    }
+}
+
+/// A fragment with numbers for names and identifiers.
+pub struct Ready {
+    pub template: Template,
+    /// The author's names it has.
+    pub names: Numbers,
+    /// Names that it cannot have as they are: it declares the same itself.
+    pub captured: Vec<u32>,
+    /// Identifiers that are neither references nor its own.
+    pub words: Numbers,
+    /// Identifiers that it declares within itself.
+    pub locals: Vec<u32>,
+    derived: Vec<Derived>,
+}
+
+/// A set of numbers, as bits: sets are put together often, and their numbers are neighbours.
+pub struct Numbers(Vec<(u32, u64)>);
+
+impl Numbers {
+    fn new(sorted: &[u32]) -> Self {
+        let mut blocks: Vec<(u32, u64)> = Vec::new();
+        for number in sorted {
+            let (block, bit) = (number / 64, 1 << (number % 64));
+            match blocks.last_mut() {
+                Some((last, bits)) if *last == block => *bits |= bit,
+                _ => blocks.push((block, bit)),
+            }
+        }
+        blocks.shrink_to_fit();
+        Self(blocks)
+    }
+
+    /// Whether any is in `bits`, which has room for them.
+    pub fn meets(&self, bits: &Bits) -> bool {
+        self.0.iter().any(|(block, own)| bits.0[*block as usize] & own != 0)
+    }
+
+    /// Adds all to `bits`, which has room for them.
+    pub fn add_to(&self, bits: &mut Bits) {
+        for (block, more) in &self.0 {
+            bits.0[*block as usize] |= more;
+        }
+    }
+}
+
+/// A set of numbers below a bound.
+pub struct Bits(Vec<u64>);
+
+impl Bits {
+    pub fn new(bound: usize) -> Self {
+        Self(vec![0; bound.div_ceil(64)])
+    }
+
+    pub fn has(&self, number: usize) -> bool {
+        self.0[number / 64] & 1 << (number % 64) != 0
+    }
+
+    /// Whether it was there already.
+    pub fn insert(&mut self, number: usize) -> bool {
+        let had = self.has(number);
+        self.0[number / 64] |= 1 << (number % 64);
+        had
+    }
+
+    /// All, in order.
+    pub fn numbers(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().enumerate().flat_map(|(block, bits)| {
+            let mut left = *bits;
+            std::iter::from_fn(move || {
+                let bit = left.trailing_zeros() as usize;
+                left &= left.checked_sub(1)?;
+                Some(64 * block + bit)
+            })
+        })
+    }
+}
+
+/// An identifier of the writer's own that holds references.
+struct Derived {
+    /// As it usually is.
+    word: u32,
+    place: Range<usize>,
+    spots: Range<usize>,
+}
+
+impl Ready {
+    pub fn new(fragment: Fragment, names: &mut Names) -> Result<Self, Reason> {
+        let fragment = name_small(fragment, names)?;
+        let template = Template::new(&fragment, names)?;
+        let numbers = template.spots.iter().map(|spot| spot.name).collect();
+        let named: Vec<u32> = sorted(numbers);
+        let locals = fragment.locals.iter().map(|local| names.word(local)).collect();
+        let locals: Vec<u32> = sorted(locals);
+        let is_local = |word: &u32| locals.binary_search(word).is_ok();
+        let usual = named.iter().map(|name| names.usual_word(*name)).collect();
+        let usual: Vec<u32> = sorted(usual);
+        let is_captured = |name: &u32| is_local(&names.usual_word(*name));
+        let captured = named.iter().copied().filter(is_captured).collect();
+        let derived = derived(&template, names);
+        // Names with a reference in them are words too, as they nearly always are.
+        let all = words(&template.text).map(|word| names.word(word.text)).collect();
+        let mut known: Vec<u32> = sorted(all);
+        known.retain(|word| !is_local(word) && usual.binary_search(word).is_err());
+        let plain = fragment.words().map(|word| names.word(word));
+        known.extend(plain.filter(|word| !is_local(word)));
+        let (names, words) = (Numbers::new(&named), Numbers::new(&sorted(known)));
+        Ok(Self { template, names, captured, words, locals, derived })
+    }
+
+    /// Appends the text, with names in the places of some that it usually has.
+    pub fn write(&self, chosen: &Chosen, out: &mut String) {
+        if self.names.meets(&chosen.renamed) {
+            self.template.write(&chosen.renames, out);
+        } else {
+            out.push_str(&self.template.text);
+        }
+    }
+
+    /// The identifiers that hold references, in a text with some other names.
+    pub fn derived(&self, renames: &Renames) -> impl Iterator<Item = Identifier> {
+        self.derived.iter().map(|derived| {
+            let spots = &self.template.spots[derived.spots.clone()];
+            if spots.iter().any(|spot| renames.contains_key(&spot.name)) {
+                let mut text = String::new();
+                self.template.write_part(derived.place.clone(), spots, renames, &mut text);
+                Identifier::Text(text)
+            } else {
+                Identifier::Usual(derived.word)
+            }
+        })
+    }
+}
+
+/// An identifier of a text.
+pub enum Identifier {
+    /// By its number.
+    Usual(u32),
+    Text(String),
+}
+
+/// Each once.
+fn sorted(mut numbers: Vec<u32>) -> Vec<u32> {
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
+}
+
+/// The identifiers of which references are a part.
+fn derived(template: &Template, names: &mut Names) -> Vec<Derived> {
+    let bytes = template.text.as_bytes();
+    let is_part = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
+    let mut derived: Vec<Derived> = Vec::new();
+    for (index, spot) in template.spots.iter().enumerate() {
+        if let Some(last) = derived.last_mut()
+            && spot.start < last.place.end
+        {
+            last.spots.end = index + 1;
+            continue;
+        }
+        let start = spot.start - bytes[..spot.start].iter().rev().take_while(is_part).count();
+        let end = spot.end + bytes[spot.end..].iter().take_while(is_part).count();
+        if (start, end) != (spot.start, spot.end) {
+            let word = names.word(&template.text[start..end]);
+            derived.push(Derived { word, place: start..end, spots: index..index + 1 });
+        }
+    }
+    derived
+}
+
+/// Names the variables that a writer calls after a declaration: they belong to the function.
+fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Reason> {
+    let small = fragment.references.iter().filter(|reference| reference.small);
+    let small: BTreeSet<String> = small.map(|reference| reference.name.clone()).collect();
+    for name in small {
+        let mut taken: BTreeSet<String> = fragment.locals.iter().cloned().collect();
+        taken.extend(fragment.words().map(str::to_owned));
+        for reference in fragment.references.iter().filter(|reference| !reference.small) {
+            let number = names.number(&reference.name)?;
+            taken.insert(names.usual(number).to_owned());
+        }
+        let number = names.number(&name.to_lowercase())?;
+        let usual = names.usual(number).to_owned();
+        let base = usual.trim_end_matches('_').to_owned();
+        let mut numbered = (1..u32::MAX).map(|number| format!("{base}_{number}"));
+        let free = match taken.contains(&usual) {
+            false => usual,
+            true => numbered.find(|name| !taken.contains(name)).ok_or(Reason::Clash)?,
+        };
+        fragment.settle(&name, &free);
+    }
+    Ok(fragment)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bundle::Target;
+    use crate::link::mark::mark;
+
+    #[test]
+    fn sets_hold_what_was_put_in() {
+        let numbers = [0, 1, 63, 64, 127, 1000];
+        let mut bits = Bits::new(1001);
+        Numbers::new(&numbers).add_to(&mut bits);
+        assert_eq!(bits.numbers().collect::<Vec<_>>(), numbers.map(|number| number as usize));
+        assert!(Numbers::new(&[5, 64]).meets(&bits) && !Numbers::new(&[5, 999]).meets(&bits));
+        assert!(bits.insert(63) && !bits.insert(2) && bits.has(2));
+    }
+
+    /// A reference within a longer identifier is renamed with it; an identifier that the fragment
+    /// declares itself cannot be a name's.
+    #[test]
+    fn a_fragment_is_written_with_other_names() {
+        let mut names = Names::new(Target::WGSL);
+        let author = ["", "first", "second"].map(str::to_owned);
+        let text = format!("{}(own) = Make{}_1 + {1}.x;", mark(1), mark(2));
+        let mut fragment = Fragment::read(&text, &author).unwrap();
+        fragment.locals = vec!["own".to_owned()];
+        let ready = Ready::new(fragment, &mut names).unwrap();
+        assert_eq!(ready.template.text, "first(own) = Makesecond_1 + second.x;");
+        let renames = Renames::from([(names.number("second").unwrap(), "second_7".to_owned())]);
+        let mut written = String::new();
+        ready.template.write(&renames, &mut written);
+        assert_eq!(written, "first(own) = Makesecond_7_1 + second_7.x;");
+        let derived: Vec<Identifier> = ready.derived(&renames).collect();
+        assert!(matches!(&derived[..], [Identifier::Text(text)] if text == "Makesecond_7_1"));
+        assert_eq!((ready.captured.len(), ready.locals.len()), (0, 1));
+    }
+}

@@ -1,0 +1,264 @@
+//! What the functions of one target share, and its texts put together.
+
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
+
+use super::cut::{Cut, Fragment, Shared};
+use super::names::{Chosen, Names, Renames};
+use super::ready::{Ready, Template};
+use super::reason::Reason;
+use super::text::Kind;
+use crate::bundle::{Native, Target};
+
+/// All of one target.
+#[derive(Default)]
+pub struct Texts {
+    names: Names,
+    headers: Vec<String>,
+    declarations: Vec<Declared>,
+    places: HashMap<(Fragment, Vec<u32>), u32>,
+    /// The declarations in the order in which texts have them.
+    order: Vec<u32>,
+    /// Of each declaration its place in that order; those that are alike have the same.
+    ranks: Vec<u32>,
+    /// By name and head: a text has one of each.
+    twins: HashMap<(String, String), u32>,
+}
+
+/// A unit in one target.
+pub struct TextPiece {
+    /// The number of the lines before all declarations.
+    header: u32,
+    /// Numbers of what it needs of what is shared, sorted.
+    shared: Vec<u32>,
+    globals: Vec<Ready>,
+    body: Ready,
+    native: Arc<Native>,
+    /// The native names as text, where they have names of the author's in them.
+    template: Option<Template>,
+}
+
+/// A declaration that functions share.
+struct Declared {
+    ready: Ready,
+    declares: Template,
+    twin: u32,
+    /// No less than that of anything it uses: declarations are written in this order,
+    kind: Kind,
+    /// and then in this one, more than that of anything it uses.
+    height: u32,
+}
+
+impl Declared {
+    fn order(&self) -> (Kind, u32, &str) {
+        (self.kind, self.height, &self.ready.template.text)
+    }
+
+    /// What tells functions of one name apart.
+    fn head(&self) -> &str {
+        head(self.kind, &self.ready)
+    }
+}
+
+fn head(kind: Kind, ready: &Ready) -> &str {
+    match kind {
+        Kind::Function => ready.template.text.split('{').next().unwrap_or_default(),
+        _ => "",
+    }
+}
+
+impl Texts {
+    pub fn new(target: Target) -> Self {
+        Self { names: Names::new(target), ..Self::default() }
+    }
+
+    pub fn keep(&mut self, cut: Cut, native: Option<Fragment>) -> Result<TextPiece, Reason> {
+        let Cut { header, shared, globals, body } = cut;
+        let mut numbers: Vec<u32> = Vec::with_capacity(shared.len());
+        for shared in shared {
+            let number = self.share(shared, &numbers)?;
+            numbers.push(number);
+        }
+        numbers.sort_unstable();
+        numbers.dedup();
+        let globals = globals.into_iter().map(|global| Ready::new(global, &mut self.names));
+        let globals = globals.collect::<Result<Vec<Ready>, Reason>>()?;
+        let body = Ready::new(body, &mut self.names)?;
+        let (native, template) =
+            native.map_or(Ok(Default::default()), |native| self.native(native))?;
+        let header = self.header(header);
+        Ok(TextPiece { header, shared: numbers, globals, body, native, template })
+    }
+
+    fn header(&mut self, header: String) -> u32 {
+        let known = self.headers.iter().position(|known| *known == header);
+        known.unwrap_or_else(|| {
+            self.headers.push(header);
+            self.headers.len() - 1
+        }) as u32
+    }
+
+    /// The number of what is shared; it is kept once.
+    fn share(&mut self, shared: Shared, numbers: &[u32]) -> Result<u32, Reason> {
+        let uses: Vec<u32> = shared.uses.iter().map(|place| numbers[*place]).collect();
+        let key = (shared.fragment, uses);
+        if let Some(number) = self.places.get(&key) {
+            return Ok(*number);
+        }
+        let below = || key.1.iter().map(|number| &self.declarations[*number as usize]);
+        let kind =
+            below().map(|below| below.kind).max().map_or(shared.kind, |most| most.max(shared.kind));
+        let height = below().map(|below| below.height + 1).max().unwrap_or(0);
+        let ready = Ready::new(key.0.clone(), &mut self.names)?;
+        let declares = Template::new(&shared.declares, &mut self.names)?;
+        let twin = (declares.text.clone(), head(kind, &ready).to_owned());
+        let next = self.twins.len() as u32;
+        let twin = *self.twins.entry(twin).or_insert(next);
+        let number = self.declarations.len() as u32;
+        self.declarations.push(Declared { ready, declares, twin, kind, height });
+        self.rank(number);
+        self.places.insert(key, number);
+        Ok(number)
+    }
+
+    /// Finds the last declaration's place in the order.
+    fn rank(&mut self, number: u32) {
+        let of = |number: &u32| self.declarations[*number as usize].order();
+        let place = self.order.partition_point(|other| of(other) < of(&number));
+        let at_place = self.order.get(place);
+        let is_alike = at_place.is_some_and(|other| of(other) == of(&number));
+        let rank = match at_place {
+            Some(other) => self.ranks[*other as usize],
+            None => self.order.last().map_or(0, |last| self.ranks[*last as usize] + 1),
+        };
+        if !is_alike {
+            self.ranks.iter_mut().for_each(|other| *other += u32::from(*other >= rank));
+        }
+        self.ranks.push(rank);
+        self.order.insert(place, number);
+    }
+
+    /// What the output calls things; with the text of it, where that has names of the author's.
+    fn native(&mut self, native: Fragment) -> Result<(Arc<Native>, Option<Template>), Reason> {
+        let template = Template::new(&native, &mut self.names)?;
+        let native = serde_json::from_str(&template.text).map_err(|_| Reason::Shape)?;
+        Ok((Arc::new(native), (!template.is_plain()).then_some(template)))
+    }
+
+    /// Header, what is shared, what is bound, the functions, the entry point, which is the last of
+    /// the pieces. What is in `text` is lost.
+    pub fn link(&self, pieces: &[&TextPiece], text: &mut String) -> Result<Arc<Native>, Reason> {
+        let entry = pieces.last().ok_or(Reason::Header)?;
+        let shared = self.shared(pieces);
+        let declared = shared.iter().map(|declared| &declared.ready);
+        let globals = entry.globals.iter();
+        let bodies = pieces.iter().map(|piece| &piece.body);
+        let all: Vec<&Ready> = declared.chain(globals).chain(bodies).collect();
+        let chosen = self.names.choose(&all)?;
+        let renames = &chosen.renames;
+        self.refuse_twins(&shared, renames)?;
+        self.refuse_derived(&all, &chosen)?;
+        text.clear();
+        self.write_header(pieces, text)?;
+        let (declared, rest) = all.split_at(shared.len());
+        let (globals, bodies) = rest.split_at(entry.globals.len());
+        for (fragments, gap) in [(declared, "\n"), (globals, "\n"), (bodies, "\n\n")] {
+            for (index, ready) in fragments.iter().enumerate() {
+                let before = if index > 0 { gap } else { "\n\n" };
+                text.push_str(if text.is_empty() { "" } else { before });
+                ready.write(&chosen, text);
+            }
+        }
+        text.push('\n');
+        named(entry, renames)
+    }
+
+    /// What the pieces share, in the order to declare it in.
+    fn shared(&self, pieces: &[&TextPiece]) -> Vec<&Declared> {
+        let mut seen = vec![false; self.declarations.len()];
+        let mut found: Vec<(u32, &Declared)> = Vec::new();
+        for number in pieces.iter().flat_map(|piece| &piece.shared) {
+            let number = *number as usize;
+            if !std::mem::replace(&mut seen[number], true) {
+                found.push((self.ranks[number], &self.declarations[number]));
+            }
+        }
+        found.sort_by_key(|(rank, _)| *rank);
+        found.into_iter().map(|(_, declared)| declared).collect()
+    }
+
+    /// Two declarations of one name are one too many, unless their heads tell them apart.
+    fn refuse_twins(&self, shared: &[&Declared], renames: &Renames) -> Result<(), Reason> {
+        let mut seen = vec![false; self.twins.len()];
+        let mut others = BTreeSet::new();
+        for declared in shared {
+            let twin = if declared.declares.is_renamed(renames) {
+                let mut name = String::new();
+                declared.declares.write(renames, &mut name);
+                let key = (name, declared.head().to_owned());
+                self.twins.get(&key).copied().ok_or(key)
+            } else {
+                Ok(declared.twin)
+            };
+            let is_new = match twin {
+                Ok(twin) => !std::mem::replace(&mut seen[twin as usize], true),
+                Err(unusual) => others.insert(unusual),
+            };
+            if !is_new {
+                return Err(Reason::Clash);
+            }
+        }
+        Ok(())
+    }
+
+    /// A numbered name makes names that hold it others too: none may be a name of the author's.
+    fn refuse_derived(&self, all: &[&Ready], chosen: &Chosen) -> Result<(), Reason> {
+        if chosen.renames.is_empty() {
+            return Ok(());
+        }
+        let mut derived = all.iter().flat_map(|ready| ready.derived(&chosen.renames));
+        match derived.any(|identifier| self.names.is_name(&identifier, chosen)) {
+            true => Err(Reason::Clash),
+            false => Ok(()),
+        }
+    }
+
+    /// The lines before all declarations: those that every piece has, and extensions of some.
+    fn write_header(&self, pieces: &[&TextPiece], text: &mut String) -> Result<(), Reason> {
+        let headers: BTreeSet<u32> = pieces.iter().map(|piece| piece.header).collect();
+        let headers: Vec<&str> =
+            headers.iter().map(|number| &*self.headers[*number as usize]).collect();
+        if let [header] = *headers {
+            text.push_str(header);
+            return Ok(());
+        }
+        let is_extra = |line: &&str| {
+            ["#extension ", "enable ", "requires "].iter().any(|start| line.starts_with(start))
+        };
+        let plain = |header: &str| -> Vec<String> {
+            header.lines().filter(|line| !is_extra(line)).map(str::to_owned).collect()
+        };
+        let common = headers.first().map(|header| plain(header)).ok_or(Reason::Header)?;
+        if headers.iter().any(|header| plain(header) != common) {
+            return Err(Reason::Header);
+        }
+        let extra: BTreeSet<&str> =
+            headers.iter().flat_map(|header| header.lines()).filter(is_extra).collect();
+        // `#version` comes first in GLSL, and WGSL has no other lines.
+        let first = common.iter().take(1).map(String::as_str);
+        let rest = common.iter().skip(1).map(String::as_str);
+        let lines: Vec<&str> = first.chain(extra).chain(rest).collect();
+        text.push_str(&lines.join("\n"));
+        Ok(())
+    }
+}
+
+/// What the output calls things, where some names are others than usual.
+fn named(entry: &TextPiece, renames: &Renames) -> Result<Arc<Native>, Reason> {
+    let Some(template) = entry.template.as_ref().filter(|text| text.is_renamed(renames)) else {
+        return Ok(entry.native.clone());
+    };
+    let mut text = String::with_capacity(template.text.len() + 64);
+    template.write(renames, &mut text);
+    serde_json::from_str(&text).map(Arc::new).map_err(|_| Reason::Shape)
+}

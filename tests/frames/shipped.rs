@@ -1,0 +1,295 @@
+//! Permutations of `forward`, drawn from the very bytes that a bundle holds of each target, and
+//! sampled fragments computed again by the evaluator from the composed text.
+//!
+//! Each is drawn twice with its vertex stage: once with a fragment stage that only tells what it
+//! is given, and once with its own. So the evaluator starts where the driver's fragments did, and
+//! a vertex stage that is wrong shows where its numbers leave the picture or the tolerance.
+//! `metal::frames` does the same for MSL, whose stages are compiled many at a time.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use lamplight::bundle::{Bundle, Language, Target};
+use lamplight::diagnostic::Diagnostic;
+use lamplight::execute::executors;
+use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
+use lamplight::execute::shipped::Shipped;
+use lamplight::execute::{Pair, Session, on_thread};
+use lamplight::permute::axis::ValueSet;
+use lamplight::picture::frame::probe;
+use libtest_mimic::{Failed, Trial};
+
+use super::{Scene, Sources, bundle, points};
+use crate::fragments::{self, Tally, Watched};
+
+/// Permutations of each language, with all pairs of values among them.
+const LEAST_POINTS: usize = 200;
+/// So many of them are drawn where nothing else is asked for: `cargo xtask frames` draws all.
+const DRAWN_POINTS: usize = 12;
+/// Pixels from left to right, and from top to bottom.
+const SIZE: [u32; 2] = [96, 48];
+/// One quad in so many is computed again.
+const STEP: usize = 29;
+/// Least fragments of a permutation.
+const LEAST: usize = 80;
+/// Largest share of open fragments of a permutation.
+const OPEN: f64 = 0.01;
+/// What fails with everything is told a few times.
+const MOST_FAILURES: usize = 20;
+
+pub fn trials() -> Vec<Trial> {
+    let drawn = [("wesl", Language::Wesl), ("glsl", Language::Glsl)].map(|(name, language)| {
+        Trial::test(format!("frames/shipped/{name}"), move || {
+            on_thread(|| drawn(language)).ok_or("panicked")?.map_err(Failed::from)
+        })
+    });
+    let others = Trial::test("frames/shipped/others_are_noticed", || {
+        on_thread(others_are_noticed).ok_or("panicked")?.map_err(Failed::from)
+    });
+    drawn.into_iter().chain([others]).collect()
+}
+
+/// Those of the environment, or all but MSL.
+fn targets() -> Result<Vec<Target>, String> {
+    let Ok(names) = std::env::var("LAMPLIGHT_FRAMES_TARGETS") else {
+        return Ok(Target::ALL.iter().copied().filter(|one| *one != Target::MSL).collect());
+    };
+    let target = |name: &str| Target::find(name).ok_or_else(|| format!("no target `{name}`"));
+    names.split(',').map(target).collect()
+}
+
+/// How many permutations are drawn: of the environment, or as many as the tests have time for.
+fn most_points() -> Result<usize, String> {
+    match std::env::var("LAMPLIGHT_FRAMES_PERMUTATIONS") {
+        Ok(text) => text.parse().map_err(|_| format!("`{text}` is not a number")),
+        Err(_) => Ok(DRAWN_POINTS),
+    }
+}
+
+fn drawn(language: Language) -> Result<(), String> {
+    let (targets, sources) = (targets()?, Sources::load(language)?);
+    let mut points = points(&sources.space, LEAST_POINTS);
+    points.truncate(most_points()?);
+    let start = Instant::now();
+    let bundle = bundle(&sources, &points, &targets)?;
+    let mut drivers =
+        targets.iter().map(|one| Driver::open(*one)).collect::<Result<Vec<_>, _>>()?;
+    for point in &points {
+        let (key, scene) = (sources.space.key(point).to_string(), sources.scene(point)?);
+        permutation(&bundle, language, &key, &scene, &mut drivers)?;
+    }
+    println!("{language:?}: all in {:.1} s", start.elapsed().as_secs_f64());
+    let mut failures = Vec::new();
+    for driver in &drivers {
+        println!("{language:?} {driver}");
+        failures.extend(driver.failures.iter().take(MOST_FAILURES).cloned());
+        // Nothing may be left out unnoticed: all that is listed can be drawn today.
+        failures.extend(driver.lacks.keys().map(|reason| format!("{}: {reason}", driver.target)));
+    }
+    if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
+}
+
+/// The bytes of another permutation, whose surfaces scatter otherwise, are not taken for right.
+fn others_are_noticed() -> Result<(), String> {
+    let sources = Sources::load(Language::Wesl)?;
+    let space = &sources.space;
+    let usual = space.default_assignment();
+    let axis = space.axes().iter().position(|axis| axis.name == "diffuse").ok_or("no axis")?;
+    let choose = |axis: usize, allowed: ValueSet| {
+        let own = allowed.iter().find(|ordinal| *ordinal == usual.ordinal(axis));
+        own.or_else(|| allowed.iter().next()).unwrap_or_default()
+    };
+    let other = space.pick_valid(&[(axis, 1)], choose).ok_or("no other permutation")?;
+    let bundle = bundle(&sources, &[usual.clone(), other.clone()], &[Target::GLSL330])?;
+    let (mut driver, scene) = (Driver::open(Target::GLSL330)?, sources.scene(&usual)?);
+    for (point, is_right) in [(&usual, true), (&other, false)] {
+        let key = space.key(point).to_string();
+        let targets = driver.frame(&bundle, Language::Wesl, &key, &scene);
+        let targets = targets.map_err(|error| error.message)?;
+        let watched = [Watched { size: SIZE, targets: &targets }];
+        let resources =
+            fragments::resources(scene.buffers.clone(), &scene.fixtures, &BTreeMap::new());
+        let found = fragments::recompute_each(&scene.fragment, resources, &watched, STEP)?;
+        if found.iter().any(|found| found.is_ok() != is_right) {
+            return Err(format!(
+                "[{key}] is taken for {}",
+                if is_right { "wrong" } else { "right" }
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// What draws the files of a target, and what became of them.
+struct Driver {
+    target: Target,
+    session: Box<dyn Session>,
+    drawn: usize,
+    tally: Tally,
+    failures: Vec<String>,
+    /// What could not be drawn, by the reason.
+    lacks: BTreeMap<String, usize>,
+    /// Fragment stages that tell, by what they tell: most permutations share theirs.
+    telling: BTreeMap<String, Shipped>,
+    time: Duration,
+}
+
+impl Driver {
+    fn open(target: Target) -> Result<Self, String> {
+        let found = executors::shipping(target);
+        let (entry, shipping) = found.ok_or_else(|| format!("nothing draws {target}"))?;
+        let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
+        let (tally, failures, lacks, telling, time) = Default::default();
+        Ok(Self { target, session, drawn: 0, tally, failures, lacks, telling, time })
+    }
+
+    /// The targets of both draws, the fragment stage's own first.
+    fn frame(
+        &mut self,
+        bundle: &Bundle,
+        language: Language,
+        key: &str,
+        scene: &Scene,
+    ) -> Result<Vec<Vec<u32>>, Diagnostic> {
+        let stages = ["vertex", "fragment"].map(|stage| {
+            let entry = match (language, stage) {
+                // The entry points of GLSL are all called `main`: a bundle calls them by their stage.
+                (Language::Glsl, _) => stage,
+                (_, "vertex") => scene.vertex.entry,
+                _ => scene.fragment.entry,
+            };
+            shipped(bundle, language, entry, key, self.target)
+        });
+        let [vertex, fragment] = stages;
+        let (vertex, fragment) = (vertex.map_err(lost)?, fragment.map_err(lost)?);
+        let tells = self.tells(scene)?;
+        let mut targets = self.draw(&vertex, &fragment, scene)?;
+        targets.extend(self.draw(&vertex, &tells, scene)?);
+        Ok(targets)
+    }
+
+    /// The fragment stage that tells what one is given.
+    fn tells(&mut self, scene: &Scene) -> Result<Shipped, Diagnostic> {
+        let stage = &scene.fragment;
+        let inputs = format!("{:?}", stage.reflection.inputs);
+        if let Some(known) = self.telling.get(&inputs) {
+            return Ok(known.clone());
+        }
+        let told = probe::told(&stage.validated.module, stage.entry)
+            .ok_or_else(|| lost("the fragment stage is not one".to_owned()))?;
+        let point = EntryPoint { module: &told.module, entry: probe::TELLS };
+        let made = Shipped::of(point, self.target)?;
+        self.telling.insert(inputs, made.clone());
+        Ok(made)
+    }
+
+    fn draw(
+        &self,
+        vertex: &Shipped,
+        fragment: &Shipped,
+        scene: &Scene,
+    ) -> Result<Vec<Vec<u32>>, Diagnostic> {
+        let stage = |of: &'_ super::Composed| of.validated.clone();
+        let modules = [stage(&scene.vertex), stage(&scene.fragment)];
+        let drawing = Drawing {
+            vertex: EntryPoint { module: &modules[0].module, entry: scene.vertex.entry },
+            fragment: Some(EntryPoint { module: &modules[1].module, entry: scene.fragment.entry }),
+            targets: 1,
+            items: &[Item { mesh: &scene.mesh, buffers: &scene.buffers }],
+            views: &[Buffers::new()],
+            buffers: &Buffers::new(),
+            plain: &[],
+            fixtures: &scene.fixtures,
+            levels: &BTreeMap::new(),
+            size: SIZE,
+            state: State::default(),
+        };
+        Ok(self.session.draw_shipped(Pair { vertex, fragment }, &drawing)?.remove(0).targets)
+    }
+
+    fn count(&mut self, key: &str, found: Result<Tally, String>) {
+        match found {
+            Ok(tally) if tally.tried < LEAST => {
+                let text = format!("{} [{key}] only {} fragments", self.target, tally.tried);
+                self.failures.push(text);
+            }
+            Ok(tally) if tally.open as f64 > OPEN * tally.tried as f64 => {
+                let Tally { tried, open, .. } = tally;
+                let text = format!("{} [{key}] {open} of {tried} are open", self.target);
+                self.failures.push(text);
+            }
+            Ok(tally) => self.tally.add(&tally),
+            Err(error) => self.failures.push(format!("{} [{key}] {error}", self.target)),
+        }
+    }
+}
+
+impl std::fmt::Display for Driver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { target, drawn, tally, lacks, .. } = self;
+        write!(
+            f,
+            "as {target} on {}: {drawn} permutations in {:.1} s, {tally}",
+            self.session.adapter(),
+            self.time.as_secs_f64()
+        )?;
+        lacks.iter().try_for_each(|(reason, count)| write!(f, "; {count} not drawn: {reason}"))
+    }
+}
+
+/// Draws one permutation on every driver, and computes it once for all that were given the same.
+fn permutation(
+    bundle: &Bundle,
+    language: Language,
+    key: &str,
+    scene: &Scene,
+    drivers: &mut [Driver],
+) -> Result<(), String> {
+    let (mut frames, mut owners) = (Vec::new(), Vec::new());
+    for (index, driver) in drivers.iter_mut().enumerate() {
+        let start = Instant::now();
+        let found = driver.frame(bundle, language, key, scene);
+        driver.time += start.elapsed();
+        match found {
+            Ok(targets) => {
+                driver.drawn += 1;
+                frames.push(targets);
+                owners.push(index);
+            }
+            Err(error) if error.code.name == "executor-lacks" => {
+                *driver.lacks.entry(error.message).or_default() += 1;
+            }
+            Err(error) => {
+                driver.failures.push(format!("{} [{key}] {}", driver.target, error.message))
+            }
+        }
+    }
+    let watched: Vec<Watched<'_>> =
+        frames.iter().map(|targets| Watched { size: SIZE, targets }).collect();
+    let resources = fragments::resources(scene.buffers.clone(), &scene.fixtures, &BTreeMap::new());
+    let tallies = fragments::recompute_each(&scene.fragment, resources, &watched, STEP)?;
+    for (owner, tally) in owners.into_iter().zip(tallies) {
+        drivers[owner].count(key, tally);
+    }
+    Ok(())
+}
+
+/// One stage as the bundle holds it.
+fn shipped(
+    bundle: &Bundle,
+    language: Language,
+    entry: &str,
+    key: &str,
+    target: Target,
+) -> Result<Shipped, String> {
+    let found = bundle
+        .program("forward")
+        .and_then(|program| program.entry(language, entry)?.get(key, target))
+        .map_err(|error| error.to_string())?;
+    let (native, reflection) = ((*found.native).clone(), (*found.reflection).clone());
+    Ok(Shipped { target, bytes: found.bytes.to_vec(), native, reflection })
+}
+
+fn lost(message: String) -> Diagnostic {
+    Diagnostic::error(lamplight::diagnostic::codes::EXECUTOR_FAILED, message)
+}

@@ -1,0 +1,488 @@
+//! Fragment stages of random programs, run from their outputs by what runs each target, and
+//! computed again by the evaluator from the composed text.
+//!
+//! `unit + feeder -> two draws a target: what fragments are given, what they give -> comparison`
+//!
+//! A feeder is a vertex stage made for the stage's inputs, so that every stage meets numbers that
+//! it can work with. Vertex stages of the programs are not run: where their triangles would lie is
+//! as random as they are.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+use lamplight::bundle::{Kind, Language, Reflection, Stage, Target, Unit, Varying};
+use lamplight::compose::Composed;
+use lamplight::diagnostic::{Diagnostic, codes};
+use lamplight::emit::reflect;
+use lamplight::eval::{Bounded, Function, Kind as Slot, Machine, Number, Program, Resources};
+use lamplight::execute::executors;
+use lamplight::execute::fixture::Fixture;
+use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh, State};
+use lamplight::execute::raster::Compiled;
+use lamplight::execute::shipped::Shipped;
+use lamplight::execute::{Pair, Session};
+use lamplight::picture::frame::{pack, probe};
+use lamplight::validate::{Validated, validate};
+use naga::Binding;
+
+use super::judge::Finding;
+use super::random::Random;
+use crate::fragments;
+use crate::frames::fixture;
+
+/// Pixels from left to right, and from top to bottom.
+const SIZE: [u32; 2] = [4, 4];
+
+type Place = (u32, u32);
+
+/// A fragment stage with its outputs.
+#[derive(Debug, Clone)]
+pub struct Runnable {
+    pub seed: u64,
+    pub composed: Composed,
+    pub entry: String,
+    pub unit: Unit,
+}
+
+/// What became of the stages, by target.
+#[derive(Debug, Default, Clone)]
+pub struct Ran {
+    pub stages: usize,
+    pub numbers: usize,
+    /// Numbers that the evaluator has no bound for, or of fragments with a comparison that was too
+    /// close to call.
+    pub open: usize,
+    /// What was not run, by the reason.
+    pub lacks: BTreeMap<String, usize>,
+}
+
+impl std::fmt::Display for Ran {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { stages, numbers, open, lacks } = self;
+        write!(f, "{stages} stages run, {numbers} numbers, {open} open")?;
+        lacks.iter().try_for_each(|(reason, count)| write!(f, "; {count} not run: {reason}"))
+    }
+}
+
+/// What runs the outputs.
+pub struct Runner {
+    sessions: Vec<(Target, Box<dyn Session>)>,
+}
+
+/// A stage with everything that it is drawn with.
+struct Ready<'r> {
+    runnable: &'r Runnable,
+    validated: Validated,
+    feeder: Validated,
+    /// `None` where the stage is given nothing.
+    tells: Option<probe::Watched>,
+    buffers: Buffers,
+    fixtures: BTreeMap<Place, Arc<Fixture>>,
+    stages: BTreeMap<Target, Result<Stages, Diagnostic>>,
+}
+
+/// What is drawn in one target.
+struct Stages {
+    feeder: Shipped,
+    own: Shipped,
+    tells: Option<Shipped>,
+}
+
+/// The targets of both draws.
+struct Drawn {
+    target: Target,
+    outputs: Targets,
+    inputs: Targets,
+}
+
+/// Words of each target.
+type Targets = Vec<Vec<u32>>;
+
+impl Runner {
+    /// Opens what runs each target.
+    ///
+    /// # Errors
+    /// What is missing.
+    pub fn open() -> Result<Self, String> {
+        let session = |target: &Target| {
+            let found = executors::shipping(*target);
+            let (entry, shipping) = found.ok_or_else(|| format!("nothing runs {target}"))?;
+            let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
+            Ok((*target, session))
+        };
+        Ok(Self { sessions: Target::ALL.iter().map(session).collect::<Result<_, String>>()? })
+    }
+
+    /// Runs stages; findings have the place of their stage.
+    pub fn run(
+        &self,
+        runnables: &[Runnable],
+        ran: &mut BTreeMap<Target, Ran>,
+    ) -> Result<Vec<(usize, Finding)>, String> {
+        let ready = runnables.iter().map(Ready::new).collect::<Result<Vec<_>, _>>()?;
+        let metal = Metal::new(&ready)?;
+        let mut findings = Vec::new();
+        for (index, ready) in ready.iter().enumerate() {
+            let mut frames = Vec::new();
+            for (target, session) in &self.sessions {
+                let Some(stages) = ready.stages.get(target) else { continue };
+                let drawn = match (stages, *target == Target::MSL) {
+                    (Err(error), _) => Err(error.clone()),
+                    (Ok(_), true) => metal.draw(index, ready),
+                    (Ok(stages), false) => ready.draw(stages, session.as_ref()),
+                };
+                let tally = ran.entry(*target).or_default();
+                match drawn {
+                    Ok((outputs, inputs)) => {
+                        tally.stages += 1;
+                        frames.push(Drawn { target: *target, outputs, inputs });
+                    }
+                    Err(error) if error.code.name == codes::EXECUTOR_LACKS.name => {
+                        *tally.lacks.entry(error.message).or_default() += 1;
+                    }
+                    Err(error) => {
+                        let first = error.message.lines().next().unwrap_or_default().to_owned();
+                        let kind = format!("{target} does not run: {first}");
+                        findings.push((index, ready.finding(kind, *target, &error.message)));
+                    }
+                }
+            }
+            findings
+                .extend(ready.compare(&frames, ran).into_iter().map(|finding| (index, finding)));
+        }
+        Ok(findings)
+    }
+}
+
+impl<'r> Ready<'r> {
+    fn new(runnable: &'r Runnable) -> Result<Self, String> {
+        let Runnable { seed, composed, entry, unit, .. } = runnable;
+        let told = |problems: Vec<Diagnostic>| format!("seed {seed}: {problems:?}");
+        let validated = validate(composed).map_err(told)?;
+        let mut random = Random(seed ^ 0xfeed);
+        // Of the whole text: an output leaves out what it does not read.
+        let whole = reflect(&validated, entry).map_err(|problem| told(vec![problem]))?;
+        let text = feeder(&whole, &mut random);
+        let feeder = Composed::of_text(Language::Wesl, None, text);
+        let feeder = validate(&feeder).map_err(told)?;
+        let tells = probe::told(&validated.module, entry);
+        let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
+        for binding in &unit.reflection.bindings {
+            let place = (binding.group, binding.binding);
+            if binding.kind == Kind::Uniform {
+                let start = random.next();
+                let numbers = |path: &str| Some(numbers(start, path));
+                let bytes = pack(binding, &numbers).map_err(|problem| problem.message)?;
+                buffers.insert(place, bytes);
+            } else {
+                let made = fixture(binding.kind, &binding.name, &binding.ty);
+                fixtures.insert(place, Arc::new(made));
+            }
+        }
+        let stages = BTreeMap::new();
+        let mut ready = Self { runnable, validated, feeder, tells, buffers, fixtures, stages };
+        let own = Target::ALL.iter().filter(|one| unit.targets.contains_key(one.name()));
+        ready.stages = own.map(|target| (*target, ready.shipped(*target))).collect();
+        Ok(ready)
+    }
+
+    fn shipped(&self, target: Target) -> Result<Stages, Diagnostic> {
+        let Runnable { unit, .. } = self.runnable;
+        let feeder = EntryPoint { module: &self.feeder.module, entry: "feed" };
+        let tells = self.tells.as_ref().map(|tells| {
+            Shipped::of(EntryPoint { module: &tells.module, entry: probe::TELLS }, target)
+        });
+        let artifact = &unit.targets[target.name()];
+        let own = Shipped {
+            target,
+            bytes: artifact.bytes.to_vec(),
+            native: (*artifact.native).clone(),
+            reflection: (*unit.reflection).clone(),
+        };
+        Ok(Stages { feeder: Shipped::of(feeder, target)?, own, tells: tells.transpose()? })
+    }
+
+    /// What the stage gives, and what it is given.
+    fn draw(
+        &self,
+        stages: &Stages,
+        session: &dyn Session,
+    ) -> Result<(Targets, Targets), Diagnostic> {
+        self.drawing(|drawing| {
+            let draw = |fragment| {
+                let pair = Pair { vertex: &stages.feeder, fragment };
+                let frames = session.draw_shipped(pair, drawing);
+                frames.map(|mut frames| frames.remove(0).targets)
+            };
+            let told = stages.tells.as_ref().map(draw).transpose()?;
+            Ok((draw(&stages.own)?, told.unwrap_or_default()))
+        })
+    }
+
+    fn drawing<T>(&self, draw: impl FnOnce(&Drawing<'_>) -> T) -> T {
+        let mesh = Mesh::default();
+        draw(&Drawing {
+            vertex: EntryPoint { module: &self.feeder.module, entry: "feed" },
+            fragment: Some(EntryPoint {
+                module: &self.validated.module,
+                entry: &self.runnable.entry,
+            }),
+            targets: 1,
+            items: &[Item { mesh: &mesh, buffers: &self.buffers }],
+            views: &[Buffers::new()],
+            buffers: &Buffers::new(),
+            plain: &[],
+            fixtures: &self.fixtures,
+            levels: &BTreeMap::new(),
+            size: SIZE,
+            state: State::default(),
+        })
+    }
+
+    /// What each target computes otherwise than the evaluator.
+    fn compare(&self, frames: &[Drawn], ran: &mut BTreeMap<Target, Ran>) -> Vec<Finding> {
+        let mut evaluator = match Evaluator::new(self) {
+            Ok(evaluator) => evaluator,
+            Err(error) => return vec![Finding::new(format!("evaluator: {error}"), error)],
+        };
+        let mut findings = Vec::new();
+        for frame in frames {
+            let tally = ran.entry(frame.target).or_default();
+            if let Err(error) = evaluator.frame(frame, tally) {
+                let kind = format!("{} computes something else", frame.target);
+                findings.push(self.finding(kind, frame.target, &error));
+            }
+        }
+        findings
+    }
+
+    fn finding(&self, kind: String, target: Target, about: &str) -> Finding {
+        let bytes = &self.runnable.unit.targets[target.name()].bytes;
+        let output = match target == Target::SPIRV {
+            true => String::new(),
+            false => String::from_utf8_lossy(bytes).into_owned(),
+        };
+        Finding::new(kind, format!("{about}\n{}\n{output}", self.runnable.composed.text))
+    }
+}
+
+/// A vertex stage that draws one triangle over everything and gives numbers that differ from
+/// pixel to pixel for what a fragment stage takes.
+fn feeder(reflection: &Reflection, random: &mut Random) -> String {
+    let (mut members, mut values) = (String::new(), String::new());
+    for (index, input) in reflection.inputs.iter().enumerate() {
+        let Some(location) = input.location else { continue };
+        let attribute = interpolated(input);
+        let _ = writeln!(members, "@location({location}) {attribute} fed_{index}: {},", input.ty);
+        let count = match input.ty.as_bytes() {
+            [b'v', b'e', b'c', size, ..] => usize::from(size - b'0'),
+            _ => 1,
+        };
+        let mut one = || match input.ty.contains("f32") {
+            true => format!("{:?} + corner.x * {:?}", number(random), number(random)),
+            false => format!("{}", random.below(9)),
+        };
+        let parts: Vec<String> = (0..count).map(|_| one()).collect();
+        let _ = write!(values, ", {}({})", input.ty, parts.join(", "));
+    }
+    format!(
+        "struct Fed {{ @builtin(position) position: vec4f,\n{members}}}\n\
+         @vertex fn feed(@builtin(vertex_index) index: u32) -> Fed {{\n\
+         let corner = vec2f(vec2u((index << 1u) & 2u, index & 2u));\n\
+         return Fed(vec4f(corner * 2.0 - 1.0, 0.0, 1.0){values});\n}}\n"
+    )
+}
+
+fn interpolated(input: &Varying) -> String {
+    match (&input.interpolation, &input.sampling) {
+        (Some(interpolation), Some(sampling)) if interpolation != "flat" => {
+            format!("@interpolate({interpolation}, {sampling})")
+        }
+        (Some(interpolation), _) => format!("@interpolate({interpolation})"),
+        _ => String::new(),
+    }
+}
+
+/// From -2 to 2, exact in few digits.
+fn number(random: &mut Random) -> f64 {
+    random.below(65) as f64 / 16.0 - 2.0
+}
+
+/// Numbers of a uniform. Those that are integers lose what is behind the point.
+fn numbers(start: u64, path: &str) -> Vec<f64> {
+    let mut random = path.bytes().fold(Random(start), |mut random, byte| {
+        random.0 ^= u64::from(byte);
+        Random(random.next())
+    });
+    (0..16).map(|_| number(&mut random)).collect()
+}
+
+/// The evaluator of one stage: what was given the same is computed once.
+struct Evaluator<'p> {
+    machine: Box<Compute<'p>>,
+    known: BTreeMap<Vec<u32>, Wanted>,
+}
+
+/// Computes a quad from the words that its fragments are given.
+type Compute<'p> = dyn FnMut(&[Vec<u32>; 4]) -> Result<Wanted, String> + 'p;
+
+/// What it says of a quad.
+#[derive(Clone)]
+struct Wanted {
+    /// Of each fragment, by location and component.
+    results: [BTreeMap<(u32, usize), Bounded>; 4],
+    doubt: bool,
+}
+
+impl<'p> Evaluator<'p> {
+    fn new(ready: &'p Ready<'_>) -> Result<Self, String> {
+        let told = |error: lamplight::eval::Error| error.to_string();
+        let module = &ready.validated;
+        let program = Program::new(&module.module, &module.info).map_err(told)?;
+        let found = program.functions().filter(|(_, one)| one.name == ready.runnable.entry).last();
+        let (id, function) = found.map(|(id, one)| (id, one.clone())).ok_or("no entry point")?;
+        let resources =
+            fragments::resources(ready.buffers.clone(), &ready.fixtures, &BTreeMap::new());
+        let places = places(&function);
+        let machine =
+            move |given: &[Vec<u32>; 4]| quad(&program, id, &function, &places, &resources, given);
+        Ok(Self { machine: Box::new(machine), known: BTreeMap::new() })
+    }
+
+    fn frame(&mut self, drawn: &Drawn, tally: &mut Ran) -> Result<(), String> {
+        let [width, height] = SIZE;
+        for (y, x) in (0..height / 2).flat_map(|y| (0..width / 2).map(move |x| (2 * y, 2 * x))) {
+            let pixels =
+                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * width + x + i) as usize);
+            let given = pixels.map(|pixel| {
+                drawn.inputs.iter().flat_map(|target| four(target, pixel)).collect::<Vec<u32>>()
+            });
+            let wanted = match self.known.entry(given.concat()) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(new) => new.insert((self.machine)(&given)?),
+            };
+            for (lane, pixel) in pixels.into_iter().enumerate() {
+                compare(drawn, pixel, &wanted.results[lane], wanted.doubt, tally)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn four(target: &[u32], pixel: usize) -> [u32; 4] {
+    std::array::from_fn(|word| target[4 * pixel + word])
+}
+
+/// The location and the component of each result; none for a depth.
+fn places(function: &Function) -> Vec<Option<(u32, usize)>> {
+    let mut places: Vec<Option<(u32, usize)>> = Vec::new();
+    for binding in &function.outputs {
+        places.push(match binding {
+            Some(Binding::Location { location, .. }) => {
+                let is_it = |place: &&Option<(u32, usize)>| {
+                    place.is_some_and(|(other, _)| other == *location)
+                };
+                Some((*location, places.iter().filter(is_it).count()))
+            }
+            _ => None,
+        });
+    }
+    places
+}
+
+fn quad(
+    program: &Program,
+    id: lamplight::eval::FunctionId,
+    function: &Function,
+    places: &[Option<(u32, usize)>],
+    resources: &Resources,
+    given: &[Vec<u32>; 4],
+) -> Result<Wanted, String> {
+    let told = |error: lamplight::eval::Error| error.to_string();
+    let mut machine = Machine::<Bounded>::new(program).map_err(told)?;
+    machine.bind(resources.clone()).map_err(told)?;
+    let slot = |(kind, word): (&Slot, &u32)| match kind {
+        Slot::Float => Bounded::from_f64(f64::from(f32::from_bits(*word))),
+        _ => Bounded::from_word(*word),
+    };
+    let arguments: [Vec<Bounded>; 4] =
+        std::array::from_fn(|lane| function.arguments.iter().zip(&given[lane]).map(slot).collect());
+    let results = machine.quad(id, arguments.each_ref().map(Vec::as_slice)).map_err(told)?;
+    let placed = |values: Vec<Bounded>| {
+        places.iter().zip(values).filter_map(|(place, value)| Some(((*place)?, value))).collect()
+    };
+    Ok(Wanted { results: results.map(placed), doubt: !machine.findings().is_empty() })
+}
+
+fn compare(
+    drawn: &Drawn,
+    pixel: usize,
+    wanted: &BTreeMap<(u32, usize), Bounded>,
+    doubt: bool,
+    tally: &mut Ran,
+) -> Result<(), String> {
+    for ((location, component), wanted) in wanted {
+        let target = drawn.outputs.get(*location as usize);
+        let target = target.ok_or_else(|| format!("there is no target {location}"))?;
+        let found = f64::from(f32::from_bits(four(target, pixel)[*component]));
+        let (value, error) = (wanted.value(), wanted.error());
+        tally.numbers += 1;
+        let is_known = value.is_finite() && error.is_finite() && value.abs() < f64::from(f32::MAX);
+        if found == value || is_known && (found - value).abs() <= error {
+            continue;
+        }
+        if !is_known || doubt {
+            tally.open += 1;
+            continue;
+        }
+        return Err(format!(
+            "pixel {pixel}, location {location}, component {component}: found {found}, wanted {value} within {error:e}"
+        ));
+    }
+    Ok(())
+}
+
+/// All stages of a batch in MSL, compiled at once.
+struct Metal {
+    compiled: Compiled,
+    /// Of each stage that has MSL, the index of its feeder; its own and the one that tells follow.
+    first: BTreeMap<usize, usize>,
+}
+
+impl Metal {
+    fn new(ready: &[Ready<'_>]) -> Result<Self, String> {
+        let (mut stages, mut first) = (Vec::new(), BTreeMap::new());
+        for (index, ready) in ready.iter().enumerate() {
+            if let Some(Ok(Stages { feeder, own, tells })) = ready.stages.get(&Target::MSL) {
+                first.insert(index, stages.len());
+                stages.extend([feeder, own].into_iter().chain(tells).cloned());
+            }
+        }
+        let compiled = Compiled::new(stages).map_err(|missing| missing.reason)?;
+        Ok(Self { compiled, first })
+    }
+
+    fn draw(&self, index: usize, ready: &Ready<'_>) -> Result<(Targets, Targets), Diagnostic> {
+        let first = self.first[&index];
+        let outputs = &ready.runnable.unit.reflection.outputs;
+        let count =
+            outputs.iter().filter_map(|output| output.location).max().map_or(0, |last| last + 1);
+        ready.drawing(|drawing| {
+            let draw = |fragment, targets| {
+                let drawing = Drawing { targets, ..*drawing };
+                let frames = self.compiled.draw(first, Some(fragment), &drawing);
+                frames.map(|mut frames| frames.remove(0).targets)
+            };
+            let told =
+                ready.tells.as_ref().map(|tells| draw(first + 2, tells.targets)).transpose()?;
+            Ok((draw(first + 1, count)?, told.unwrap_or_default()))
+        })
+    }
+}
+
+/// Whether a unit is of a fragment stage.
+pub fn is_fragment(unit: &Unit) -> bool {
+    unit.reflection.stage == Stage::Fragment
+}

@@ -1,0 +1,41 @@
+//! `cargo xtask frames`: permutations of `forward`, drawn from the bytes that a bundle holds of
+//! each target, by the trials `frames/shipped` and `metal::frames` of the tests.
+
+use crate::{Failure, Outcome, test};
+
+const USAGE: &str = "usage: cargo xtask frames [--permutations N] [--target T[,T]]
+
+  --permutations N  how many of each language (all: 200 or more, with all pairs of values)
+  --target T        of spirv, glsl450, glsl330, essl300, hlsl, wgsl and msl (all)";
+
+/// Runs the trials; a picture that is wrong is exit code 3.
+pub fn run(arguments: &[String]) -> Outcome {
+    let (mut permutations, mut targets) = ("100000".to_owned(), Vec::new());
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        let value = rest.next().ok_or_else(|| Failure::usage(USAGE))?;
+        match argument.as_str() {
+            "--permutations" if value.parse::<usize>().is_ok() => permutations = value.clone(),
+            "--target" => targets.extend(value.split(',').map(str::to_owned)),
+            _ => return Err(Failure::usage(USAGE)),
+        }
+    }
+    // MSL has a trial of its own, which compiles many stages at a time and draws them all.
+    let msl = targets.is_empty() || targets.iter().any(|target| target == "msl");
+    let is_other = |target: &String| target != "msl";
+    let mut variables = vec![("LAMPLIGHT_FRAMES_PERMUTATIONS".to_owned(), permutations)];
+    let others: Vec<String> = targets.iter().filter(|one| is_other(one)).cloned().collect();
+    if !others.is_empty() {
+        variables.push(("LAMPLIGHT_FRAMES_TARGETS".to_owned(), others.join(",")));
+    }
+    if targets.is_empty() || !others.is_empty() {
+        trials("frames/shipped", &variables)?;
+    }
+    if msl { trials("metal::frames", &variables) } else { Ok(()) }
+}
+
+fn trials(name: &str, variables: &[(String, String)]) -> Outcome {
+    let command =
+        ["test", "--quiet", "--package", "lamplight", "--features", "store", "--test", "all"];
+    test::cargo_with(&command, &[name.to_owned(), "--nocapture".to_owned()], variables)
+}
