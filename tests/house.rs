@@ -147,8 +147,16 @@ const LEFTOVERS: [&str; 10] =
     [".new", ".orig", ".rej", ".bak", ".tmp", ".log", ".swp", ".profraw", ".spv", "~"];
 
 /// Files that are no text: pictures, and inputs that are wrong on purpose.
-const BINARIES: [&str; 5] = [
+const BINARIES: [&str; 13] = [
     ".png",
+    "shaderlib/tables/blue_noise.bin",
+    "shaderlib/tables/blue_noise.ktx2",
+    "shaderlib/tables/dfg.bin",
+    "shaderlib/tables/dfg.ktx2",
+    "shaderlib/tables/ltc.bin",
+    "shaderlib/tables/ltc.ktx2",
+    "shaderlib/tables/sheen.bin",
+    "shaderlib/tables/sheen.ktx2",
     "tests/regressions/bundle/valid",
     "tests/regressions/picture/valid",
     "tests/regressions/record/told",

@@ -55,6 +55,7 @@ mod shaderlib;
 mod shadow;
 mod snapshot;
 mod specialise;
+mod tables;
 mod traps;
 
 use std::process::ExitCode;
@@ -105,6 +106,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     shaderlib::trials,
     shadow::trials,
     specialise::trials,
+    tables::trials,
     traps::trials,
 ];
 

@@ -13,6 +13,7 @@ mod generate;
 mod machine;
 mod mutate;
 mod new;
+mod tables;
 mod test;
 mod validate;
 
@@ -75,6 +76,11 @@ const COMMANDS: &[Command] = &[
         "bench",
         "measure, beside peers where there are any: compose, eval, gen, load or scale",
         bench::run,
+    ),
+    (
+        "tables",
+        "make the tables that techniques read: blue noise, DFG, LTC, sheen (a minute): [NAME]...",
+        tables::run,
     ),
     (
         "faults",

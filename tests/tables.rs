@@ -1,0 +1,241 @@
+//! The tables of `shaderlib/tables`, checked by rules that do not share their generator's code.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use libtest_mimic::{Failed, Trial};
+
+type Outcome = Result<(), Failed>;
+type Direction = [f64; 3];
+
+const SIDE: usize = 64;
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("tables::files_agree", files_agree),
+        Trial::test("tables::dfg", dfg),
+        Trial::test("tables::sheen", sheen),
+        Trial::test("tables::ltc", ltc),
+        Trial::test("tables::blue_noise", blue_noise),
+    ]
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("shaderlib/tables")
+}
+
+/// The values of a table, so many to a cell.
+fn values(name: &str, channels: usize) -> Result<Vec<f64>, Failed> {
+    let bytes = fs::read(folder().join(format!("{name}.bin")))?;
+    if bytes.len() != 4 * channels * SIDE * SIDE {
+        return Err(format!("{name}.bin has {} bytes", bytes.len()).into());
+    }
+    let (words, _) = bytes.as_chunks::<4>();
+    Ok(words.iter().map(|word| f64::from(f32::from_le_bytes(*word))).collect())
+}
+
+/// The texture has the values of the `.bin`, and another reader takes it; the header tells the
+/// same number of channels.
+fn files_agree() -> Outcome {
+    let formats = [
+        ("blue_noise", 1, ktx2::Format::R32_SFLOAT),
+        ("dfg", 2, ktx2::Format::R32G32_SFLOAT),
+        ("ltc", 4, ktx2::Format::R32G32B32A32_SFLOAT),
+        ("sheen", 2, ktx2::Format::R32G32_SFLOAT),
+    ];
+    for (name, channels, format) in formats {
+        let bytes = fs::read(folder().join(format!("{name}.ktx2")))?;
+        let reader = ktx2::Reader::new(&bytes).map_err(|error| format!("{name}: {error:?}"))?;
+        let head = reader.header();
+        let size = [head.pixel_width, head.pixel_height].map(|side| side as usize);
+        let level = reader.levels().next().ok_or("no level")?;
+        let wanted = fs::read(folder().join(format!("{name}.bin")))?;
+        if head.format != Some(format) || size != [SIDE; 2] || level.data != wanted {
+            return Err(format!("{name}.ktx2 is not {name}.bin: {head:?}").into());
+        }
+        let text = fs::read_to_string(folder().join(format!("{name}.toml")))?;
+        let told: toml::Table = text.parse()?;
+        let listed = told.get("channels").and_then(|channels| channels.as_array()).map(Vec::len);
+        if listed != Some(channels) || told.get("error").is_none_or(|error| !error.is_str()) {
+            return Err(format!("{name}.toml does not describe the table: {text}").into());
+        }
+    }
+    Ok(())
+}
+
+/// A cell: its width of the lobe and its cosine of the viewer.
+fn cell(column: usize, row: usize) -> (f64, f64) {
+    let share = |index: usize| index as f64 / (SIDE - 1) as f64;
+    (share(column).powi(2), 1.0 - share(row).powi(2))
+}
+
+/// Cells whose lobes are wide enough for a rule over the light's directions.
+fn wide_cells() -> impl Iterator<Item = (usize, usize)> {
+    let columns = [24, 32, 40, 51, 63];
+    columns.into_iter().flat_map(|column| [0, 13, 29, 47, 57].map(|row| (column, row)))
+}
+
+fn viewer(nv: f64) -> Direction {
+    [(1.0 - nv * nv).sqrt(), 0.0, nv]
+}
+
+/// Middles of cells of the hemisphere that are equally large, half of a turn, with their size.
+fn directions() -> impl Iterator<Item = (Direction, f64)> {
+    let (rings, azimuths) = (300, 300);
+    (0..rings * azimuths).map(move |index| {
+        let z = (f64::from(index / azimuths) + 0.5) / f64::from(rings);
+        let azimuth = PI * (f64::from(index % azimuths) + 0.5) / f64::from(azimuths);
+        let s = (1.0 - z * z).sqrt();
+        ([s * azimuth.cos(), s * azimuth.sin(), z], 2.0 * PI / f64::from(rings * azimuths))
+    })
+}
+
+fn half(v: Direction, l: Direction) -> (f64, f64) {
+    let h = [v[0] + l[0], v[1] + l[1], v[2] + l[2]];
+    let length = h.iter().map(|part| part * part).sum::<f64>().sqrt();
+    (h[2] / length, (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]) / length)
+}
+
+/// GGX with Smith's correlated masking from its lambda, times the light's cosine.
+fn ggx(v: Direction, l: Direction, alpha: f64) -> f64 {
+    let (nh, _) = half(v, l);
+    let tan2 = (1.0 - nh * nh) / (nh * nh);
+    let distribution =
+        1.0 / (PI * alpha * alpha * nh.powi(4) * (1.0 + tan2 / (alpha * alpha)).powi(2));
+    let lambda = |z: f64| 0.5 * ((1.0 + alpha * alpha * (1.0 - z * z) / (z * z)).sqrt() - 1.0);
+    distribution / ((1.0 + lambda(v[2]) + lambda(l[2])) * 4.0 * v[2])
+}
+
+fn dfg() -> Outcome {
+    let table = values("dfg", 2)?;
+    for (column, row) in wide_cells() {
+        let (alpha, nv) = cell(column, row);
+        let v = viewer(nv);
+        let mut wanted = [0.0; 2];
+        for (l, size) in directions() {
+            let (_, vh) = half(v, l);
+            let (all, grazing) = (ggx(v, l, alpha) * size, (1.0 - vh).powi(5));
+            wanted = [wanted[0] + all * (1.0 - grazing), wanted[1] + all * grazing];
+        }
+        let start = 2 * (row * SIDE + column);
+        for (wanted, found) in wanted.iter().zip(&table[start..start + 2]) {
+            if (wanted - found).abs() > 5e-4 {
+                return Err(format!("{column}, {row}: {found}, not {wanted}").into());
+            }
+        }
+    }
+    // Nothing gives more light than arrives, and a mirror gives all of it.
+    let sums = table.chunks(2).map(|pair| pair[0] + pair[1]);
+    let most = sums.clone().fold(0.0, f64::max);
+    let mirror = sums.step_by(SIDE).take(SIDE - 1).fold(1.0, f64::min);
+    if most > 1.0 + 1e-4 || mirror < 0.999 {
+        return Err(format!("albedo up to {most}, of a mirror down to {mirror}").into());
+    }
+    Ok(())
+}
+
+fn sheen() -> Outcome {
+    let table = values("sheen", 2)?;
+    let curve = |x: f64, t: f64| {
+        let mix = |rough: f64, smooth: f64| rough * (1.0 - t) + smooth * t;
+        mix(21.5473, 25.3245) / (1.0 + mix(3.82987, 3.32435) * x.powf(mix(0.19823, 0.16801)))
+            + mix(-1.97760, -1.27393) * x
+            + mix(-4.32054, -4.85967)
+    };
+    let lambda = |z: f64, alpha: f64| {
+        let t = (1.0 - alpha).powi(2);
+        if z < 0.5 { curve(z, t).exp() } else { (2.0 * curve(0.5, t) - curve(1.0 - z, t)).exp() }
+    };
+    for (column, row) in wide_cells() {
+        let (alpha, nv) = cell(column, row);
+        let v = viewer(nv);
+        let mut wanted = [0.0; 2];
+        for (l, size) in directions() {
+            let (nh, _) = half(v, l);
+            let sine = (1.0 - nh * nh).max(0.0).sqrt();
+            let cloth = (2.0 + 1.0 / alpha) * sine.powf(1.0 / alpha) / (2.0 * PI) * size;
+            let (nl, masked) = (l[2], 1.0 + lambda(l[2], alpha) + lambda(nv, alpha));
+            wanted[0] += cloth * nl / (4.0 * (nl + nv - nl * nv));
+            wanted[1] += cloth / (masked * 4.0 * nv);
+        }
+        let start = 2 * (row * SIDE + column);
+        for (wanted, found) in wanted.iter().zip(&table[start..start + 2]) {
+            if (wanted - found).abs() > 2e-3 * (1.0 + wanted) {
+                return Err(format!("{column}, {row}: {found}, not {wanted}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A fitted lobe has the place and the shape of the one it stands for.
+fn ltc() -> Outcome {
+    let (table, albedos) = (values("ltc", 4)?, values("dfg", 2)?);
+    for (column, row) in wide_cells() {
+        let (alpha, nv) = cell(column, row);
+        let (v, index) = (viewer(nv), row * SIDE + column);
+        let albedo = albedos[2 * index] + albedos[2 * index + 1];
+        let [a, b, c, d] = [0, 1, 2, 3].map(|part| table[4 * index + part]);
+        let (mut apart, mut means) = (0.0, [[0.0; 3]; 2]);
+        for (l, size) in directions() {
+            let original = [a * l[0] + c * l[2], l[1], b * l[0] + d * l[2]];
+            let length = original.iter().map(|part| part * part).sum::<f64>().sqrt();
+            let fit = albedo * original[2].max(0.0) / PI * (a * d - b * c) / length.powi(4);
+            let wanted = ggx(v, l, alpha);
+            apart += (fit - wanted).abs() * size;
+            for (mean, value) in means.iter_mut().zip([wanted, fit]) {
+                *mean = [0, 1, 2].map(|i| mean[i] + l[i] * value * size);
+            }
+        }
+        let [wanted, fit] = means.map(|mean| f64::atan2(mean[0], mean[2]));
+        let misplaced = 0.5 * apart / albedo;
+        if misplaced > 0.21 || (wanted - fit).abs() > 0.2 {
+            return Err(format!(
+                "{column}, {row}: {misplaced:.3} of the light elsewhere, its mean off by {:.3} rad",
+                (wanted - fit).abs()
+            )
+            .into());
+        }
+    }
+    // Smooth lobes seen from above are narrow: the inverse widens them to a cosine.
+    let from_above = |column: usize| table[4 * column];
+    let widths: Vec<f64> = (1..SIDE).map(from_above).collect();
+    if widths.is_sorted_by(|smooth, rough| smooth >= rough) {
+        Ok(())
+    } else {
+        Err(format!("widths seen from above are not in order: {widths:?}").into())
+    }
+}
+
+/// Every rank is there once, and the cells below a threshold have hardly any low frequencies.
+fn blue_noise() -> Outcome {
+    let table = values("blue_noise", 1)?;
+    let count = SIDE * SIDE;
+    let mut ranks: Vec<usize> = table.iter().map(|rank| (rank * count as f64) as usize).collect();
+    let low = |threshold: f64| {
+        let power = |x: usize, y: usize| {
+            let (mut re, mut im) = (0.0, 0.0);
+            for index in (0..count).filter(|index| table[*index] < threshold) {
+                let turn =
+                    2.0 * PI * (x * (index % SIDE) + y * (index / SIDE)) as f64 / SIDE as f64;
+                (re, im) = (re + turn.cos(), im + turn.sin());
+            }
+            re * re + im * im
+        };
+        let frequencies = [(1, 0), (0, 1), (1, 1), (2, 1), (1, 3), (4, 0), (0, 4), (3, 3)];
+        let sum: f64 = frequencies.iter().map(|(x, y)| power(*x, *y)).sum();
+        // Of cells that are chosen at random.
+        let white = count as f64 * threshold * (1.0 - threshold);
+        sum / frequencies.len() as f64 / white
+    };
+    let shares = [0.1, 0.25, 0.5, 0.75].map(low);
+    ranks.sort_unstable();
+    if ranks != (0..count).collect::<Vec<_>>() {
+        return Err("the ranks are no permutation".into());
+    }
+    if shares.iter().any(|share| *share > 0.1) {
+        return Err(format!("low frequencies have {shares:?} of white noise's power").into());
+    }
+    Ok(())
+}

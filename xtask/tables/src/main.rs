@@ -1,0 +1,214 @@
+//! The tables that techniques read, from first principles: `cargo xtask tables`.
+//!
+//! Each table becomes `NAME.bin` (32-bit floats, little-endian, row by row), `NAME.ktx2` (the same
+//! as a texture) and `NAME.toml` (what it is, and how far off it is at most). Columns are of
+//! perceptual roughness, rows of the viewer's cosine, as `lighting::area::ltc_uv` reads them.
+
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod dfg;
+mod ktx2;
+mod ltc;
+mod noise;
+mod quadrature;
+mod sheen;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Cells along each side.
+pub const SIDE: usize = 64;
+
+/// Smoother surfaces than this are mirrors for every table.
+pub const LEAST_ALPHA: f64 = 1e-4;
+
+/// One table.
+pub struct Table {
+    pub name: &'static str,
+    pub about: &'static str,
+    pub source: &'static str,
+    /// What each channel is.
+    pub channels: &'static [&'static str],
+    make: fn() -> Vec<Vec<f64>>,
+    /// The worst error over all cells, in words, from the values as they are shipped.
+    error: fn(&[f32]) -> String,
+}
+
+const TABLES: &[Table] = &[
+    Table {
+        name: "blue_noise",
+        about: "Ranks of the cells of a square that repeats: the cells below any threshold are spread evenly",
+        source: "Ulichney, \"The Void-and-Cluster Method for Dither Array Generation\", 1993",
+        channels: &["rank over the number of cells, in (0, 1)"],
+        make: noise::rows,
+        error: |_| "none: every rank is there once".to_owned(),
+    },
+    Table {
+        name: "dfg",
+        about: "Directional albedo of GGX with Smith's correlated visibility: f0 times the first, plus f90 times the second",
+        source: "Karis, \"Real Shading in Unreal Engine 4\", 2013; Heitz, \"Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs\", 2014, equation 99",
+        channels: &["scale of f0, in [0, 1]", "scale of f90, in [0, 1]"],
+        make: || cells(dfg::cell),
+        error: |values| worst(values, |at| dfg::albedo(at.nv(), at.alpha(), 200).to_vec()),
+    },
+    Table {
+        name: "ltc",
+        about: "Linearly transformed cosines of that lobe without Fresnel's term: what `lighting::area::ltc_matrix` takes",
+        source: "Heitz, Dupuy, Hill, Neubelt, \"Real-Time Polygonal-Light Shading with Linearly Transformed Cosines\", 2016",
+        channels: &[
+            "inverse matrix: x of the first column",
+            "z of the first column",
+            "x of the third column",
+            "z of the third column",
+        ],
+        make: ltc::rows,
+        error: misplaced,
+    },
+    Table {
+        name: "sheen",
+        about: "Directional albedo of cloth: Charlie's distribution with either visibility",
+        source: "Estevez, Kulla, \"Production Friendly Microfacet Sheen BRDF\", 2017",
+        channels: &["with `v_neubelt`", "with `v_charlie`"],
+        make: || cells(sheen::cell),
+        error: |values| worst(values, |at| sheen::albedo(at.nv(), at.alpha(), 200).to_vec()),
+    },
+];
+
+/// A cell: its column is of a roughness, its row of a viewer.
+#[derive(Debug, Clone, Copy)]
+pub struct Cell {
+    column: usize,
+    row: usize,
+}
+
+impl Cell {
+    /// In the order of the values.
+    fn index(self) -> usize {
+        self.row * SIDE + self.column
+    }
+
+    /// The width of the lobe: the square of the perceptual roughness.
+    pub fn alpha(self) -> f64 {
+        (share(self.column) * share(self.column)).max(LEAST_ALPHA)
+    }
+
+    /// Cosine between the normal and the viewer, [1e-4, 1].
+    pub fn nv(self) -> f64 {
+        (1.0 - share(self.row) * share(self.row)).max(1e-4)
+    }
+}
+
+/// Texel centres are read at the ends of both ranges.
+fn share(index: usize) -> f64 {
+    index as f64 / (SIDE - 1) as f64
+}
+
+fn cells(of: fn(Cell) -> Vec<f64>) -> Vec<Vec<f64>> {
+    by_rows(&of)
+}
+
+/// Something of every cell, a part of the rows on each core.
+fn by_rows<T: Send>(of: &(dyn Fn(Cell) -> T + Sync)) -> Vec<T> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let rows: Vec<usize> = (0..SIDE).collect();
+    let part = |rows: &[usize]| -> Vec<T> {
+        let cells = rows.iter().flat_map(|row| (0..SIDE).map(|column| Cell { column, row: *row }));
+        cells.map(of).collect()
+    };
+    std::thread::scope(|scope| {
+        let parts: Vec<_> =
+            rows.chunks(SIDE.div_ceil(cores)).map(|rows| scope.spawn(move || part(rows))).collect();
+        parts.into_iter().flat_map(|part| part.join().unwrap_or_default()).collect()
+    })
+}
+
+/// The largest difference of a shipped value from a finer rule's.
+fn worst(values: &[f32], finer: fn(Cell) -> Vec<f64>) -> String {
+    let wanted = by_rows(&finer).into_iter().flatten();
+    let apart = values.iter().zip(wanted).map(|(found, wanted)| (f64::from(*found) - wanted).abs());
+    let most = apart.fold(0.0, f64::max);
+    format!("at most {most:.1e}, against a rule with more than twice as many nodes")
+}
+
+/// The share of light that the fits put elsewhere: the largest, and the mean.
+fn misplaced(values: &[f32]) -> String {
+    let share = |at: Cell| {
+        let start = 4 * at.index();
+        let numbers = [0, 1, 2, 3].map(|i| f64::from(values[start + i]));
+        let [scale, offset] = dfg::albedo(at.nv(), at.alpha(), 96);
+        ltc::misplaced(numbers, scale + offset, at)
+    };
+    let shares = by_rows(&share);
+    let most = |shares: &[f64]| 100.0 * shares.iter().copied().fold(0.0, f64::max);
+    let mean = 100.0 * shares.iter().sum::<f64>() / shares.len() as f64;
+    format!(
+        "of a lobe's light {mean:.1} % lies elsewhere in the fit on average, at most {:.1} %, and {:.1} % \
+         in the last row, of a viewer on the horizon",
+        most(&shares[..SIDE * (SIDE - 1)]),
+        most(&shares[SIDE * (SIDE - 1)..])
+    )
+}
+
+/// The description beside a table.
+fn header(table: &Table, error: &str) -> String {
+    let channels: Vec<String> =
+        table.channels.iter().map(|channel| format!("    {channel:?},\n")).collect();
+    format!(
+        "# Made by `cargo xtask tables`.\n\nname = {:?}\nabout = {:?}\nsource = {:?}\n\
+         licence = \"MIT OR Apache-2.0\"\nsize = [{SIDE}, {SIDE}]\nformat = \"f32, little-endian, row by row\"\n\
+         channels = [\n{}]\nerror = {error:?}\n",
+        table.name,
+        table.about,
+        table.source,
+        channels.concat()
+    )
+}
+
+/// Writes a file beside its place, and renames it.
+fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let beside = path.with_extension("new");
+    let mut file = std::fs::File::create(&beside)?;
+    file.write_all(bytes)?;
+    file.sync_all()?;
+    std::fs::rename(beside, path)
+}
+
+/// Makes one table and writes its files.
+fn make(folder: &Path, table: &Table) -> Result<(), String> {
+    let values: Vec<f32> = (table.make)().into_iter().flatten().map(|value| value as f32).collect();
+    let error = (table.error)(&values);
+    let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let texture = ktx2::file(table, &values).ok_or("no format has so many channels")?;
+    let files = [("bin", bytes), ("ktx2", texture), ("toml", header(table, &error).into_bytes())];
+    for (extension, bytes) in files {
+        let path = folder.join(format!("{}.{extension}", table.name));
+        write(&path, &bytes).map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    println!("{}: {error}", table.name);
+    Ok(())
+}
+
+/// `FOLDER [NAME]...`: writes all tables, or those that are named.
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let Some(folder) = arguments.next().map(PathBuf::from) else {
+        eprintln!("usage: lamplight-tables FOLDER [NAME]...");
+        return ExitCode::from(2);
+    };
+    let names: Vec<String> = arguments.collect();
+    if let Some(name) = names.iter().find(|name| TABLES.iter().all(|table| table.name != **name)) {
+        let known: Vec<&str> = TABLES.iter().map(|table| table.name).collect();
+        eprintln!("there is no table `{name}`; there are: {}", known.join(", "));
+        return ExitCode::from(2);
+    }
+    let is_wanted =
+        |table: &&Table| names.is_empty() || names.iter().any(|name| name == table.name);
+    for table in TABLES.iter().filter(is_wanted) {
+        if let Err(reason) = make(&folder, table) {
+            eprintln!("{reason}");
+            return ExitCode::from(1);
+        }
+    }
+    ExitCode::SUCCESS
+}
