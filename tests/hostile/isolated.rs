@@ -61,8 +61,9 @@ fn refused(large: &str, kib: u64, words: &str) -> Outcome {
     fails(&alone, 0, "SV_Target0")
 }
 
+/// Of time or of memory: which of the two ends first depends on the machine.
 fn too_long() -> Outcome {
-    refused(&indices(9, 8000), 4 << 20, "naga takes more than 5 seconds over this shader")
+    refused(&indices(9, 8000), 4 << 20, "naga takes more")
 }
 
 fn too_much() -> Outcome {
