@@ -24,7 +24,7 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 9] = [
+    let cases: [Case; 10] = [
         ("forward_alone_and_together", forward),
         ("traps_alone_and_together", traps),
         ("names_alone_and_together", names),
@@ -34,6 +34,7 @@ pub fn trials() -> Vec<Trial> {
         ("an_entry_point_called_like_others", entry_points),
         ("names_of_hlsl_and_glsl", kept_names),
         ("functions_that_old_glsl_lacks", lacking),
+        ("arrays_of_matrices_of_two_rows", matrices_of_two_rows),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("link::{name}"), case)).collect()
 }
@@ -492,6 +493,27 @@ fn gl_1(x: f32) -> f32 { let gl = x; return gl; }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
     judged(text, "").map(|_| ())
+}
+
+/// HLSL has a structure for such a matrix in another structure, whose name stands at its end.
+fn matrices_of_two_rows() -> Outcome {
+    let text = "
+struct Turns { all: array<mat3x2f, 4>, one: mat4x2f }
+var<private> turns: Turns;
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    turns.one = mat4x2f(at, at, at, at);
+    return vec4f(turns.one * at.xyxy, at);
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    let made = judged(text, "")?;
+    let whole = units(&made).into_values().filter_map(|unit| unit.targets.get("hlsl"));
+    let texts: Vec<String> =
+        whole.map(|artifact| String::from_utf8_lossy(&artifact.bytes).into_owned()).collect();
+    match texts.iter().any(|text| text.contains("} __mat3x2_f32;")) {
+        true => Ok(()),
+        false => Err(format!("the structure lacks its name: {texts:?}").into()),
+    }
 }
 
 /// A function that GLSL 3.30 lacks is refused in its line, for those targets alone.

@@ -44,6 +44,8 @@ fn header(text: &str) -> usize {
 
 /// Bytes of the declaration that a text begins with, the semicolon after its brackets too.
 fn length(text: &str) -> Option<usize> {
+    // The name of a structure without one of its own stands behind its brackets.
+    let names_what_it_holds = text.starts_with("typedef ");
     let mut depth = 0_usize;
     for (at, byte) in text.bytes().enumerate() {
         match byte {
@@ -54,7 +56,7 @@ fn length(text: &str) -> Option<usize> {
         if depth == 0 && byte == b';' {
             return Some(at + 1);
         }
-        if depth == 0 && byte == b'}' {
+        if depth == 0 && byte == b'}' && !names_what_it_holds {
             let after = &text[at + 1..];
             let blanks = after.len() - after.trim_start().len();
             return Some(if after.trim_start().starts_with(';') {
@@ -78,6 +80,7 @@ fn declaration(text: &str) -> Result<Declared<'_>, String> {
             let kind = if has("struct") { Kind::Type } else { Kind::Global };
             (kind, last)
         }
+        b'{' if has("typedef") => (Kind::Type, words(text).last().map(|word| word.text)),
         _ if has("typedef") || has("alias") => (Kind::Type, last),
         b'(' => (Kind::Function, last),
         // A block of uniforms is called by the name of its instance.
