@@ -1,10 +1,11 @@
 //! An output of a canonical text, divided: what is the unit's own, and what it shares.
 
 use std::collections::{BTreeSet, HashMap};
-use std::hash::{BuildHasherDefault, Hash, Hasher};
+use std::hash::{Hash, Hasher};
+
+use rustc_hash::FxHashMap;
 
 use super::mark::{self, Mark, SCRATCH};
-use super::mixer::Mixer;
 use super::reason::Reason;
 use super::text::{self, Declared};
 use super::words::words;
@@ -110,7 +111,7 @@ fn share(
     bound: &BTreeSet<&str>,
     names: &[String],
 ) -> Result<Vec<Shared>, Reason> {
-    let mut by_name: HashMap<&str, Vec<usize>, BuildHasherDefault<Mixer>> = HashMap::default();
+    let mut by_name: FxHashMap<&str, Vec<usize>> = FxHashMap::default();
     for index in shared {
         by_name.entry(declared[*index].name).or_default().push(*index);
     }

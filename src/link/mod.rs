@@ -46,7 +46,6 @@ mod canonical;
 mod compile;
 mod cut;
 mod mark;
-mod mixer;
 mod module;
 mod names;
 mod outline;

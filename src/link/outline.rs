@@ -1,12 +1,12 @@
 //! The declarations of a lean text, in the order in which its functions can be translated.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
-use std::hash::BuildHasherDefault;
+use std::collections::BTreeSet;
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use naga::ShaderStage;
 
 use super::mark;
-use super::mixer::Mixer;
 use super::reason::Reason;
 use super::words::words;
 use crate::bundle::{Language, Stage};
@@ -56,7 +56,7 @@ pub struct Outline<'a> {
     /// The structure that the entry point returns.
     pub interface: Option<usize>,
     /// All but functions by their names.
-    named: HashMap<&'a str, usize, BuildHasherDefault<Mixer>>,
+    named: FxHashMap<&'a str, usize>,
 }
 
 impl<'a> Outline<'a> {
@@ -120,8 +120,8 @@ impl<'a> Outline<'a> {
 }
 
 /// The first declaration of each name, functions left out.
-fn named<'a>(declared: &[Declaration<'a>]) -> HashMap<&'a str, usize, BuildHasherDefault<Mixer>> {
-    let mut named = HashMap::default();
+fn named<'a>(declared: &[Declaration<'a>]) -> FxHashMap<&'a str, usize> {
+    let mut named = FxHashMap::default();
     for (index, declaration) in declared.iter().enumerate() {
         if declaration.kind != PartKind::Function {
             for name in declaration.names {
@@ -177,7 +177,7 @@ fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
     for (number, (index, _)) in kept.iter().enumerate() {
         numbers[*index] = number;
     }
-    let mut functions: HashSet<&String, BuildHasherDefault<Mixer>> = HashSet::default();
+    let mut functions: FxHashSet<&String> = FxHashSet::default();
     // Few texts have any, so that most need not look for it in each declaration.
     let asks_line = lean.language == Language::Glsl && lean.text.contains("__LINE__");
     for (_, part) in &kept {

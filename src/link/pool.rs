@@ -1,11 +1,10 @@
 //! Units in every target, each once, and texts put together from them.
 
+use rustc_hash::FxHashMap;
 use std::collections::{BTreeSet, HashMap};
-use std::hash::BuildHasherDefault;
 use std::sync::Arc;
 
 use super::cut::Cut;
-use super::mixer::Mixer;
 use super::outline::Key;
 use super::reason::Reason;
 use super::spirv;
@@ -129,7 +128,7 @@ impl Pool {
         entry: &spirv::Piece,
         index: usize,
     ) -> Result<Vec<u8>, Reason> {
-        let mut named: HashMap<&str, &spirv::Piece, BuildHasherDefault<Mixer>> = HashMap::default();
+        let mut named: FxHashMap<&str, &spirv::Piece> = FxHashMap::default();
         for (name, unit) in &parts.functions {
             if let Piece::Words { piece, .. } = piece(unit, index)? {
                 named.insert(name, piece);

@@ -124,7 +124,7 @@ fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
 }
 
 /// All that a WESL module declares; of GLSL also what it includes, since only that shows it whole.
-fn options(graph: &Graph, path: &str) -> Options {
+pub fn options(graph: &Graph, path: &str) -> Options {
     let stem = path.strip_suffix(".glsl").unwrap_or(path);
     let has_stage = [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending));
     let keep = match graph {
@@ -134,7 +134,8 @@ fn options(graph: &Graph, path: &str) -> Options {
     Options { keep, ..Options::default() }
 }
 
-fn text(graph: &Graph, composed: &Composed) -> Diagnostics {
+/// What is wrong with a composed text: the warnings it was composed with, then what naga says.
+pub fn text(graph: &Graph, composed: &Composed) -> Diagnostics {
     let warnings = graph.own(composed.warnings.clone());
     match validate::every(composed) {
         Ok(validated) => {

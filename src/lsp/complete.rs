@@ -8,7 +8,7 @@ use super::package::Modules;
 use super::place::{self, Lines};
 use super::{Server, act};
 use crate::catalogue::Kind;
-use crate::parse::wesl::{ItemKind, Name};
+use crate::parse::wesl::{ItemKind, Name, keywords};
 use crate::permute::Setting;
 use crate::source::Files;
 
@@ -21,32 +21,6 @@ const VALUE: u32 = 12;
 const KEYWORD: u32 = 14;
 const CONSTANT: u32 = 21;
 const STRUCT: u32 = 22;
-
-const KEYWORDS: &[&str] = &[
-    "alias",
-    "break",
-    "case",
-    "const",
-    "const_assert",
-    "continue",
-    "continuing",
-    "default",
-    "discard",
-    "else",
-    "enable",
-    "fn",
-    "for",
-    "if",
-    "import",
-    "let",
-    "loop",
-    "override",
-    "return",
-    "struct",
-    "switch",
-    "var",
-    "while",
-];
 
 /// `textDocument/completion`.
 pub fn completion(server: &mut Server, parameters: &Value) -> Result<Value, String> {
@@ -271,7 +245,7 @@ fn names(
     for name in naga::keywords::wgsl::BUILTIN_IDENTIFIERS.iter().copied() {
         add(name, entry(name, FUNCTION, "built in"));
     }
-    for name in KEYWORDS {
+    for name in keywords() {
         add(name, entry(name, KEYWORD, "keyword"));
     }
     Value::Array(found)

@@ -6,13 +6,12 @@ use std::ops::Range;
 
 use super::package::Opened;
 
-use crate::compose::{self, Keep, Options};
+use crate::compose::{self, Options};
 use crate::diagnostic::Diagnostics;
 use crate::lint;
 use crate::parse::wesl::Event;
 use crate::permute::{Program, Setting, Settings};
 use crate::resolve::{self, Graph};
-use crate::validate;
 
 /// What was chosen for a package, by axis or feature.
 pub type Choice = BTreeMap<String, Setting>;
@@ -56,27 +55,11 @@ pub fn problems(graph: &Graph, settings: &Settings, path: &str) -> Diagnostics {
     let mut found = graph.undeclared(settings);
     // What nothing declares is told on its own; what else is wrong is looked for without it.
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
-    match compose::compose(graph, &settings, &options(graph, path)) {
-        Ok(composed) => {
-            found.extend(graph.own(composed.warnings.clone()));
-            match validate::every(&composed) {
-                Ok(validated) => found.extend(graph.own(validate::lint(&composed, &validated))),
-                Err(errors) => found.extend(errors),
-            }
-        }
+    match compose::compose(graph, &settings, &lint::options(graph, path)) {
+        Ok(composed) => found.extend(lint::text(graph, &composed)),
         Err(errors) => found.extend(errors),
     }
     found
-}
-
-fn options(graph: &Graph, path: &str) -> Options {
-    let stem = path.strip_suffix(".glsl").unwrap_or(path);
-    let has_stage = [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending));
-    let keep = match graph {
-        Graph::Glsl(_) if has_stage => Keep::All,
-        _ => Keep::Root,
-    };
-    Options { keep, ..Options::default() }
 }
 
 /// The composed text of a module, as an entry point's lens opens it.

@@ -28,9 +28,11 @@ pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subje
     let mut subjects = Vec::new();
     let (files, named): (Vec<&String>, Vec<&String>) =
         arguments.subjects.iter().partition(|name| is_file(name));
-    let (paths, keys) = parted(arguments, named)?;
+    let modules = catalogue::library();
+    let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
+    let (paths, keys) = parted(arguments, &items, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
-        functions(&paths, language(arguments), &mut subjects)?;
+        functions(&items, &paths, language(arguments), &mut subjects)?;
     }
     for key in keys {
         subjects.push(permutation(arguments, key)?);
@@ -41,24 +43,21 @@ pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subje
     Ok(subjects)
 }
 
-/// Paths of the library, and keys: what has a sign of a key in it, or is no path of the library
-/// and the name of an axis of the program.
+/// Paths of the library, and keys: what has a sign of a key in it, or is one word that is no path of
+/// the library and an axis of the program.
 fn parted<'a>(
     arguments: &Arguments,
+    items: &[&Item],
     named: Vec<&'a String>,
 ) -> Result<(Vec<&'a String>, Vec<&'a String>), Failure> {
-    let modules = catalogue::library();
-    let items: Vec<String> =
-        modules.iter().flat_map(|module| &module.items).map(Item::path).collect();
-    let is_path = |name: &str| items.iter().any(|path| is_below(path, name));
-    let is_plain = |name: &str| !name.contains(['=', ',']);
-    let axes = match named.iter().any(|name| is_plain(name) && !is_path(name)) {
+    let is_path = |name: &str| items.iter().any(|item| is_below(&item.path(), name));
+    let is_plain = |name: &str| !name.contains(['=', ',', ':']) && !is_path(name);
+    let axes = match named.iter().any(|name| is_plain(name)) {
         true => axes(arguments)?,
         false => Vec::new(),
     };
-    let is_key = |name: &str| {
-        !is_plain(name) || !is_path(name) && (name == DEFAULT || axes.iter().any(|a| a == name))
-    };
+    let is_axis = |name: &str| name == DEFAULT || axes.iter().any(|axis| axis == name);
+    let is_key = |name: &str| name.contains(['=', ',']) || is_plain(name) && is_axis(name);
     Ok(named.into_iter().partition(|name| !is_key(name)))
 }
 
@@ -128,14 +127,14 @@ fn shaders(
 
 /// The subjects of functions, modules and folders; of all functions where none is named.
 fn functions(
+    items: &[&Item],
     paths: &[&String],
     language: Language,
     subjects: &mut Vec<Subject>,
 ) -> Result<(), Failure> {
     let library = Library::embedded();
-    let modules = catalogue::library();
-    let items = || modules.iter().flat_map(|module| &module.items);
-    let functions: Vec<_> = items().filter(|item| item.kind == Kind::Function).collect();
+    let functions: Vec<&Item> =
+        items.iter().copied().filter(|item| item.kind == Kind::Function).collect();
     for named in paths {
         if !functions.iter().any(|item| is_below(&item.path(), named)) {
             let known: Vec<String> = functions.iter().map(|item| item.path()).collect();

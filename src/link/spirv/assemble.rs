@@ -2,9 +2,10 @@
 
 use super::capabilities::{SHADER, extensions};
 use super::operands::op;
-use super::{DEPTH, HEADER, MEMORY_MODEL, Mixer, Piece, Pool, Ref, SHELVES, Shelf, Text};
-use std::collections::{BTreeSet, HashMap};
-use std::hash::BuildHasherDefault;
+use super::{DEPTH, HEADER, MEMORY_MODEL, Piece, Pool, Ref, SHELVES, Shelf, Text};
+use std::collections::BTreeSet;
+
+use rustc_hash::FxHashMap;
 
 /// A piece that the new module has.
 struct Node<'n> {
@@ -28,7 +29,7 @@ struct Linker<'n, 'a> {
     links: Vec<u32>,
     /// The node of each declaration of the pool, plus one.
     declarations: Vec<u32>,
-    users: HashMap<&'n str, u32, BuildHasherDefault<Mixer>>,
+    users: FxHashMap<&'n str, u32>,
 }
 
 impl<'n, 'a: 'n> Linker<'n, 'a> {
@@ -147,7 +148,7 @@ pub fn assemble<'a>(
         nodes: vec![],
         links: vec![],
         declarations,
-        users: HashMap::default(),
+        users: FxHashMap::default(),
     };
     linker.visit(entry, Shelf::Function, 0)?;
     let bound = linker.number();

@@ -15,10 +15,7 @@ mod split;
 pub use assemble::assemble;
 pub use split::split;
 
-use std::collections::HashMap;
-use std::hash::BuildHasherDefault;
-
-use super::mixer::Mixer;
+use rustc_hash::FxHashMap;
 
 /// Magic number, version 1.0 and the generator number: other writers lay their modules out otherwise.
 const HEADER: [u32; 3] = [0x0723_0203, 0x0001_0000, 28];
@@ -103,7 +100,7 @@ struct Declaration {
 pub struct Pool {
     declarations: Vec<Declaration>,
     /// The numbers of the declarations, by flat content.
-    numbers: HashMap<Box<[u32]>, u32, BuildHasherDefault<Mixer>>,
+    numbers: FxHashMap<Box<[u32]>, u32>,
 }
 
 impl Pool {

@@ -21,7 +21,7 @@ pub use module::{
     Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import,
     Item, ItemKind, LocalUse, Module, Operand, Origin, Parts, Path, Reference,
 };
-pub use name::{Name, Names, is_keyword};
+pub use name::{Name, Names, is_keyword, keywords};
 
 use std::sync::Arc;
 

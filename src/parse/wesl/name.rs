@@ -1,12 +1,19 @@
 //! Identifiers as numbers, so that comparing and indexing by them costs nothing.
 
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
 
 /// An interned identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Name(pub u32);
+
+/// Words that begin or divide a statement or a declaration: what an editor offers.
+pub fn keywords() -> impl Iterator<Item = &'static str> {
+    const NOT_OFFERED: [&str; 5] = ["_", "diagnostic", "false", "requires", "true"];
+    let words = WORDS[..=Name::IMPORT.0 as usize].iter().copied();
+    words.filter(|word| !NOT_OFFERED.contains(word))
+}
 
 /// Keywords of WGSL and the words WESL gives a meaning, interned first and in this order.
 const WORDS: &[&str] = &[
@@ -94,12 +101,13 @@ impl Name {
 #[derive(Debug, Clone)]
 pub struct Names {
     texts: Vec<Arc<str>>,
-    numbers: HashMap<Arc<str>, Name, BuildHasherDefault<Fnv>>,
+    // Limits bound what a hostile file can do with collisions.
+    numbers: FxHashMap<Arc<str>, Name>,
 }
 
 impl Default for Names {
     fn default() -> Self {
-        let mut names = Self { texts: Vec::new(), numbers: HashMap::default() };
+        let mut names = Self { texts: Vec::new(), numbers: FxHashMap::default() };
         for word in WORDS {
             names.intern(word);
         }
@@ -138,27 +146,5 @@ impl Names {
     /// Never: the keywords are there from the start.
     pub fn is_empty(&self) -> bool {
         self.texts.is_empty()
-    }
-}
-
-/// FNV-1a: identifiers are short, and limits bound what a hostile file can do with collisions.
-#[derive(Debug)]
-pub struct Fnv(u64);
-
-impl Default for Fnv {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Hasher for Fnv {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
     }
 }
