@@ -2,6 +2,7 @@
 
 use super::Session;
 use super::gpu::{self, Api, OpenGl};
+use super::web::{self, Web};
 use crate::bundle::Target;
 
 /// An executor, closed.
@@ -26,7 +27,7 @@ pub struct Entry {
 /// Opens a session.
 pub type Open = fn() -> Result<Box<dyn Session>, Unavailable>;
 
-/// A target, and what opens a session that draws its files as they are. Each target has one
+/// A target, and what opens a session that draws its files as they are. Each target has an
 /// executor that does.
 pub struct Shipping {
     pub target: Target,
@@ -76,6 +77,14 @@ fn opened_opengl(api: Api, target: Target) -> Result<Box<dyn Session>, Unavailab
     }
 }
 
+/// A session in a page of a browser.
+fn opened_page(api: web::Api) -> Result<Box<dyn Session>, Unavailable> {
+    match Web::open(api) {
+        Ok(web) => Ok(Box::new(web)),
+        Err(reason) => Err(Unavailable { reason }),
+    }
+}
+
 include!(concat!(env!("OUT_DIR"), "/executors.rs"));
 
 /// Prepares the process for executors. Call this while it has one thread.
@@ -86,10 +95,10 @@ pub fn prepare(entries: &[&Entry]) {
     entries.iter().filter_map(|entry| entry.before_threads).for_each(|prepare| prepare());
 }
 
-/// The executor that draws a target's files as they are.
-pub fn shipping(target: Target) -> Option<(&'static Entry, &'static Shipping)> {
-    let mut all = ALL.iter().filter_map(|entry| Some((*entry, entry.shipping.as_ref()?)));
-    all.find(|(_, shipping)| shipping.target == target)
+/// The executors that draw a target's files as they are.
+pub fn shipping(target: Target) -> impl Iterator<Item = (&'static Entry, &'static Shipping)> {
+    let all = ALL.iter().filter_map(|entry| Some((*entry, entry.shipping.as_ref()?)));
+    all.filter(move |(_, shipping)| shipping.target == target)
 }
 
 /// Tells Mesa's layers that there is no window system, where there is none: they look for Wayland in
