@@ -56,6 +56,7 @@ mod shadow;
 mod snapshot;
 mod specialise;
 mod tables;
+mod toolchain;
 mod traps;
 
 use std::process::ExitCode;
@@ -107,6 +108,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     shadow::trials,
     specialise::trials,
     tables::trials,
+    toolchain::trials,
     traps::trials,
 ];
 

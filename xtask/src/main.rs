@@ -13,6 +13,7 @@ mod generate;
 mod machine;
 mod mutate;
 mod new;
+mod site;
 mod tables;
 mod test;
 mod validate;
@@ -96,6 +97,11 @@ const COMMANDS: &[Command] = &[
         "frames",
         "draw permutations of `forward` from the bytes of every target: [--permutations N] [--target T]",
         frames::run,
+    ),
+    (
+        "site",
+        "the toolchain as WebAssembly (target/toolchain/) and the site: [--toolchain] [--quick]",
+        site::run,
     ),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];
