@@ -175,6 +175,9 @@ pub mod validate;
 
 #[cfg(feature = "harness")]
 #[doc(hidden)]
+pub mod browser;
+#[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod catalogue;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
