@@ -177,6 +177,9 @@ pub mod validate;
 
 #[cfg(feature = "harness")]
 #[doc(hidden)]
+pub mod browser;
+#[cfg(feature = "harness")]
+#[doc(hidden)]
 pub mod catalogue;
 #[cfg(all(feature = "harness", not(target_family = "wasm")))]
 #[doc(hidden)]

@@ -9,6 +9,7 @@
     clippy::wrong_self_convention
 )]
 
+mod browser;
 mod bundle;
 mod catalogue;
 mod compose_glsl;
@@ -64,6 +65,7 @@ use std::process::ExitCode;
 use libtest_mimic::{Arguments, Trial};
 
 const KINDS: &[fn() -> Vec<Trial>] = &[
+    browser::trials,
     bundle::trials,
     catalogue::trials,
     compose_glsl::trials,

@@ -28,7 +28,7 @@ const NEEDS: &[Need] = &[
     },
     Need {
         package: "chromium",
-        what: "SwiftShader",
+        what: "Chromium with its SwiftShader",
         found: || Path::new("/usr/lib/chromium/vk_swiftshader_icd.json").exists(),
     },
     Need { package: "nodejs", what: "node, for the typed keys", found: || program("node") },

@@ -70,7 +70,7 @@ const COMMANDS: &[Command] = &[
     ("validate", "let the judges of all targets look at a bundle", validate::run),
     (
         "docs",
-        "write the catalogue, the modules made from data, the guide as a book (--check: only compare)",
+        "write the catalogue, the modules made from data, the guide as a book (--check: only compare, --costs: measure first)",
         docs::run,
     ),
     (
