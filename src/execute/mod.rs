@@ -5,18 +5,23 @@
 //! [`kernel`] wraps a function into a fragment shader, an executor of [`executors`] runs it over
 //! rows of arguments; [`fixture`] is what textures and samplers hold. Devices of wgpu are in
 //! `gpu`; the evaluator runs kernels in `interpreter`, compiled MSL in `metal`, and both draw
-//! [`frame`]s in [`raster`]. Pages of a browser are in [`web`]. Frames are drawn from the bytes of a bundle too: [`shipped`].
+//! [`frame`]s in [`raster`]. Pages of a browser are in [`web`]. Frames are drawn from the
+//! bytes of a bundle too: [`shipped`].
 
+pub mod emitted;
 pub mod executors;
 pub mod fixture;
 pub mod frame;
+#[cfg(not(target_family = "wasm"))]
 pub(crate) mod gpu;
-pub(crate) mod interpreter;
+pub mod interpreter;
 pub mod kernel;
+#[cfg(not(target_family = "wasm"))]
 mod metal;
 pub mod raster;
 pub(crate) mod sampling;
 pub mod shipped;
+#[cfg(not(target_family = "wasm"))]
 pub mod web;
 
 use crate::diagnostic::{Diagnostic, codes};

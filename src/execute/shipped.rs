@@ -1,7 +1,7 @@
 //! Stages as a bundle holds them.
 
+use super::emitted;
 use super::frame::EntryPoint;
-use super::gpu::emitted;
 use crate::bundle::{Kind, Native, Reflection, Stage, Target, Varying};
 use crate::diagnostic::Diagnostic;
 use crate::emit::{self, Emitted};
@@ -63,7 +63,7 @@ impl Shipped {
     }
 
     /// What WebGPU cannot do with a fragment stage and the targets that are made here.
-    pub(super) fn lacks_of_webgpu(&self) -> Option<&'static str> {
+    pub fn lacks_of_webgpu(&self) -> Option<&'static str> {
         let outputs = &self.reflection.outputs;
         let is_small = |one: &Varying| one.location.is_some() && !one.ty.starts_with("vec4");
         if outputs.iter().any(|one| one.builtin.as_deref() == Some("frag_depth")) {

@@ -9,7 +9,7 @@ use crate::bundle::{ClipSpace, FrontFace, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Pair;
 use crate::execute::fixture::Fixture;
-use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh, Place, State};
+use crate::execute::frame::{Attribute, Buffers, Drawing, Frame, Item, Mesh, Place, State};
 use crate::execute::shipped::{Format, Shipped};
 
 /// What `frames` of the script is given.
@@ -136,13 +136,13 @@ fn blocks(pair: Pair<'_>) -> Result<Vec<Value>, String> {
 }
 
 fn mesh(mesh: &Mesh) -> Value {
-    let attribute = |one: wgpu::VertexAttribute| {
+    let attribute = |(one, offset): (Attribute, u64)| {
         json!({
-            "shaderLocation": one.shader_location,
-            "offset": one.offset,
+            "shaderLocation": one.location,
+            "offset": offset,
             // `Float32x3` is called `float32x3` there.
             "format": format!("{:?}", one.format).to_lowercase(),
-            "words": one.format.size() / 4,
+            "words": one.format.words(),
         })
     };
     json!({

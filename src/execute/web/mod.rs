@@ -15,8 +15,9 @@ use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use super::emitted;
 use super::frame::{Drawing, Frame};
-use super::gpu::{batched, emitted, input_texels, unpack};
+use super::gpu::{batched, input_texels, unpack};
 use super::kernel::{Kernel, TARGET_WIDTH};
 use super::{Pair, Session};
 use crate::browser::serve::{Files, Server};
