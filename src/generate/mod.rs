@@ -60,6 +60,17 @@ pub struct Request {
     pub shard: Option<Shard>,
 }
 
+impl Request {
+    /// The targets of a program, each once and in order.
+    fn targets_of(&self, program: &Program) -> Vec<Target> {
+        let chosen = if self.targets.is_empty() { &program.targets } else { &self.targets };
+        let mut targets = chosen.clone();
+        targets.sort();
+        targets.dedup();
+        targets
+    }
+}
+
 /// What a run works with.
 pub struct Tools<'a> {
     /// Where units go.
@@ -114,13 +125,7 @@ pub fn generate(
     let mut lints = Lints::default();
     for (program, points, entries) in prepared(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
-        let mut targets = if request.targets.is_empty() {
-            program.targets.clone()
-        } else {
-            request.targets.clone()
-        };
-        targets.sort();
-        targets.dedup();
+        let targets = request.targets_of(program);
         let clip = request.clip.unwrap_or(program.clip);
         let compiler = Compiler {
             targets: &targets,

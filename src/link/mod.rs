@@ -46,6 +46,7 @@ mod canonical;
 mod compile;
 mod cut;
 mod mark;
+mod marked;
 mod module;
 mod names;
 mod outline;
@@ -57,6 +58,7 @@ mod summary;
 mod text;
 mod texts;
 mod translate;
+mod uses;
 mod words;
 
 pub use compile::{Made, Text, compile, perform};
