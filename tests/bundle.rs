@@ -480,8 +480,8 @@ pub fn conforms(root: &Value, schema: &Value, value: &Value, place: &str) -> Out
         .try_for_each(|item| conforms(root, &schema["items"], item, place))
 }
 
-/// Opening, looking up and fetching stay quick; the figures are printed with `--nocapture`.
-fn large() -> Outcome {
+/// 100,000 keys of 2,000 units, and the keys.
+fn many() -> (Contents, Vec<String>) {
     let axis = |name: &str, count: usize| Axis {
         name: name.into(),
         values: (0..count).map(|value| format!("value_{value}")).collect(),
@@ -505,15 +505,14 @@ fn large() -> Outcome {
         entry.keys.insert(canonical(&axes, &key.join(",")).unwrap(), hashes[index % hashes.len()]);
     }
     let keys: Vec<String> = entry.keys.keys().cloned().collect();
-    let program = ProgramContents {
-        axes,
-        languages: BTreeMap::from([(
-            Language::Wesl,
-            BTreeMap::from([("fs_main".to_owned(), entry)]),
-        )]),
-    };
-    let contents = Contents { programs: BTreeMap::from([("forward".to_owned(), program)]) };
+    let entries = BTreeMap::from([("fs_main".to_owned(), entry)]);
+    let program = ProgramContents { axes, languages: BTreeMap::from([(Language::Wesl, entries)]) };
+    (Contents { programs: BTreeMap::from([("forward".to_owned(), program)]) }, keys)
+}
 
+/// Opening, looking up and fetching stay quick; the figures are printed with `--nocapture`.
+fn large() -> Outcome {
+    let (contents, keys) = many();
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("large.lamplight");
     let (_, packing) = timed(|| write_file(&contents, &path));

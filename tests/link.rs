@@ -339,62 +339,62 @@ fn reasons_of(text: &str, targets: &str) -> Result<BTreeMap<String, Reason>, Fai
     Ok(made.summary.whole.into_iter().map(|whole| (whole.target, whole.reason)).collect())
 }
 
+/// Declarations and statements with which a text is linked.
+const LINKED: &[(&str, &str)] = &[
+    ("", "let d = dpdx(at.x); if d > 0.0 { discard; }"),
+    ("fn f(x: f32) -> f32 { return fwidth(x); }", "let d = f(at.x);"),
+    ("fn tap_3(x: f32) -> f32 { return x; }", "let d = tap_3(at.x);"),
+    ("fn d(x: f32) -> f32 { return x; }", "let d = d(at.x);"),
+    ("", "if at.x > 0.0 { let d = dpdx(at.x); }"),
+    ("alias Map = texture_2d<f32>; fn f(m: Map) -> f32 { return 1.0; }", "let d = f(map);"),
+    (
+        "struct Light { a: f32, b: f32 } fn ConstructLight(x: f32) -> Light { return Light(x, x); }",
+        "let d = ConstructLight(1.0);",
+    ),
+    ("fn member(x: f32) -> f32 { return x; }", "let d = member(1.0);"),
+    ("fn fs_mainInput(x: f32) -> f32 { return x; }", "let d = fs_mainInput(1.0);"),
+    ("const a = 1.0; struct S { a: f32 }", "let d = S(a);"),
+    ("fn naga_f(x: f32) -> f32 { return x; }", "let d = naga_f(1.0);"),
+    (
+        "fn a_b_(x: f32) -> f32 { return x; } fn a_b(x: f32) -> f32 { return x; }",
+        "let d = a_b(1.0) + a_b_(2.0);",
+    ),
+    ("const other = 0.5;", "let d = modf(at.x * other).fract;"),
+    ("const value = 0.5;", "let d = i32(at.x * value);"),
+    ("const ret = 0.5; struct Pair { a: f32, b: f32 }", "let d = Pair(at.x, ret);"),
+    (
+        "alias Color = vec4f; var<private> table: array<Color, 2>;",
+        "let d = array<vec4f, 2>(u, u); table = d;",
+    ),
+    ("fn é(x: f32) -> f32 { return x; }", "let d = é(1.0);"),
+    ("const_assert true;", ""),
+    ("fn SamplerState(x: f32) -> f32 { return x; }", "let d = SamplerState(1.0);"),
+];
+
+/// Declarations and statements with which it is compiled as a whole, and why.
+const WHOLE: &[(&str, &str, Reason)] = &[
+    ("override o: f32 = 1.0;", "let d = o;", Reason::Override),
+    ("@group(0) @binding(3) var<storage> s: array<f32>;", "let d = s[0];", Reason::StorageBuffer),
+    (
+        "@group(0) @binding(3) var< storage , read > s: vec4f;",
+        "let d = s.x;",
+        Reason::StorageBuffer,
+    ),
+    ("fn Zqbqz(x: f32) -> f32 { return x; }", "let d = Zqbqz(1.0);", Reason::MarkedName),
+];
+
 fn reasons() -> Outcome {
-    let linked = [
-        ("", "let d = dpdx(at.x); if d > 0.0 { discard; }"),
-        ("fn f(x: f32) -> f32 { return fwidth(x); }", "let d = f(at.x);"),
-        ("fn tap_3(x: f32) -> f32 { return x; }", "let d = tap_3(at.x);"),
-        ("fn d(x: f32) -> f32 { return x; }", "let d = d(at.x);"),
-        ("", "if at.x > 0.0 { let d = dpdx(at.x); }"),
-        ("alias Map = texture_2d<f32>; fn f(m: Map) -> f32 { return 1.0; }", "let d = f(map);"),
-        (
-            "struct Light { a: f32, b: f32 } fn ConstructLight(x: f32) -> Light { return Light(x, x); }",
-            "let d = ConstructLight(1.0);",
-        ),
-        ("fn member(x: f32) -> f32 { return x; }", "let d = member(1.0);"),
-        ("fn fs_mainInput(x: f32) -> f32 { return x; }", "let d = fs_mainInput(1.0);"),
-        ("const a = 1.0; struct S { a: f32 }", "let d = S(a);"),
-        ("fn naga_f(x: f32) -> f32 { return x; }", "let d = naga_f(1.0);"),
-        (
-            "fn a_b_(x: f32) -> f32 { return x; } fn a_b(x: f32) -> f32 { return x; }",
-            "let d = a_b(1.0) + a_b_(2.0);",
-        ),
-        ("const other = 0.5;", "let d = modf(at.x * other).fract;"),
-        ("const value = 0.5;", "let d = i32(at.x * value);"),
-        ("const ret = 0.5; struct Pair { a: f32, b: f32 }", "let d = Pair(at.x, ret);"),
-        (
-            "alias Color = vec4f; var<private> table: array<Color, 2>;",
-            "let d = array<vec4f, 2>(u, u); table = d;",
-        ),
-        ("fn é(x: f32) -> f32 { return x; }", "let d = é(1.0);"),
-        ("const_assert true;", ""),
-        ("fn SamplerState(x: f32) -> f32 { return x; }", "let d = SamplerState(1.0);"),
-    ];
-    for (more, body) in linked {
+    for (more, body) in LINKED {
         let reasons = reasons_of(&fragment(more, body), "")?;
         if !reasons.is_empty() {
             return Err(format!("{more} {body}: {reasons:?}").into());
         }
     }
-    let whole = [
-        ("override o: f32 = 1.0;", "let d = o;", Reason::Override),
-        (
-            "@group(0) @binding(3) var<storage> s: array<f32>;",
-            "let d = s[0];",
-            Reason::StorageBuffer,
-        ),
-        (
-            "@group(0) @binding(3) var< storage , read > s: vec4f;",
-            "let d = s.x;",
-            Reason::StorageBuffer,
-        ),
-        ("fn Zqbqz(x: f32) -> f32 { return x; }", "let d = Zqbqz(1.0);", Reason::MarkedName),
-    ];
-    for (more, body, reason) in whole {
+    for (more, body, reason) in WHOLE {
         // Not every target has storage buffers.
         let targets = "targets = [\"spirv\", \"wgsl\"]";
         let reasons = reasons_of(&fragment(more, body), targets)?;
-        if reasons.len() != 2 || reasons.values().any(|found| *found != reason) {
+        if reasons.len() != 2 || reasons.values().any(|found| found != reason) {
             return Err(format!("{more} {body}: {reasons:?} instead of {reason:?}").into());
         }
     }

@@ -253,37 +253,22 @@ impl Device {
     fn create(&self, pair: &Pair, spirv: bool) -> Result<(), String> {
         let stages = || std::iter::once(&pair.vertex).chain(&pair.fragment);
         let layout = self.layout(stages().map(|found| &*found.reflection), spirv)?;
-        let modules = if spirv {
-            pair.spirv
-                .iter()
-                .flatten()
-                .map(|found| self.passed(found))
-                .collect::<Result<Vec<_>, _>>()?
+        let modules: Vec<_> = if spirv {
+            let words = pair.spirv.iter().flatten();
+            words.map(|found| self.passed(found)).collect::<Result<_, _>>()?
         } else {
-            stages().map(|found| self.module(found)).collect::<Result<Vec<_>, _>>()?
+            stages().map(|found| self.module(found)).collect::<Result<_, _>>()?
         };
         let attributes = attributes(&pair.vertex.reflection.inputs)?;
-        let stride = attributes
-            .iter()
-            .map(|attribute| attribute.offset + attribute.format.size())
-            .max()
-            .unwrap_or(0);
+        let ends = attributes.iter().map(|found| found.offset + found.format.size());
         let buffer = wgpu::VertexBufferLayout {
-            array_stride: stride,
+            array_stride: ends.max().unwrap_or(0),
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         };
-        let targets = pair
-            .fragment
-            .as_ref()
-            .map_or(Ok(Vec::new()), |found| targets(&found.reflection.outputs))?;
-        let depth = wgpu::DepthStencilState {
-            format: wgpu::TextureFormat::Depth32Float,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::LessEqual),
-            stencil: Default::default(),
-            bias: Default::default(),
-        };
+        let fragment = pair.fragment.as_ref();
+        let targets =
+            fragment.map_or(Ok(Vec::new()), |found| targets(&found.reflection.outputs))?;
         let _pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
             layout: Some(&layout),
@@ -294,9 +279,9 @@ impl Device {
                 buffers: &[(!attributes.is_empty()).then_some(buffer)],
             },
             primitive: Default::default(),
-            depth_stencil: Some(depth),
+            depth_stencil: Some(depth()),
             multisample: Default::default(),
-            fragment: pair.fragment.as_ref().map(|found| wgpu::FragmentState {
+            fragment: fragment.map(|found| wgpu::FragmentState {
                 module: &modules[1],
                 entry_point: Some(&found.native.entry_name),
                 compilation_options: Default::default(),
@@ -480,4 +465,15 @@ fn targets(outputs: &[Varying]) -> Result<Vec<Option<wgpu::ColorTargetState>>, S
         targets.push(Some(format.into()));
     }
     Ok(targets)
+}
+
+/// A depth buffer as most engines have it.
+fn depth() -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: wgpu::TextureFormat::Depth32Float,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::LessEqual),
+        stencil: Default::default(),
+        bias: Default::default(),
+    }
 }

@@ -462,12 +462,7 @@ impl Writer<'_> {
                 self.count(),
                 self.block(2, deeper)
             ),
-            12 => format!(
-                "    switch i32(acc) {{\n        case 0 {{\n{}        }}\n        @if({condition}) case {}, 9 {{\n{}        }}\n        default {{ }}\n    }}\n",
-                self.block(1, deeper),
-                5 + self.random.below(3),
-                self.block(1, deeper)
-            ),
+            12 => self.switch(&condition, deeper),
             13 => format!(
                 "    loop {{\n{}        if (acc > 4.0) {{ break; }}\n        continuing {{ acc += 1.0; @if({condition}) acc += 0.5; }}\n    }}\n",
                 self.block(1, deeper)
@@ -479,6 +474,15 @@ impl Writer<'_> {
             ),
             _ => format!("    @if({condition}) const_assert {} > 0;\n", self.count()),
         }
+    }
+
+    fn switch(&mut self, condition: &str, deeper: usize) -> String {
+        format!(
+            "    switch i32(acc) {{\n        case 0 {{\n{}        }}\n        @if({condition}) case {}, 9 {{\n{}        }}\n        default {{ }}\n    }}\n",
+            self.block(1, deeper),
+            5 + self.random.below(3),
+            self.block(1, deeper)
+        )
     }
 
     /// Adds a value; one that only exists under a condition under the same condition.
