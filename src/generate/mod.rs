@@ -23,7 +23,7 @@ pub use shader::{Root, Shader};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
 pub use summary::{EntrySummary, Judged, ProgramSummary, Summary, WholeSummary};
-pub use trace::{Recorder, Run, Told, Trace};
+pub use trace::{Observer, Run, Told, Trace};
 
 use std::collections::BTreeMap;
 use std::time::Instant;

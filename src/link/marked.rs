@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use naga::{ArraySize, Module, Scalar, ScalarKind, Type, TypeInner};
 
-use super::canonical::{BUILT_INS, IDLE, Recipe, Unit};
+use super::canonical::{BUILT_INS, IDLE, Recipe, UnitId};
 use super::mark::{self, SCRATCH};
 use super::outline::Outline;
 use super::reason::Reason;
@@ -18,7 +18,7 @@ pub fn mark_module(
 ) -> Result<(Module, Vec<String>), Reason> {
     let mut marked = module.clone();
     let mut names = Names(vec![String::new()]);
-    let is_function = matches!(recipe.unit, Unit::Function(_));
+    let is_function = matches!(recipe.unit, UnitId::Function(_));
     mark_types(&mut marked, module, &mut names, is_function)?;
     mark_values(&mut marked, &mut names);
     mark_functions(outline, recipe, &mut marked, &mut names);

@@ -7,7 +7,7 @@ use naga::front::{glsl, wgsl};
 use naga::valid::{ModuleInfo, ValidationFlags, Validator};
 use naga::{Function, Module};
 
-use super::canonical::{IDLE, Recipe, Unit};
+use super::canonical::{IDLE, Recipe, UnitId};
 use super::cut::{self, Cut, Fragment};
 use super::marked::mark_module;
 use super::outline::Outline;
@@ -86,7 +86,7 @@ fn inner(
         .validate(&module)
         .map_err(|_| Reason::Refused)?;
     let summary = summary(outline, recipe, &module, &info)?;
-    let is_entry = recipe.unit == Unit::Entry;
+    let is_entry = recipe.unit == UnitId::Entry;
     if is_entry && !summary.is_for(outline.stage) {
         return Err(Reason::Stage);
     }
@@ -131,14 +131,14 @@ fn summary(
     }
     let callee = |handle| stubs.get(&handle).copied();
     let found = match (recipe.unit, recipe.function) {
-        (Unit::Function(index), _) => {
+        (UnitId::Function(index), _) => {
             let name = Some(outline.declarations[index].name());
             let mut functions = module.functions.iter();
             let found = functions.find(|(_, function)| function.name.as_deref() == name);
             let (handle, function) = found.ok_or(Reason::Refused)?;
             summarise(module, &info[handle], function, &callee)
         }
-        (Unit::Entry, _) => {
+        (UnitId::Entry, _) => {
             let point = module.entry_points.first().ok_or(Reason::EntryPoint)?;
             summarise(module, info.get_entry_point(0), &point.function, &callee)
         }
@@ -165,15 +165,15 @@ fn write(
     let emitted = emitted.map_err(|_| Reason::Refused)?;
     let text = String::from_utf8(emitted.bytes).map_err(|_| Reason::Shape)?;
     let function = match recipe.unit {
-        Unit::Function(index) => Some(outline.declarations[index].name()),
-        Unit::Entry => None,
+        UnitId::Function(index) => Some(outline.declarations[index].name()),
+        UnitId::Entry => None,
     };
     let wanted = cut::Wanted { function, entry: &emitted.native.entry_name, names: &parsed.names };
     let mut cut = cut::cut(&text, &wanted)?;
     cut.add_locals(&locals(recipe, &parsed.validated.module, function), wanted.entry);
     let native = match recipe.unit {
-        Unit::Function(_) => None,
-        Unit::Entry => {
+        UnitId::Function(_) => None,
+        UnitId::Entry => {
             let native = serde_json::to_string(&emitted.native).map_err(|_| Reason::Shape)?;
             Some(Fragment::read(&native, &parsed.names)?)
         }
@@ -184,8 +184,8 @@ fn write(
 /// Names that the author gave within the unit's function: naga may number them.
 fn locals<'m>(recipe: &Recipe<'_>, module: &'m Module, name: Option<&str>) -> BTreeSet<&'m str> {
     let function = match recipe.unit {
-        Unit::Entry => module.entry_points.first().map(|point| &point.function),
-        Unit::Function(_) => {
+        UnitId::Entry => module.entry_points.first().map(|point| &point.function),
+        UnitId::Function(_) => {
             let mut functions = module.functions.iter().map(|(_, function)| function);
             functions.find(|function| function.name.as_deref() == name)
         }

@@ -8,7 +8,7 @@ use naga::{
     ResourceBinding, Span, Statement, Type, TypeInner,
 };
 
-use super::canonical::{IDLE, Recipe, Unit};
+use super::canonical::{IDLE, Recipe, UnitId};
 use super::outline::Outline;
 use super::reason::Reason;
 use super::summary::name_of;
@@ -53,7 +53,7 @@ pub fn call_function(
     recipe: &Recipe<'_>,
     module: &mut Module,
 ) -> Result<(), Reason> {
-    let Unit::Function(index) = recipe.unit else { return Ok(()) };
+    let UnitId::Function(index) = recipe.unit else { return Ok(()) };
     let name = outline.declarations[index].name();
     if outline.language == Language::Glsl && name == "main" {
         return Ok(());

@@ -10,7 +10,7 @@ use lamplight::cache::{Cache, Folder};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{
-    Generated, Progress, Recorder, Request, Run, Summary, Told, Tools, Trace, generate,
+    Generated, Observer, Progress, Request, Run, Summary, Told, Tools, Trace, generate,
 };
 use lamplight::judge::{Made, blame};
 use lamplight::permute::Manifest;
@@ -43,8 +43,8 @@ pub fn run(arguments: &[String]) -> Outcome {
     };
     let (manifest, packages) = project::declared(&path, &mut sources)
         .map_err(|diagnostics| input(&sources, diagnostics))?;
-    let (declared, recorder) = (sources.clone(), Recorder::default());
-    let (packages, out, request) = (recorder.observe(packages), bundle(), Request::default());
+    let (declared, observer) = (sources.clone(), Observer::default());
+    let (packages, out, request) = (observer.observe(packages), bundle(), Request::default());
     let folder = Folder::new(root().join("target/lamplight-cache"))
         .map_err(|foreign| Failure::input(foreign.to_string()))?;
     let cache = Cache::new(vec![Box::new(folder)]);
@@ -73,7 +73,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     refuse(&mut sources, &packages, &manifest, &judged, &|| Ok(contents.clone()))?;
     writer.finish(&contents).map_err(environment)?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
-    let trace = Trace::new(&recorder, &out, summary.clone(), Told::new(&path, &sources, &warnings));
+    let trace = Trace::new(&observer, &out, summary.clone(), Told::new(&path, &sources, &warnings));
     trace.into_iter().for_each(|trace| trace.keep(&cache, as_run()));
     finish(&summary, &judged)
 }
