@@ -57,6 +57,7 @@ mod shadow;
 mod snapshot;
 mod specialise;
 mod tables;
+mod toolchain;
 mod traps;
 
 use std::process::ExitCode;
@@ -109,6 +110,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     shadow::trials,
     specialise::trials,
     tables::trials,
+    toolchain::trials,
     traps::trials,
 ];
 

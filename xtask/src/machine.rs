@@ -78,7 +78,8 @@ fn missing() -> Vec<(&'static str, &'static str)> {
     listed.map(|need| (need.package, need.what)).collect()
 }
 
-fn install(packages: &[&str]) -> Outcome {
+/// Installs packages of Debian.
+pub fn install(packages: &[&str]) -> Outcome {
     let by_hand = format!(
         "sudo apt-get update && sudo apt-get install -y --no-install-recommends {}",
         packages.join(" ")
