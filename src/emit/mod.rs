@@ -19,6 +19,7 @@ mod lists;
 mod names;
 mod reflect;
 mod rename;
+mod setters;
 mod slots;
 mod specialise;
 pub mod spirv;
