@@ -5,6 +5,7 @@
 //! modules, [`plot`]s from `NAME.plot.toml` beside a module, [`preset`]s from `presets.toml`,
 //! [`probe`]s from `data/sh9_probes.toml`. [`pages`] writes the catalogue from them.
 
+mod natural;
 mod outline;
 pub mod pages;
 pub mod plot;

@@ -144,6 +144,11 @@ fn encoded(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// The inverse of [`encoded`].
+fn decoded(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
 /// The signature of a PNG file and its first chunk, which is the header.
 const PNG_HEADER_BYTES: usize = 8 + 25;
 
@@ -176,6 +181,27 @@ impl Picture {
             bytes.splice(PNG_HEADER_BYTES..PNG_HEADER_BYTES, PNG_MARK.iter().copied());
         }
         Ok(bytes)
+    }
+
+    /// The picture in fewer pixels, each the mean of the light of `factor` by `factor`; what is
+    /// left at the right and below is cut off.
+    #[must_use]
+    pub fn shrunk(&self, factor: u32) -> Self {
+        let factor = factor.max(1);
+        let (width, height) = (self.width / factor, self.height / factor);
+        let light: Vec<f64> = (0..=255).map(|byte| decoded(f64::from(byte) / 255.0)).collect();
+        let mean = |x: u32, y: u32, channel: u32| {
+            let at = |i: u32, j: u32| {
+                let pixel = (y * factor + j) * self.width + x * factor + i;
+                light[usize::from(self.pixels[(3 * pixel + channel) as usize])]
+            };
+            let all = (0..factor).flat_map(|j| (0..factor).map(move |i| (i, j)));
+            let sum: f64 = all.map(|(i, j)| at(i, j)).sum();
+            (encoded(sum / f64::from(factor * factor)) * 255.0).round() as u8
+        };
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let pixels = places.flat_map(|(x, y)| [0, 1, 2].map(|channel| mean(x, y, channel)));
+        Self { width, height, pixels: pixels.collect() }
     }
 
     /// The picture of a PNG file.

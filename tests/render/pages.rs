@@ -1,7 +1,9 @@
 //! The gallery's pages, and pictures without a driver.
 
+use std::path::Path;
+
 use lamplight::bundle::Language;
-use lamplight::picture::{Picture, gallery, render};
+use lamplight::picture::{Picture, gallery, is_own_png, render};
 use lamplight::scene::Equirect;
 use libtest_mimic::{Failed, Trial};
 
@@ -54,7 +56,15 @@ fn without_driver(name: &str) -> Result<(), Failed> {
     })
 }
 
-/// The committed pages say what the presets are and compose to now, and every picture is there.
+/// The large pictures that people look at.
+const GALLERY: &str = "docs/gallery";
+/// How often a reviewed picture goes into the smaller form of a large one.
+const TIMES: u32 = 3;
+/// A large picture has finer edges, and where its shadow map is finer, finer shadows.
+const FINER: (f64, f64) = (1.5, 14.0);
+
+/// The committed pages say what the presets are and compose to now. Every large picture was drawn
+/// from the settings and texts of now, and looks as the reviewed small one does.
 fn gallery_is_current() -> Result<(), Failed> {
     let cards = library()
         .presets
@@ -62,27 +72,50 @@ fn gallery_is_current() -> Result<(), Failed> {
         .map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
     let cards: Vec<gallery::Card> = cards.collect::<Result<_, _>>().map_err(said)?;
     let cards: Vec<&gallery::Card> = cards.iter().collect();
-    let folder = reviewed_path("README").parent().ok_or("no folder")?.to_owned();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(GALLERY);
     let mut files = gallery::composed(&cards);
     files.push(("README.md".to_owned(), gallery::markdown(&cards)));
+    files.push(("index.html".to_owned(), gallery::html(&cards)));
+    let mut stale = Vec::new();
     for (path, wanted) in files {
-        let found = std::fs::read_to_string(folder.join(&path))
-            .map_err(|error| format!("{path}: {error}"))?;
+        let found = std::fs::read_to_string(folder.join(&path)).unwrap_or_default();
         if found != wanted {
-            return Err(format!(
-                "{path} is not current: run `lamplight render --all --size 192x192 -o docs/gallery`"
-            )
-            .into());
+            stale.push(format!("{path} has another text"));
         }
     }
     let adapters = std::fs::read_to_string(folder.join("adapters.txt"))?;
-    for preset in &library().presets {
-        read(&reviewed_path(&preset.name))?;
-        if !adapters.lines().any(|line| line.starts_with(&format!("{}.png ", preset.name))) {
-            return Err(format!("no adapter is named for {}", preset.name).into());
+    let shot = shot(gallery::SIZE, gallery::SAMPLES, Language::Wesl);
+    for card in cards {
+        let (name, current) = (&card.preset.name, card.current(&shot));
+        if !adapters.lines().any(|line| line.starts_with(&current)) {
+            stale.push(format!("{name}.png was drawn from other settings or texts"));
         }
+        stale.extend(changed(&folder, name)?);
     }
-    Ok(())
+    if stale.is_empty() {
+        return Ok(());
+    }
+    let command = "lamplight render --all --force -o docs/gallery";
+    Err(format!("the gallery is not current, run `{command}`:\n{}", stale.join("\n")).into())
+}
+
+/// How the large picture and its smaller form differ from the reviewed one.
+fn changed(folder: &Path, name: &str) -> Result<Option<String>, String> {
+    let [large, thumb] = gallery::files(name).map(|file| folder.join(file));
+    let head = std::fs::read(&large).map_err(|error| format!("{}: {error}", large.display()))?;
+    // Width and height are the first numbers of the header.
+    let number = |at: usize| head.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
+    let size = [16, 20].map(|at| number(at).map_or(0, u32::from_be_bytes));
+    if size != gallery::SIZE || !is_own_png(&head) {
+        return Ok(Some(format!("{name}.png has {size:?} pixels")));
+    }
+    let wanted = read(&reviewed_path(name))?;
+    let difference = Difference::new(&wanted, &read(&thumb)?.shrunk(TIMES))?;
+    let (mean, most) = (difference.mean(), difference.most());
+    let is_other = mean > FINER.0 || most > FINER.1;
+    Ok(is_other.then(|| {
+        format!("{name}.png looks different: {mean:.2} on average, {most:.1} for all but 1 %")
+    }))
 }
 
 fn png_round_trip() -> Result<(), Failed> {

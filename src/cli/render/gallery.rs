@@ -14,10 +14,6 @@ use crate::picture::{Plan, Shot};
 /// Files that are not named after a preset.
 const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
 
-fn picture(preset: &str) -> String {
-    format!("{preset}.png")
-}
-
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
 pub fn run(
     painter: &dyn Session,
@@ -32,7 +28,9 @@ pub fn run(
         folder.check(name, None)?;
     }
     for preset in &presets {
-        folder.check(&picture(&preset.name), None)?;
+        for file in gallery::files(&preset.name) {
+            folder.check(&file, None)?;
+        }
     }
     let mut exhibits = Vec::new();
     for preset in &presets {
@@ -40,8 +38,10 @@ pub fn run(
             .map_err(|problems| input(programs, problems))?;
         let exhibit = Exhibit::new(painter, programs, preset, &plan, shot)
             .map_err(|problems| input(programs, problems))?;
-        let png = exhibit.picture.png().map_err(Failure::environment)?;
-        folder.write(&picture(&preset.name), &png)?;
+        let [picture, thumb] = gallery::files(&preset.name);
+        let small = exhibit.picture.shrunk(gallery::THUMB);
+        folder.write(&picture, &exhibit.picture.png().map_err(Failure::environment)?)?;
+        folder.write(&thumb, &small.png().map_err(Failure::environment)?)?;
         exhibits.push(exhibit);
     }
     let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
@@ -49,8 +49,7 @@ pub fn run(
     for (path, text) in gallery::composed(&cards) {
         folder.write(&path, text.as_bytes())?;
     }
-    let html = gallery::html(&exhibits).map_err(Failure::environment)?;
-    folder.write("index.html", html.as_bytes())?;
+    folder.write("index.html", gallery::html(&cards).as_bytes())?;
     folder.write("adapters.txt", gallery::adapters(&exhibits, shot).as_bytes())?;
     let shown = folder.path().display().to_string();
     folder.finish()?;

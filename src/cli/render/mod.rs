@@ -25,6 +25,7 @@ use crate::output;
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, key};
 use crate::picture::frame::Programs;
+use crate::picture::gallery::SAMPLES;
 use crate::picture::{self, Plan, Shot, Surroundings, is_own_png};
 use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
 
@@ -49,10 +50,10 @@ pub struct Arguments {
     /// folder [default: `gallery`].
     #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Pixels across and down.
-    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
-    size: [u32; 2],
-    /// Places in each pixel that are averaged [default: 4, or 1 on `eval`].
+    /// Pixels across and down [default: 512x512; 960x720 with `--all`].
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// Places in each pixel that are averaged [default: 4; 16 with `--all`; 1 on `eval`].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     samples: Option<u32>,
     /// Factor on all light, in powers of two.
@@ -240,9 +241,14 @@ fn point(
 }
 
 fn shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
+    let (size, samples) = if arguments.all {
+        (picture::gallery::SIZE, executor.samples.map(|few| if few > 1 { SAMPLES } else { few }))
+    } else {
+        ([512; 2], executor.samples)
+    };
     Ok(Shot {
-        size: arguments.size,
-        samples: arguments.samples.or(executor.samples).unwrap_or(1),
+        size: arguments.size.unwrap_or(size),
+        samples: arguments.samples.or(samples).unwrap_or(1),
         cascades: arguments.cascades,
         exposure: arguments.exposure.clamp(-32.0, 32.0),
         language: Language::from(arguments.lang),

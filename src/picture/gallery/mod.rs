@@ -17,6 +17,12 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
 use crate::picture::frame::{Programs, Stages};
 
+/// How the gallery is photographed: pixels, and samples of each.
+pub const SIZE: [u32; 2] = [960, 720];
+pub const SAMPLES: u32 = 16;
+/// Pictures on the pages are smaller by this factor.
+pub const THUMB: u32 = 2;
+
 /// One preset with its picture.
 pub struct Exhibit {
     pub card: Card,
@@ -30,6 +36,10 @@ pub struct Card {
     pub preset: Preset,
     /// The composed texts of the last pass: one, or one for each stage.
     texts: Vec<Arc<str>>,
+    /// The library's functions in them, by path.
+    functions: Vec<String>,
+    /// Hash of what the picture is made from: settings, numbers and the texts of all passes.
+    fingerprint: String,
 }
 
 impl Exhibit {
@@ -44,9 +54,9 @@ impl Exhibit {
         plan: &Plan,
         shot: &Shot,
     ) -> Result<Self, Diagnostics> {
-        let prepared = prepare(painter, programs, plan, shot)?;
-        let picture = prepared.photograph(painter, shot)?.develop();
-        Ok(Self { card: Card::of(preset, &prepared.stages), picture, adapter: painter.adapter() })
+        let card = Card::new(programs, preset, shot.language)?;
+        let picture = prepare(painter, programs, plan, shot)?.photograph(painter, shot)?.develop();
+        Ok(Self { card, picture, adapter: painter.adapter() })
     }
 }
 
@@ -61,34 +71,31 @@ impl Card {
         language: Language,
     ) -> Result<Self, Diagnostics> {
         let plan = Plan::of_preset(programs, preset, &[])?;
-        let settings = plan.last().map(|pass| pass.settings.clone()).unwrap_or_default();
-        let unknown = || {
-            vec![Diagnostic::error(
-                codes::UNKNOWN_PROGRAM,
-                format!("there is no program `{}`", preset.program),
-            )]
-        };
-        let program = programs.manifest().program(&preset.program).ok_or_else(unknown)?;
-        Ok(Self::of(preset, &programs.stages(program, &settings, language)?))
-    }
-
-    fn of(preset: &Preset, stages: &Stages) -> Self {
-        let mut texts = vec![stages.vertex.text.clone()];
-        texts.extend(
-            stages
-                .fragment
-                .iter()
-                .map(|stage| stage.text.clone())
-                .filter(|text| *text != stages.vertex.text),
-        );
-        Self { preset: preset.clone(), texts }
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(settings(preset).as_bytes());
+        let (mut own, mut functions) = (Vec::new(), Vec::new());
+        for pass in &plan.passes {
+            let unknown = || {
+                let message = format!("there is no program `{}`", pass.program);
+                vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
+            };
+            let program = programs.manifest().program(&pass.program).ok_or_else(unknown)?;
+            let stages = programs.stages(program, &pass.settings, language)?;
+            own = texts(&stages);
+            own.iter().for_each(|text| {
+                hasher.update(text.as_bytes());
+            });
+            functions = named(&stages);
+        }
+        let fingerprint = hasher.finalize().to_hex()[..16].to_owned();
+        Ok(Self { preset: preset.clone(), texts: own, functions, fingerprint })
     }
 
     /// Programs and keys of all passes, in order.
-    fn passes(&self) -> Vec<String> {
+    fn passes(&self) -> Vec<(&str, String)> {
         let earlier = self.preset.passes.iter().map(|pass| (&pass.program, &pass.key));
         let all = earlier.chain([(&self.preset.program, &self.preset.key)]);
-        all.map(|(program, key)| format!("{program}: {}", key.replace(',', ", "))).collect()
+        all.map(|(program, key)| (program.as_str(), key.replace(',', ", "))).collect()
     }
 
     /// Paths of the composed texts beside the page: to read, not to compile, so `.txt`.
@@ -100,8 +107,49 @@ impl Card {
 
     /// The command that draws it.
     fn command(&self) -> String {
-        format!("lamplight render {}", self.preset.name)
+        let [width, height] = SIZE;
+        let name = &self.preset.name;
+        format!("lamplight render {name} --size {width}x{height} --samples {SAMPLES}")
     }
+
+    /// Each function of the library in its text: the path, and its page beside the gallery.
+    fn functions(&self) -> impl Iterator<Item = (&str, String)> {
+        self.functions.iter().filter_map(|path| {
+            let (module, name) = path.rsplit_once("::")?;
+            Some((name, format!("../catalogue/{}.md#{name}", module.replace("::", "/"))))
+        })
+    }
+
+    /// What a line of [`adapters`] begins with, if the picture is of today.
+    pub fn current(&self, shot: &Shot) -> String {
+        let [width, height] = shot.size;
+        let (name, samples) = (&self.preset.name, shot.samples);
+        format!("{name}.png  {width}x{height}, {samples} samples, of {}", self.fingerprint)
+    }
+}
+
+/// All of a preset that its picture depends on, as one text.
+fn settings(preset: &Preset) -> String {
+    let Preset { program, key, scene, probe, passes, numbers, .. } = preset;
+    serde_json::json!([program, key, scene, probe, passes, numbers]).to_string()
+}
+
+fn texts(stages: &Stages) -> Vec<Arc<str>> {
+    let vertex = stages.vertex.text.clone();
+    let fragment = stages.fragment.iter().map(|stage| stage.text.clone());
+    let other: Vec<_> = fragment.filter(|text| *text != vertex).collect();
+    std::iter::once(vertex).chain(other).collect()
+}
+
+fn named(stages: &Stages) -> Vec<String> {
+    let all = [Some(&stages.vertex), stages.fragment.as_ref()];
+    let all = all.into_iter().flatten().flat_map(|stage| stage.functions.iter().cloned());
+    all.collect::<std::collections::BTreeSet<_>>().into_iter().collect()
+}
+
+/// The path of a picture beside the page, and that of the smaller one which the page shows.
+pub fn files(name: &str) -> [String; 2] {
+    [format!("{name}.png"), format!("thumbs/{name}.png")]
 }
 
 /// The composed texts by path beside the page, those of the first card that has them.
@@ -118,14 +166,8 @@ fn first_alike(cards: &[&Card]) -> Vec<usize> {
     cards.iter().map(first).collect()
 }
 
-/// Which driver drew which picture: a line each, for the eye and for tests.
+/// Which driver drew which picture of what: a line each, for the eye and for tests.
 pub fn adapters(exhibits: &[Exhibit], shot: &Shot) -> String {
-    let [width, height] = shot.size;
-    let line = |exhibit: &Exhibit| {
-        format!(
-            "{}.png  {width}x{height}, {} samples, {}\n",
-            exhibit.card.preset.name, shot.samples, exhibit.adapter
-        )
-    };
+    let line = |exhibit: &Exhibit| format!("{}, {}\n", exhibit.card.current(shot), exhibit.adapter);
     exhibits.iter().map(line).collect()
 }
