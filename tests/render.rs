@@ -4,6 +4,7 @@
 mod accounted;
 mod closed_forms;
 mod command;
+mod compared;
 mod difference;
 mod frames;
 mod needs;
@@ -62,6 +63,7 @@ pub fn trials() -> Vec<Trial> {
     presets
         .chain(forms)
         .chain(accounted::trials())
+        .chain(compared::trials())
         .chain(pages::trials())
         .chain(command::trials())
         .chain(needs::trials())

@@ -47,6 +47,12 @@ impl Difference {
         sorted[sorted.len() * 99 / 100]
     }
 
+    /// The share of the pixels that are farther apart than a distance.
+    pub fn share(&self, distance: f64) -> f64 {
+        let count = self.distances.iter().filter(|found| **found > distance).count();
+        count as f64 / self.distances.len() as f64
+    }
+
     pub fn is_visible(&self) -> bool {
         !(self.mean() <= MEAN && self.most() <= MOST)
     }

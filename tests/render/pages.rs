@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lamplight::bundle::Language;
-use lamplight::picture::{Picture, gallery, is_own_png, render};
+use lamplight::picture::{Picture, gallery, is_own_png, render, strip};
 use lamplight::scene::Equirect;
 use libtest_mimic::{Failed, Trial};
 
@@ -72,10 +72,15 @@ fn gallery_is_current() -> Result<(), Failed> {
         .map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
     let cards: Vec<gallery::Card> = cards.collect::<Result<_, _>>().map_err(said)?;
     let cards: Vec<&gallery::Card> = cards.iter().collect();
+    let strips = library().programs.with_texts(strip::library).map_err(said)?;
+    let strips = strips
+        .into_iter()
+        .map(|one| gallery::StripCard::new(&library().programs, one, Language::Wesl));
+    let strips: Vec<gallery::StripCard> = strips.collect::<Result<_, _>>().map_err(said)?;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(GALLERY);
     let mut files = gallery::composed(&cards);
-    files.push(("README.md".to_owned(), gallery::markdown(&cards)));
-    files.push(("index.html".to_owned(), gallery::html(&cards)));
+    files.push(("README.md".to_owned(), gallery::markdown(&cards, &strips)));
+    files.push(("index.html".to_owned(), gallery::html(&cards, &strips)));
     let mut stale = Vec::new();
     for (path, wanted) in files {
         let found = std::fs::read_to_string(folder.join(&path)).unwrap_or_default();
@@ -91,6 +96,12 @@ fn gallery_is_current() -> Result<(), Failed> {
             stale.push(format!("{name}.png was drawn from other settings or texts"));
         }
         stale.extend(changed(&folder, name)?);
+    }
+    for card in &strips {
+        if !adapters.lines().any(|line| line.starts_with(&card.current(&shot))) {
+            stale.push(format!("{} was drawn from other settings or texts", card.comparison.name));
+        }
+        read(&folder.join(gallery::strip_file(&card.comparison.name)))?;
     }
     if stale.is_empty() {
         return Ok(());

@@ -4,11 +4,12 @@ use std::io::Write;
 use std::time::Instant;
 
 use super::super::terminal::stdout;
-use super::{Failure, input, library};
+use super::{Failure, comparisons, input, library};
 use crate::execute::Session;
 use crate::output::Folder;
 use crate::picture::frame::Programs;
-use crate::picture::gallery::{self, Card, Exhibit};
+use crate::picture::gallery::{self, Card, Exhibit, StripCard};
+use crate::picture::strip;
 use crate::picture::{Plan, Shot};
 
 /// Files that are not named after a preset.
@@ -16,7 +17,7 @@ const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
 
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
 pub fn run(
-    painter: &dyn Session,
+    painter: &mut dyn Session,
     programs: &Programs,
     shot: &Shot,
     mut folder: Folder,
@@ -32,11 +33,15 @@ pub fn run(
             folder.check(&file, None)?;
         }
     }
+    let compared = comparisons(programs)?;
+    for comparison in &compared {
+        folder.check(&gallery::strip_file(&comparison.name), None)?;
+    }
     let mut exhibits = Vec::new();
     for preset in &presets {
         let plan = Plan::of_preset(programs, preset, &probes)
             .map_err(|problems| input(programs, problems))?;
-        let exhibit = Exhibit::new(painter, programs, preset, &plan, shot)
+        let exhibit = Exhibit::new(&*painter, programs, preset, &plan, shot)
             .map_err(|problems| input(programs, problems))?;
         let [picture, thumb] = gallery::files(&preset.name);
         let small = exhibit.picture.shrunk(gallery::THUMB);
@@ -44,20 +49,32 @@ pub fn run(
         folder.write(&thumb, &small.png().map_err(Failure::environment)?)?;
         exhibits.push(exhibit);
     }
+    let mut lines = gallery::adapters(&exhibits, shot);
+    let mut strips = Vec::new();
+    for comparison in compared {
+        let picture = strip::draw(painter, programs, &comparison, shot)
+            .map_err(|problems| input(programs, problems))?;
+        let file = gallery::strip_file(&comparison.name);
+        folder.write(&file, &picture.png().map_err(Failure::environment)?)?;
+        let card = StripCard::new(programs, comparison, shot.language)
+            .map_err(|problems| input(programs, problems))?;
+        lines += &format!("{}, {}\n", card.current(shot), painter.adapter());
+        strips.push(card);
+    }
     let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
-    folder.write("README.md", gallery::markdown(&cards).as_bytes())?;
+    folder.write("README.md", gallery::markdown(&cards, &strips).as_bytes())?;
     for (path, text) in gallery::composed(&cards) {
         folder.write(&path, text.as_bytes())?;
     }
-    folder.write("index.html", gallery::html(&cards).as_bytes())?;
-    folder.write("adapters.txt", gallery::adapters(&exhibits, shot).as_bytes())?;
+    folder.write("index.html", gallery::html(&cards, &strips).as_bytes())?;
+    folder.write("adapters.txt", lines.as_bytes())?;
     let shown = folder.path().display().to_string();
     folder.finish()?;
     let seconds = start.elapsed().as_secs_f64();
     Ok(writeln!(
         stdout(),
         "{shown}: {} pictures in {seconds:.1} s, {}",
-        exhibits.len(),
+        exhibits.len() + strips.len(),
         painter.adapter()
     )?)
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Card, SIZE, THUMB, files, first_alike};
+use super::{Card, SIZE, StripCard, THUMB, files, first_alike, strip_file};
 
 const HEAD: &str = "<!doctype html>
 <html lang=\"en\">
@@ -17,6 +17,7 @@ body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 74rem
   background: var(--page); color: var(--ink); }
 a { color: var(--link); }
 nav { display: flex; flex-wrap: wrap; gap: .3rem .9rem; font-size: .9rem; }
+section { border-top: 1px solid var(--edge); padding: 1rem 0; }
 article { display: flex; gap: 1.5rem; flex-wrap: wrap; padding: 1.5rem 0; border-top: 1px solid var(--edge); }
 article > div { flex: 1 1 24rem; min-width: 0; }
 article > a { flex: 0 1 480px; align-self: flex-start; }
@@ -34,14 +35,17 @@ pre { overflow: auto; padding: .6rem .8rem; border: 1px solid var(--edge); borde
 ";
 
 /// The page.
-pub fn page(cards: &[&Card]) -> String {
+pub fn page(cards: &[&Card], strips: &[StripCard]) -> String {
     let mut text = HEAD.to_owned();
     text.push_str("<nav>\n");
-    for card in cards {
-        let name = escaped(&card.preset.name);
+    let compared = strips.iter().map(|card| &card.comparison.name);
+    for name in compared.chain(cards.iter().map(|card| &card.preset.name)) {
+        let name = escaped(name);
         let _ = writeln!(text, "<a href=\"#{name}\">{name}</a>");
     }
     text.push_str("</nav>\n");
+    text.push_str("<h2>Comparisons</h2>\n");
+    strips.iter().for_each(|card| strip(&mut text, card));
     let firsts = first_alike(cards);
     let mut here = "";
     for (card, first) in cards.iter().zip(firsts) {
@@ -53,6 +57,19 @@ pub fn page(cards: &[&Card]) -> String {
     }
     text.push_str("</body>\n</html>\n");
     text
+}
+
+fn strip(text: &mut String, card: &StripCard) {
+    let (name, file) = (escaped(&card.comparison.name), strip_file(&card.comparison.name));
+    let _ = writeln!(
+        text,
+        "<section id=\"{name}\">\n<h3>{name}</h3>\n<p>{}</p>\n<p class=\"look\">{}</p>\n\
+         <a href=\"{file}\"><img alt=\"{name}\" src=\"{file}\" loading=\"lazy\"></a>\n\
+         <pre>{}</pre>\n</section>",
+        prose(&card.comparison.doc),
+        prose(&card.comparison.look),
+        escaped(&card.command())
+    );
 }
 
 fn article(text: &mut String, card: &Card, first: &Card) {

@@ -2,17 +2,19 @@
 
 use std::fmt::Write as _;
 
-use super::{Card, files, first_alike};
+use super::{Card, StripCard, files, first_alike, strip_file};
 
 /// Pictures in one row of the overview.
 const COLUMNS: usize = 4;
 
 /// The page. Pictures and their smaller forms are beside it.
-pub fn page(cards: &[&Card]) -> String {
+pub fn page(cards: &[&Card], strips: &[StripCard]) -> String {
     let mut text = "# Gallery\n\nEvery published example, drawn by `lamplight render --all`: a \
                     picture shows its large form. Which driver drew\nwhich picture is in \
                     [adapters.txt](adapters.txt).\n"
         .to_owned();
+    text.push_str("\n## Comparisons\n");
+    strips.iter().for_each(|card| strip(&mut text, card));
     let firsts = first_alike(cards);
     let mut at = 0;
     for group in cards.chunk_by(|a, b| a.preset.work() == b.preset.work()) {
@@ -24,6 +26,29 @@ pub fn page(cards: &[&Card]) -> String {
         }
     }
     text
+}
+
+/// A comparison, and the permutations or expressions of its panels.
+fn strip(text: &mut String, card: &StripCard) {
+    let (name, file) = (&card.comparison.name, strip_file(&card.comparison.name));
+    let (doc, look) = (&card.comparison.doc, &card.comparison.look);
+    let _ = write!(
+        text,
+        "\n### {name}\n\n[![{name}]({file})]({file})\n\n{doc} **Look for:** {look}\n\n\
+         ```sh\n{}\n```\n\n",
+        card.command()
+    );
+    for panel in &card.comparison.panels {
+        let made = panel.value.as_ref().unwrap_or(&panel.key).replace(',', ", ");
+        let cascades = if panel.cascades > 1 { " with cascades" } else { "" };
+        let _ = write!(text, "- {}{cascades}: `{}`", panel.label, made.replace(",  ", ", "));
+        for (group, fields) in &panel.numbers {
+            for (field, value) in fields {
+                let _ = write!(text, ", `{group}.{field}` = {value}");
+            }
+        }
+        text.push('\n');
+    }
 }
 
 fn overview(text: &mut String, cards: &[&Card]) {

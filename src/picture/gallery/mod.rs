@@ -9,7 +9,8 @@ pub use markdown::page as markdown;
 use std::sync::Arc;
 
 use super::pixels::Picture;
-use super::plan::Plan;
+use super::plan::{Pass, Plan};
+use super::strip::{self, Comparison};
 use super::{Shot, prepare};
 use crate::bundle::Language;
 use crate::catalogue::preset::Preset;
@@ -73,20 +74,13 @@ impl Card {
         let plan = Plan::of_preset(programs, preset, &[])?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(settings(preset).as_bytes());
-        let (mut own, mut functions) = (Vec::new(), Vec::new());
-        for pass in &plan.passes {
-            let unknown = || {
-                let message = format!("there is no program `{}`", pass.program);
-                vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
-            };
-            let program = programs.manifest().program(&pass.program).ok_or_else(unknown)?;
-            let stages = programs.stages(program, &pass.settings, language)?;
-            own = texts(&stages);
-            own.iter().for_each(|text| {
-                hasher.update(text.as_bytes());
-            });
-            functions = named(&stages);
+        let all = composed_texts(programs, &plan, language)?;
+        for text in all.concat() {
+            hasher.update(text.as_bytes());
         }
+        let own = all.into_iter().next_back().unwrap_or_default();
+        let last = plan.last().map(|pass| stages(programs, pass, language)).transpose()?;
+        let functions = last.map_or_else(Vec::new, |stages| named(&stages));
         let fingerprint = hasher.finalize().to_hex()[..16].to_owned();
         Ok(Self { preset: preset.clone(), texts: own, functions, fingerprint })
     }
@@ -107,9 +101,7 @@ impl Card {
 
     /// The command that draws it.
     fn command(&self) -> String {
-        let [width, height] = SIZE;
-        let name = &self.preset.name;
-        format!("lamplight render {name} --size {width}x{height} --samples {SAMPLES}")
+        command(&self.preset.name)
     }
 
     /// Each function of the library in its text: the path, and its page beside the gallery.
@@ -122,10 +114,82 @@ impl Card {
 
     /// What a line of [`adapters`] begins with, if the picture is of today.
     pub fn current(&self, shot: &Shot) -> String {
-        let [width, height] = shot.size;
-        let (name, samples) = (&self.preset.name, shot.samples);
-        format!("{name}.png  {width}x{height}, {samples} samples, of {}", self.fingerprint)
+        current(&format!("{}.png", self.preset.name), shot, &self.fingerprint)
     }
+}
+
+/// What is said of a comparison.
+pub struct StripCard {
+    pub comparison: Comparison,
+    fingerprint: String,
+}
+
+impl StripCard {
+    /// What is said of a comparison without its picture.
+    ///
+    /// # Errors
+    /// Those of the compositions.
+    pub fn new(
+        programs: &Programs,
+        comparison: Comparison,
+        language: Language,
+    ) -> Result<Self, Diagnostics> {
+        let mut hasher = blake3::Hasher::new();
+        let Comparison { scene, code, inset, panels, .. } = &comparison;
+        hasher.update(serde_json::json!([scene, code, inset, panels]).to_string().as_bytes());
+        for panel in panels.iter().filter(|panel| panel.value.is_none()) {
+            let plan = strip::plan(programs, &comparison, panel)?;
+            for text in composed_texts(programs, &plan, language)?.concat() {
+                hasher.update(text.as_bytes());
+            }
+        }
+        let fingerprint = hasher.finalize().to_hex()[..16].to_owned();
+        Ok(Self { comparison, fingerprint })
+    }
+
+    /// What a line of `adapters.txt` begins with, if the picture is of today.
+    pub fn current(&self, shot: &Shot) -> String {
+        current(&strip_file(&self.comparison.name), shot, &self.fingerprint)
+    }
+
+    /// The command that draws it.
+    fn command(&self) -> String {
+        command(&self.comparison.name)
+    }
+}
+
+/// The path of a comparison's picture beside the page.
+pub fn strip_file(name: &str) -> String {
+    format!("compared/{name}.png")
+}
+
+fn current(file: &str, shot: &Shot, fingerprint: &str) -> String {
+    let ([width, height], samples) = (shot.size, shot.samples);
+    format!("{file}  {width}x{height}, {samples} samples, of {fingerprint}")
+}
+
+fn command(name: &str) -> String {
+    let [width, height] = SIZE;
+    format!("lamplight render {name} --size {width}x{height} --samples {SAMPLES}")
+}
+
+/// The texts of every pass.
+fn composed_texts(
+    programs: &Programs,
+    plan: &Plan,
+    language: Language,
+) -> Result<Vec<Vec<Arc<str>>>, Diagnostics> {
+    let stages = |pass| Ok(texts(&stages(programs, pass, language)?));
+    plan.passes.iter().map(stages).collect()
+}
+
+fn stages(programs: &Programs, pass: &Pass, language: Language) -> Result<Stages, Diagnostics> {
+    let unknown = || {
+        let message = format!("there is no program `{}`", pass.program);
+        vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
+    };
+    let program = programs.manifest().program(&pass.program).ok_or_else(unknown)?;
+    programs.stages(program, &pass.settings, language)
 }
 
 /// All of a preset that its picture depends on, as one text.
