@@ -66,7 +66,8 @@ pub fn prepare(
     let size = scene.map_size.unwrap_or_else(|| twice.clamp(MAP_SIZES.0, MAP_SIZES.1));
     let slice = |scene: &Scene, light: LightView| {
         let lit = with_bulbs(scene, plan, last, &light, shot);
-        let values = Values { plan, scene: lit.as_ref().unwrap_or(scene), last, light: &light, shot };
+        let values =
+            Values { plan, scene: lit.as_ref().unwrap_or(scene), last, light: &light, shot };
         let studio = Studio { painter, programs, values };
         let mut left = Left::Nothing;
         for pass in &plan.passes[..plan.passes.len() - 1] {

@@ -140,10 +140,7 @@ fn written(arguments: &Arguments, picture: &Picture) -> Result<PathBuf, Failure>
 }
 
 /// The comparison that is named, if it is one.
-fn comparison(
-    programs: &Programs,
-    arguments: &Arguments,
-) -> Result<Option<Comparison>, Failure> {
+fn comparison(programs: &Programs, arguments: &Arguments) -> Result<Option<Comparison>, Failure> {
     let Some(name) = &arguments.preset else { return Ok(None) };
     let found = comparisons(programs)?.into_iter().find(|comparison| comparison.name == *name);
     let is_changed = !arguments.set.is_empty()

@@ -91,7 +91,8 @@ fn article(text: &mut String, card: &Card, first: &Card) {
     }
     let _ = writeln!(text, "<li>{}</li>", escaped(&preset.source));
     for (program, key) in card.passes() {
-        let page = link(&format!("../catalogue/programs.md#{}", program.replace('_', "-")), program);
+        let page =
+            link(&format!("../catalogue/programs.md#{}", program.replace('_', "-")), program);
         let _ = writeln!(text, "<li>{page}: <code>{}</code></li>", escaped(&key));
     }
     let functions: Vec<String> = card.functions().map(|(name, page)| link(&page, name)).collect();

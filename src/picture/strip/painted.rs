@@ -8,9 +8,9 @@ use glam::DVec3;
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::{Session, kernel};
+use crate::picture::Shot;
 use crate::picture::pixels::Linear;
 use crate::picture::prepared::shift;
-use crate::picture::Shot;
 use crate::proof::library::Library;
 use crate::source::SourceSet;
 
