@@ -14,18 +14,29 @@ const HALF: f64 = 2.4;
 
 const PROFILE: &[(f64, f64)] = &[
     (0.0, 0.0),
-    (0.55, 0.0),
-    (0.55, 0.02),
-    (0.55, 0.28),
-    (0.54, 0.3),
-    (0.36, 0.34),
-    (0.36, 0.4),
-    (0.33, 1.8),
-    (0.29, 3.2),
-    (0.31, 3.26),
-    (0.5, 3.45),
+    (0.46, 0.0),
+    (0.52, 0.012),
+    (0.55, 0.05),
+    (0.555, 0.1),
+    (0.555, 0.18),
+    (0.55, 0.25),
+    (0.53, 0.29),
+    (0.48, 0.315),
+    (0.42, 0.335),
+    (0.38, 0.37),
+    (0.36, 0.45),
+    (0.35, 0.7),
+    (0.335, 1.8),
+    (0.31, 2.8),
+    (0.3, 3.05),
+    (0.3, 3.15),
+    (0.32, 3.24),
+    (0.4, 3.36),
+    (0.47, 3.43),
     (0.5, 3.48),
-    (0.5, 3.6),
+    (0.505, 3.54),
+    (0.49, 3.58),
+    (0.44, 3.6),
     (0.0, 3.6),
 ];
 
@@ -42,11 +53,10 @@ pub fn scene() -> Scene {
     let length = STEP * COLUMNS as f64;
     let far = DVec3::NEG_Z * length;
     let floor = Shape::patch(DVec3::new(-HALF - 6.0, 0.0, 4.0), DVec3::X * 14.0, far, (14, 28));
-    let wall = Shape::patch(DVec3::new(HALF, 0.0, 4.0 - length), -far, DVec3::Y * 4.4, (28, 4))
-        .transformed(DMat4::IDENTITY);
+    let wall = Shape::patch(DVec3::new(HALF, 0.0, 4.0 - length), -far, DVec3::Y * 4.4, (28, 4));
     let beam = Shape::cuboid(DVec3::new(0.5, 0.3, 0.5 * length), 1);
     let profile: Vec<DVec2> = PROFILE.iter().map(|(r, h)| DVec2::new(*r, *h)).collect();
-    let column = Shape::lathe(&profile, (28, 52));
+    let column = Shape::lathe(&profile, (28, 88));
     let row = (0..COLUMNS).fold(Shape::default(), |row, index| {
         let z = 2.0 - STEP * index as f64;
         row.with(
