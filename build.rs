@@ -167,6 +167,9 @@ fn modules(folder: &Path, constant: &str, ty: &str) -> std::io::Result<String> {
     let mut entries = String::new();
     for path in files(folder, "rs")? {
         let name = stem(&path);
+        if folder.ends_with("executors") && !exists_here(&name) {
+            continue;
+        }
         let _ = writeln!(table, "#[path = {:?}]\npub mod {name};", path);
         let _ = write!(entries, "&{name}::{constant}, ");
     }
@@ -175,6 +178,13 @@ fn modules(folder: &Path, constant: &str, ty: &str) -> std::io::Result<String> {
         "/// One entry for each file of the folder, by name.\npub const ALL: &[&{ty}] = &[{entries}];"
     );
     Ok(table)
+}
+
+/// Whether an executor can be had on the machine that the crate is built for: WebAssembly has the
+/// evaluator alone, and its page draws.
+fn exists_here(executor: &str) -> bool {
+    let family = env::var("CARGO_CFG_TARGET_FAMILY").unwrap_or_default();
+    executor == "eval" || !family.split(',').any(|name| name == "wasm")
 }
 
 /// The shader library as text, so that an installed binary carries it.

@@ -109,6 +109,8 @@
 //! Modules that are not listed here serve the command line and may change with any version.
 
 #![warn(missing_docs)]
+// A page has no devices, files or programs: what only those use is not called there.
+#![cfg_attr(target_family = "wasm", allow(dead_code, unused_imports))]
 
 pub mod bundle;
 #[doc(hidden)]
@@ -175,8 +177,11 @@ pub mod validate;
 
 #[cfg(feature = "harness")]
 #[doc(hidden)]
-pub mod catalogue;
+pub mod browser;
 #[cfg(feature = "harness")]
+#[doc(hidden)]
+pub mod catalogue;
+#[cfg(all(feature = "harness", not(target_family = "wasm")))]
 #[doc(hidden)]
 pub mod cost;
 #[cfg(feature = "harness")]

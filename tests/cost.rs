@@ -3,6 +3,9 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use lamplight::catalogue::cost;
+use lamplight::project;
+use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 
@@ -19,6 +22,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("cost::gpus_named_twice_are_one", gpus_named_twice),
         Trial::test("cost::a_rise_fails", a_rise_fails),
         Trial::test("cost::functions_keep_their_budget", budget),
+        Trial::test("cost::record_is_current", record_is_current),
         Trial::test("cost::wrong_names", wrong_names),
         Trial::test("cost::without_a_driver", without_a_driver),
     ]
@@ -284,6 +288,45 @@ fn budget() -> Outcome {
         }
         code => Err(format!("{code:?}: {}", said(&output)).into()),
     }
+}
+
+/// What the catalogue shows is what is measured, where the driver is the one that was recorded; and
+/// every value of every axis is one of the library's manifest.
+fn record_is_current() -> Outcome {
+    let mut sources = SourceSet::default();
+    let library = cost::library(&mut sources);
+    let recorded = library.map_err(|problems| format!("{problems:?}"))?;
+    let (_, manifest) =
+        project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;
+    for row in &recorded.axes {
+        let program = manifest.programs.iter().find(|program| program.name == row.program);
+        let mut axes = program.iter().flat_map(|program| program.space.axes());
+        let axis = axes.find(|axis| axis.name == row.axis);
+        if !axis.is_some_and(|axis| axis.value_names().contains(&row.value)) {
+            return Err(format!("{row:?}: run `cargo xtask docs --costs`").into());
+        }
+    }
+    let found = objects(&[])?;
+    let measured_by = found.first().map_or(&Value::Null, |object| &object["driver"]);
+    if *measured_by != recorded.driver.as_str() {
+        eprintln!("not compared: `{}` was recorded, this is {measured_by}", recorded.driver);
+        return Ok(());
+    }
+    if found.len() != recorded.functions.len() * recorded.gpus.len() {
+        return Err("other functions are recorded: run `cargo xtask docs --costs`".into());
+    }
+    for object in &found {
+        let (name, gpu) = (object["name"].as_str(), object["gpu"].as_str());
+        let at = recorded.gpus.iter().position(|chip| Some(chip.name.as_str()) == gpu);
+        let row = at.and_then(|at| recorded.functions.get(name?)?.get(at));
+        let keys = ["instructions", "vgprs", "latency", "inverse_throughput"];
+        let keys = keys.map(|key| object["net"][key].as_i64());
+        if row.map(|row| row.map(Some)) != Some(keys) {
+            let text = format!("{name:?} on {gpu:?}: recorded {row:?}, measured {keys:?}");
+            return Err(format!("{text}: run `cargo xtask docs --costs`").into());
+        }
+    }
+    Ok(())
 }
 
 /// Recorded costs with another driver and other numbers of instructions.

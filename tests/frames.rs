@@ -12,7 +12,9 @@ use lamplight::bundle::{
 };
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
-use lamplight::execute::frame::{Attribute, Buffers, Drawing, EntryPoint, Item, Mesh, State};
+use lamplight::execute::frame::{
+    Attribute, Buffers, Drawing, EntryPoint, Item, Mesh, State, VertexFormat,
+};
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::generate::{Request, in_memory};
 use lamplight::permute::axis::ValueSet;
@@ -327,10 +329,10 @@ fn mesh(vertex: &Reflection) -> Mesh {
     for input in &vertex.inputs {
         let Some(location) = input.location else { continue };
         let format = match input.ty.as_str() {
-            "u32" => wgpu::VertexFormat::Uint32,
-            ty if ty.starts_with("vec2") => wgpu::VertexFormat::Float32x2,
-            ty if ty.starts_with("vec3") => wgpu::VertexFormat::Float32x3,
-            _ => wgpu::VertexFormat::Float32x4,
+            "u32" => VertexFormat::Uint32,
+            ty if ty.starts_with("vec2") => VertexFormat::Float32x2,
+            ty if ty.starts_with("vec3") => VertexFormat::Float32x3,
+            _ => VertexFormat::Float32x4,
         };
         attributes.push(Attribute { location, format });
     }

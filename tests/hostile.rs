@@ -8,6 +8,7 @@ mod manifests;
 mod pictures;
 mod printed;
 mod shaders;
+mod stores;
 
 use std::fs;
 use std::process::{Command, Output, Stdio};
@@ -26,7 +27,7 @@ pub fn trials() -> Vec<Trial> {
         .into_iter()
         .flatten()
         .map(|case| Trial::test(format!("hostile::{}", case.name), move || case.check()));
-    let others = [bundles::trials(), isolated::trials(), printed::trials()];
+    let others = [bundles::trials(), isolated::trials(), printed::trials(), stores::trials()];
     rows.chain(others.into_iter().flatten()).collect()
 }
 

@@ -9,6 +9,7 @@
     clippy::wrong_self_convention
 )]
 
+mod browser;
 mod bundle;
 mod catalogue;
 mod compose_glsl;
@@ -56,6 +57,7 @@ mod shadow;
 mod snapshot;
 mod specialise;
 mod tables;
+mod toolchain;
 mod traps;
 
 use std::process::ExitCode;
@@ -63,6 +65,7 @@ use std::process::ExitCode;
 use libtest_mimic::{Arguments, Trial};
 
 const KINDS: &[fn() -> Vec<Trial>] = &[
+    browser::trials,
     bundle::trials,
     catalogue::trials,
     compose_glsl::trials,
@@ -107,6 +110,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     shadow::trials,
     specialise::trials,
     tables::trials,
+    toolchain::trials,
     traps::trials,
 ];
 

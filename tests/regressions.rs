@@ -3,9 +3,12 @@
 
 #[path = "../fuzz/src/kinds.rs"]
 pub mod kinds;
+#[path = "../xtask/src/fuzz/mutate.rs"]
+mod mutate;
 #[path = "../fuzz/src/proofs.rs"]
 mod proofs;
 
+use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -18,7 +21,10 @@ const LONGEST: Duration = Duration::from_secs(10);
 pub fn trials() -> Vec<Trial> {
     let seeds =
         all().map(|kind| Trial::test(format!("regressions::{}", kind.name), || seeded(kind)));
+    let mutants = all()
+        .map(|kind| Trial::test(format!("regressions::{}::mutants", kind.name), || mutants(kind)));
     seeds
+        .chain(mutants)
         .chain(all().flat_map(|kind| files(kind).into_iter().map(move |file| trial(kind, file))))
         .collect()
 }
@@ -40,6 +46,35 @@ fn seeded(kind: &Kind) -> Result<(), Failed> {
     }
 }
 
+/// Mutants of valid inputs that each kind is given, from the same seed each time:
+/// `LAMPLIGHT_FUZZ_INPUTS` and `LAMPLIGHT_FUZZ_SEED` ask for others. The generator is that of
+/// `cargo xtask fuzz`, which tries kinds that need the harness from outside alone.
+const MUTANTS: u64 = 100;
+
+fn mutants(kind: &Kind) -> Result<(), Failed> {
+    let number = |name: &str, usual| match std::env::var(name) {
+        Ok(text) => text.parse().map_err(|_| Failed::from(format!("{name} is no number"))),
+        Err(_) => Ok(usual),
+    };
+    let count: u64 = number("LAMPLIGHT_FUZZ_INPUTS", MUTANTS)?;
+    let mut random = mutate::Random(number("LAMPLIGHT_FUZZ_SEED", 1)?);
+    let corpus = mutate::corpus(Path::new(env!("CARGO_MANIFEST_DIR")), kind);
+    let words: Vec<&str> = kind.words.split_whitespace().collect();
+    for index in 0..count {
+        let input = mutate::mutated(&mut random, &corpus, &words);
+        let judged = catch_unwind(|| judge(kind, &input));
+        let failed = judged.unwrap_or_else(|_| Err("it panicked".into()));
+        failed.map_err(|failed| {
+            let path =
+                Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.{index}", kind.name));
+            let kept = std::fs::write(&path, &input).map(|()| path);
+            let reason = failed.message().unwrap_or_default();
+            format!("mutant {index}: {reason}; it is in {kept:?}")
+        })?;
+    }
+    Ok(())
+}
+
 fn files(kind: &Kind) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/regressions").join(kind.name);
     let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
@@ -58,11 +93,15 @@ fn trial(kind: &'static Kind, file: PathBuf) -> Trial {
 }
 
 fn replay(kind: &Kind, file: &Path) -> Result<(), Failed> {
-    let input = std::fs::read(file)?;
+    judge(kind, &std::fs::read(file)?)
+}
+
+/// An input has one answer, soon.
+fn judge(kind: &Kind, input: &[u8]) -> Result<(), Failed> {
     let started = Instant::now();
-    let answer = (kind.run)(&input);
+    let answer = (kind.run)(input);
     if started.elapsed() > LONGEST {
         return Err(format!("took {:?}", started.elapsed()).into());
     }
-    if (kind.run)(&input) == answer { Ok(()) } else { Err("two answers to one input".into()) }
+    if (kind.run)(input) == answer { Ok(()) } else { Err("two answers to one input".into()) }
 }

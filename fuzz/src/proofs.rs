@@ -1,4 +1,4 @@
-//! What goes into numeric cases and pictures. The crate needs its harness for these, which `cargo
+//! What goes into numeric cases, pictures and the language server. The crate needs its harness for these, which `cargo
 //! xtask` does without: it fuzzes the same from outside.
 
 use std::collections::BTreeMap;
@@ -7,10 +7,12 @@ use std::sync::{Arc, Mutex};
 use lamplight::bundle::Language;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::executors;
+use lamplight::lsp::Server;
 use lamplight::proof::check::{Open, failures, failures_as_text};
 use lamplight::proof::library::Library;
 use lamplight::scene::Equirect;
 use lamplight::source::{Memory, SourceSet};
+use serde_json::{Value, json};
 
 use super::kinds::Kind;
 
@@ -27,6 +29,17 @@ pub const KINDS: &[Kind] = &[
         corpus: &[("tests/regressions/picture", "")],
         words: "#?RADIANCE FORMAT=32-bit_rle_rgbe -Y +X",
         run: picture,
+    },
+    Kind {
+        name: "lsp",
+        corpus: &[
+            ("tests/regressions/lsp", ""),
+            ("tests/compose_wesl", ".wesl"),
+            ("shaderlib", ".wesl"),
+        ],
+        words: "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"textDocument/hover\",\"params\":{}} position line \
+            character -1 4294967295 import package:: lamplight:: @if( constants:: fn struct { } ( ) ;",
+        run: lsp,
     },
 ];
 
@@ -58,4 +71,83 @@ fn text(bytes: &[u8]) -> String {
 
 fn picture(bytes: &[u8]) -> String {
     Equirect::from_radiance(bytes).err().unwrap_or_default()
+}
+
+const URI: &str = "file:///no/such/folder/lamp.wesl";
+
+/// What is asked after each new text, at places all over it.
+const QUESTIONS: &[&str] = &[
+    "textDocument/hover",
+    "textDocument/completion",
+    "textDocument/definition",
+    "textDocument/references",
+    "textDocument/signatureHelp",
+    "textDocument/prepareRename",
+];
+
+/// What is asked after each new text about all of it.
+const VIEWS: &[&str] = &[
+    "textDocument/documentSymbol",
+    "textDocument/formatting",
+    "textDocument/semanticTokens/full",
+    "textDocument/codeLens",
+];
+
+/// Places of a text at which questions are asked.
+const PLACES: usize = 4;
+
+/// A conversation: a line that is a JSON object is a message of the editor, and the lines between
+/// two of them are a new text of its file.
+fn lsp(bytes: &[u8]) -> String {
+    let mut server = Server::new(Box::new(|_| None));
+    let mut answers = String::new();
+    let mut edited = String::new();
+    let all = text(bytes);
+    for line in all.lines().chain(["{}"]) {
+        match serde_json::from_str(line) {
+            Ok(Value::Object(message)) => {
+                let new = std::mem::take(&mut edited);
+                if !new.is_empty() {
+                    converse(&mut server, &new, &mut answers);
+                }
+                say(&mut server, &Value::Object(message), &mut answers);
+            }
+            _ => {
+                edited.push_str(line);
+                edited.push('\n');
+            }
+        }
+    }
+    answers
+}
+
+/// A new text, what is wrong with it, and questions about it.
+fn converse(server: &mut Server, new: &str, answers: &mut String) {
+    let document = json!({ "uri": URI, "version": 1, "text": new });
+    let opened =
+        json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } });
+    say(server, &opened, answers);
+    while !server.is_idle() {
+        server.look().iter().for_each(|message| answers.push_str(&message.to_string()));
+    }
+    let lines: Vec<&str> = new.lines().collect();
+    let document = json!({ "uri": URI });
+    for part in 0..PLACES {
+        let line = lines.len() * part / PLACES;
+        let length = lines.get(line).map_or(0, |line| line.chars().count());
+        let place = json!({ "line": line, "character": length * (part + 1) / PLACES });
+        let parameters = json!({ "textDocument": document, "position": place, "context": {} });
+        ask(server, QUESTIONS, &parameters, answers);
+    }
+    ask(server, VIEWS, &json!({ "textDocument": document, "options": {} }), answers);
+}
+
+fn ask(server: &mut Server, methods: &[&str], parameters: &Value, answers: &mut String) {
+    for method in methods {
+        say(server, &json!({ "id": 1, "method": method, "params": parameters }), answers);
+    }
+}
+
+fn say(server: &mut Server, message: &Value, answers: &mut String) {
+    server.receive(message).iter().for_each(|answer| answers.push_str(&answer.to_string()));
 }

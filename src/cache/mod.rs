@@ -9,6 +9,7 @@ mod folder;
 mod record;
 
 pub use folder::Folder;
+pub use record::MOST_RECORD_BYTES;
 
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};

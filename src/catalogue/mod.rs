@@ -3,8 +3,9 @@
 //!
 //! Everything is read from the library's own files: names, signatures and documentation from the
 //! modules, [`plot`]s from `NAME.plot.toml` beside a module, [`preset`]s from `presets.toml`,
-//! [`probe`]s from `data/sh9_probes.toml`. [`pages`] writes the catalogue from them.
+//! [`probe`]s from `data/sh9_probes.toml`, recorded [`cost`]s from `costs.toml`. [`pages`] writes the catalogue from them.
 
+pub mod cost;
 mod natural;
 mod outline;
 pub mod pages;

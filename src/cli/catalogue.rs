@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::cost;
 use super::failure::Failure;
 use super::overwrite::Overwrite;
 use super::terminal::stdout;
+use crate::catalogue::cost::is_record;
 use crate::proof::catalogue::{self, Files};
 use crate::{input, output};
 
@@ -26,6 +28,9 @@ pub struct Arguments {
     /// Write the modules that are made from data into the library's sources instead.
     #[arg(long, value_name = "DIR", conflicts_with = "output")]
     modules: Option<PathBuf>,
+    /// Measure what functions and axes cost on GPUs, and write the record that the pages show.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "modules", "check"])]
+    pub costs: Option<PathBuf>,
     /// Write nothing; fail if anything would change.
     #[arg(long)]
     check: bool,
@@ -33,7 +38,12 @@ pub struct Arguments {
     overwrite: Overwrite,
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
+    if let Some(path) = &arguments.costs {
+        let text = cost::record(gpus)?.text();
+        let replace = arguments.overwrite.replace();
+        return Ok(output::write_file(path, text.as_bytes(), is_record, replace)?);
+    }
     let (folder, files) = match &arguments.modules {
         Some(folder) => (folder, catalogue::modules()),
         None => (&arguments.output, catalogue::pages()),

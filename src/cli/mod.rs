@@ -110,6 +110,9 @@ impl Command {
         match self {
             Self::Cost(arguments) => arguments.gpus.open(),
             Self::Variants(arguments) if arguments.cost => arguments.gpus.open(),
+            Self::Catalogue(arguments) if arguments.costs.is_some() => {
+                cost::Gpus::of_each_generation()
+            }
             _ => Ok(Vec::new()),
         }
     }
@@ -192,7 +195,7 @@ fn dispatch(
         Command::Keys(arguments) => keys::run(arguments, form),
         Command::Eval(arguments) => eval::run(arguments, form),
         Command::Check(arguments) => check::run(arguments),
-        Command::Catalogue(arguments) => catalogue::run(arguments),
+        Command::Catalogue(arguments) => catalogue::run(arguments, gpus),
         Command::Render(arguments) => render::run(arguments, form),
         Command::Cost(arguments) => cost::run(arguments, gpus, form),
         Command::Mutate(arguments) => mutate::run(arguments),

@@ -1,7 +1,6 @@
 //! Everything that can run a kernel: one file of `executors/` each.
 
 use super::Session;
-use super::gpu::{self, Api, OpenGl};
 use crate::bundle::Target;
 
 /// An executor, closed.
@@ -58,19 +57,22 @@ impl Entry {
 }
 
 /// Places in each pixel that devices average.
+#[cfg(not(target_family = "wasm"))]
 const DEVICE_SAMPLES: u32 = 4;
 
 /// A session on a device of wgpu.
-fn opened(wanted: gpu::Wanted) -> Result<Box<dyn Session>, Unavailable> {
-    match gpu::open(wanted) {
+#[cfg(not(target_family = "wasm"))]
+fn opened(wanted: super::gpu::Wanted) -> Result<Box<dyn Session>, Unavailable> {
+    match super::gpu::open(wanted) {
         Ok(gpu) => Ok(Box::new(gpu)),
         Err(reason) => Err(Unavailable { reason }),
     }
 }
 
 /// A session on a context of OpenGL, for the texts of a target.
-fn opened_opengl(api: Api, target: Target) -> Result<Box<dyn Session>, Unavailable> {
-    match OpenGl::open(api, target) {
+#[cfg(not(target_family = "wasm"))]
+fn opened_opengl(api: super::gpu::Api, target: Target) -> Result<Box<dyn Session>, Unavailable> {
+    match super::gpu::OpenGl::open(api, target) {
         Ok(opengl) => Ok(Box::new(opengl)),
         Err(reason) => Err(Unavailable { reason }),
     }

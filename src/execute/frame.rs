@@ -22,7 +22,29 @@ pub struct Mesh {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Attribute {
     pub location: u32,
-    pub format: wgpu::VertexFormat,
+    pub format: VertexFormat,
+}
+
+/// What an attribute is in a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VertexFormat {
+    Uint32,
+    Float32,
+    Float32x2,
+    Float32x3,
+    Float32x4,
+}
+
+impl VertexFormat {
+    /// Words of 32 bits.
+    pub fn words(self) -> u32 {
+        match self {
+            Self::Uint32 | Self::Float32 => 1,
+            Self::Float32x2 => 2,
+            Self::Float32x3 => 3,
+            Self::Float32x4 => 4,
+        }
+    }
 }
 
 /// An entry point of a module.
@@ -105,8 +127,9 @@ pub struct Frame {
 pub(super) type Place = (u32, u32);
 
 impl Mesh {
-    pub(super) fn stride(&self) -> u64 {
-        self.attributes.iter().map(|attribute| attribute.format.size()).sum()
+    /// Bytes of a vertex.
+    pub fn stride(&self) -> u64 {
+        self.attributes.iter().map(|attribute| 4 * u64::from(attribute.format.words())).sum()
     }
 
     /// Vertices.
@@ -118,16 +141,12 @@ impl Mesh {
         }
     }
 
-    pub(super) fn layout(&self) -> Vec<wgpu::VertexAttribute> {
+    /// Each attribute with its place in a vertex, in bytes.
+    pub fn layout(&self) -> Vec<(Attribute, u64)> {
         let offsets = self.attributes.iter().scan(0, |offset, attribute| {
-            Some(std::mem::replace(offset, *offset + attribute.format.size()))
+            Some(std::mem::replace(offset, *offset + 4 * u64::from(attribute.format.words())))
         });
-        let attribute = |(attribute, offset): (&Attribute, u64)| wgpu::VertexAttribute {
-            format: attribute.format,
-            offset,
-            shader_location: attribute.location,
-        };
-        self.attributes.iter().zip(offsets).map(attribute).collect()
+        self.attributes.iter().copied().zip(offsets).collect()
     }
 }
 

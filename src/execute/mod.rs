@@ -7,12 +7,15 @@
 //! `gpu`; the evaluator runs kernels in `interpreter`, compiled MSL in `metal`, and both draw
 //! [`frame`]s in [`raster`]. Frames are drawn from the bytes of a bundle too: [`shipped`].
 
+pub mod emitted;
 pub mod executors;
 pub mod fixture;
 pub mod frame;
+#[cfg(not(target_family = "wasm"))]
 pub(crate) mod gpu;
-pub(crate) mod interpreter;
+pub mod interpreter;
 pub mod kernel;
+#[cfg(not(target_family = "wasm"))]
 mod metal;
 pub mod raster;
 pub(crate) mod sampling;

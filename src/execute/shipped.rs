@@ -1,7 +1,7 @@
 //! Stages as a bundle holds them.
 
+use super::emitted;
 use super::frame::EntryPoint;
-use super::gpu::emitted;
 use crate::bundle::{Kind, Native, Reflection, Stage, Target};
 use crate::diagnostic::Diagnostic;
 use crate::emit::{self, Emitted};

@@ -57,10 +57,21 @@ impl Root<'_> {
         entries: &[(String, naga::ShaderStage)],
         targets: &[Target],
     ) -> Result<Vec<Shader>, Diagnostics> {
-        let linker = Linker::for_clip(targets, self.clip);
+        self.compile_with(entries, &Linker::for_clip(targets, self.clip))
+    }
+
+    /// As [`Self::compile`], with functions that were translated before: the bytes are the same.
+    ///
+    /// # Errors
+    /// What is wrong with any of them, each mistake once.
+    pub fn compile_with(
+        &self,
+        entries: &[(String, naga::ShaderStage)],
+        linker: &Linker<'_>,
+    ) -> Result<Vec<Shader>, Diagnostics> {
         let (mut shaders, mut errors) = (Vec::new(), Diagnostics::new());
         for (entry, stage) in entries {
-            match on_large_stack(|| self.one(entry, targets, &linker)) {
+            match on_large_stack(|| self.one(entry, linker)) {
                 Ok(made) => shaders.push(Shader { entry: entry.clone(), stage: *stage, made }),
                 Err(found) => errors.extend(found),
             }
@@ -72,17 +83,17 @@ impl Root<'_> {
         if errors.is_empty() { Ok(shaders) } else { Err(errors) }
     }
 
-    fn one(
-        &self,
-        entry: &str,
-        targets: &[Target],
-        linker: &Linker<'_>,
-    ) -> Result<Made, Diagnostics> {
+    fn one(&self, entry: &str, linker: &Linker<'_>) -> Result<Made, Diagnostics> {
         let options =
             Options { mangle: self.options.mangle, keep: kept(self.graph, self.options, entry) };
         let composed = compose::compose(self.graph, self.settings, &options)?;
         let lean = lean(&composed);
-        link::compile(&link::Text { composed: &composed, lean: &lean }, entry, targets, linker)
+        link::compile(
+            &link::Text { composed: &composed, lean: &lean },
+            entry,
+            linker.targets(),
+            linker,
+        )
     }
 }
 

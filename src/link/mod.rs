@@ -116,6 +116,11 @@ impl<'a> Linker<'a> {
         Self { targets, clip, pool: RwLock::new(Pool::new(targets)), asked, new }
     }
 
+    /// The targets it translates to.
+    pub fn targets(&self) -> &'a [Target] {
+        self.targets
+    }
+
     /// Puts a lean text together from its functions; those that are new are translated first.
     ///
     /// # Errors

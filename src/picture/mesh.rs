@@ -1,7 +1,7 @@
 //! Shapes as the vertex stage of a program takes them.
 
 use crate::bundle::{Reflection, Varying};
-use crate::execute::frame::{Attribute, Mesh};
+use crate::execute::frame::{Attribute, Mesh, VertexFormat};
 use crate::scene::sets::Object;
 use crate::scene::{Shape, Vertex};
 
@@ -28,18 +28,18 @@ pub fn attributes(vertex: &Reflection) -> Vec<Attribute> {
     vertex.inputs.iter().filter_map(attribute).collect()
 }
 
-fn format(ty: &str) -> wgpu::VertexFormat {
+fn format(ty: &str) -> VertexFormat {
     match ty {
-        "u32" => wgpu::VertexFormat::Uint32,
-        "f32" => wgpu::VertexFormat::Float32,
-        ty if ty.starts_with("vec2") => wgpu::VertexFormat::Float32x2,
-        ty if ty.starts_with("vec3") => wgpu::VertexFormat::Float32x3,
-        _ => wgpu::VertexFormat::Float32x4,
+        "u32" => VertexFormat::Uint32,
+        "f32" => VertexFormat::Float32,
+        ty if ty.starts_with("vec2") => VertexFormat::Float32x2,
+        ty if ty.starts_with("vec3") => VertexFormat::Float32x3,
+        _ => VertexFormat::Float32x4,
     }
 }
 
 fn components(attribute: Attribute) -> usize {
-    attribute.format.size() as usize / 4
+    attribute.format.words() as usize
 }
 
 /// What `forward` has at a location: tabulated in `programs/forward.wesl`.

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use super::library::Library;
 use super::plots;
 use crate::catalogue::pages::{Contents, pages as written};
-use crate::catalogue::{self, Module, plot, prefix, preset, probe};
+use crate::catalogue::{self, Module, cost, plot, prefix, preset, probe};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::{Session, executors, on_thread};
 use crate::permute::Manifest;
@@ -52,6 +52,7 @@ fn contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Di
         manifest,
         presets: &presets,
         probes: &probes,
+        costs: &cost::library(&mut lock(sources))?,
     }))
 }
 

@@ -11,7 +11,7 @@ use opendal::{ErrorKind, Operator};
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::timeout;
 
-use crate::cache::Storage;
+use crate::cache::{MOST_RECORD_BYTES, Storage};
 
 /// What an address may be, for help.
 pub const HELP: &str =
@@ -81,12 +81,23 @@ impl Store {
         let within = self.runtime.block_on(async { timeout(SHORT_PATIENCE, answer).await });
         within.map_err(|_| format!("no answer within {} s", SHORT_PATIENCE.as_secs()))
     }
+
+    /// A record, unless it is longer than any of ours: its length is asked for first, since what is
+    /// read is held in memory.
+    async fn bounded(&self, name: &str) -> opendal::Result<Vec<u8>> {
+        let length = self.operator.stat(name).await?.content_length();
+        if length > MOST_RECORD_BYTES {
+            let reason = format!("a record of {length} bytes");
+            return Err(opendal::Error::new(ErrorKind::Unexpected, reason));
+        }
+        Ok(self.operator.read(name).await?.to_vec())
+    }
 }
 
 impl Storage for Store {
     fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
-        match self.asked(self.operator.read(name))? {
-            Ok(bytes) => Ok(Some(bytes.to_vec())),
+        match self.asked(self.bounded(name))? {
+            Ok(bytes) => Ok(Some(bytes)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error.to_string()),
         }

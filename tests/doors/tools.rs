@@ -1,9 +1,10 @@
 //! Commands beside those that compile: a package to start from, lints, help, search.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::package::{Package, equal};
+use super::package::{Package, Run, equal};
 use super::{Case, Outcome};
 
 pub const CASES: &[Case] = &[
@@ -21,6 +22,9 @@ pub const CASES: &[Case] = &[
     ("search", search),
     ("keys_as_json", keys_as_json),
     ("errors_of_all_programs", all_programs),
+    ("drivers_without_a_window", without_window),
+    ("types_before_import", npm_exports),
+    ("stores_of_this_build", stores),
 ];
 
 /// The package that `init` writes has nothing to complain about.
@@ -297,5 +301,71 @@ fn all_programs() -> Outcome {
     run.says(&["a.wesl:1:", "a.wesl:2:", "b.wesl:1:"])?;
     let run = package.run("compile a.wesl --target wgsl --diagnostics short")?.ends(1)?;
     run.says(&["a.wesl:1:", "a.wesl:2:"])?;
+    Ok(())
+}
+
+/// A machine without a window system is nothing to complain about: Mesa's layers look for Wayland
+/// and would print errors of their own.
+fn without_window() -> Outcome {
+    let package = Package::new(&[
+        ("half.wesl", "fn half(x: f32) -> f32 { return 0.5 * x; }\n"),
+        (
+            "half.toml",
+            "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ntolerance = { ulp = 1 }\ninputs = { x = [1, 2] }\n",
+        ),
+    ])?;
+    for executor in ["vulkan", "gl"] {
+        for folder in [None, Some("")] {
+            let mut command =
+                package.command("", &format!("check half.toml --executor {executor}"));
+            command
+                .env_remove("WAYLAND_DISPLAY")
+                .env_remove("DISPLAY")
+                .env_remove("XDG_RUNTIME_DIR");
+            folder.map(|folder| command.env("XDG_RUNTIME_DIR", folder));
+            let run = Run::from(command.output()?).ends(0)?.says(&["1 of 1 pass"])?;
+            equal(run.err.as_str(), "")?;
+        }
+    }
+    Ok(())
+}
+
+/// Tools take the first condition that they know, so `types` comes before `import`; what is
+/// installed has its licence and its version.
+fn npm_exports() -> Outcome {
+    let package = Package::new(&[])?;
+    package.run("export --form npm out")?.ends(0)?;
+    let text = fs::read_to_string(package.path("out/lamplight/package.json"))?;
+    let place = |word: &str| text.find(word).ok_or(format!("`{word}` is not in {text}"));
+    equal(place("\"types\":")? < place("\"import\":")?, true)?;
+    place("\"license\":")?;
+    place(&format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION")))?;
+    package.run("export --form files files")?.ends(0)?;
+    let files = walk(&package.path("files"))?;
+    for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        equal((file, files.iter().any(|path| path.ends_with(file))), (file, true))?;
+    }
+    Ok(())
+}
+
+/// Every file below a folder.
+fn walk(folder: &Path) -> Result<Vec<PathBuf>, libtest_mimic::Failed> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() { files.extend(walk(&path)?) } else { files.push(path) }
+    }
+    Ok(files)
+}
+
+/// Help names the stores that the build has, and no others.
+fn stores() -> Outcome {
+    let package = Package::new(&[])?;
+    package.run("gen --help")?.ends(0)?.says(&[lamplight::store::HELP])?;
+    let absent = include_str!("../../src/store/absent.rs");
+    let help = absent.lines().find(|line| line.contains("const HELP")).ok_or("no help")?;
+    equal((help.contains("fs:/path"), help.contains("redis")), (true, false))?;
+    let present = package.run("gen --store redis://127.0.0.1:1 --root none")?;
+    present.is_silent_of(&["this build has no store"])?;
     Ok(())
 }

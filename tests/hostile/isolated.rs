@@ -2,8 +2,11 @@
 //! an error of its own, and nothing else is lost.
 
 use std::fs;
+use std::io::Write as _;
+use std::process::{Command, Output, Stdio};
 
-use libtest_mimic::Trial;
+use libtest_mimic::{Failed, Trial};
+use serde_json::json;
 
 use super::{Outcome, fails, run, run_within};
 
@@ -15,10 +18,11 @@ const CALM: &str = "@fragment fn calm() -> @location(0) vec4f { return vec4f(); 
 const LITTLE_KIB: u64 = 700 << 10;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 3] = [
+    let cases: [Case; 4] = [
         ("naga_takes_too_long", too_long),
         ("naga_takes_too_much_memory", too_much),
         ("large_shaders_are_compiled", large),
+        ("naga_keeps_its_stack", nested),
     ];
     let trial = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
     cases.into_iter().map(trial).collect()
@@ -68,6 +72,52 @@ fn too_long() -> Outcome {
 
 fn too_much() -> Outcome {
     refused(&values(500_000), LITTLE_KIB, "naga takes more memory than it may have")
+}
+
+/// Texts that nest without end in every way that naga's readers recurse: a rehearsal has the same
+/// limits as a run, so that none of them reaches naga's stack, and nothing dies.
+fn nested() -> Outcome {
+    const DEPTH: usize = 100_000;
+    let around = |before: &str, open: &str, inner: &str, close: &str, after: &str| {
+        format!("{before}{}{inner}{}{after}", open.repeat(DEPTH), close.repeat(DEPTH))
+    };
+    let texts = [
+        ("wesl", around("const deep = ", "(", "1", ")", ";")),
+        ("wesl", around("const deep = ", "!", "true", "", ";")),
+        ("wesl", around("alias Deep = ", "array<", "f32", ", 2>", ";")),
+        ("wesl", around("fn f(a: f32) -> f32 { return ", "a + ", "a", "", "; }")),
+        ("wesl", around("fn f(a: i32) { ", "if a == 1 {} else ", "{}", "", " }")),
+        ("wesl", around("fn f(a: i32) { ", "{", "", "}", " }")),
+        ("wesl", around("fn f(a: i32) -> i32 { return ", "f(", "a", ")", "; }")),
+        ("glsl", around("void main() { float a = ", "(", "1.0", ")", "; }")),
+        ("glsl", around("void main() { float b = 1.0; float a = ", "- ", "b", "", "; }")),
+        ("glsl", around("void main() { float b = 1.0; float a = ", "b + ", "b", "", "; }")),
+        ("glsl", around("void main() { ", "{", "", "}", " }")),
+    ];
+    for (language, text) in texts {
+        let stage = (language == "glsl").then_some("fragment");
+        let job = json!({ "language": language, "stage": stage, "text": text, "outputs": null });
+        let output = rehearsed(&job.to_string())?;
+        if !output.status.success() || !output.stderr.is_empty() {
+            let words = String::from_utf8_lossy(&output.stderr);
+            return Err(format!("{}: {} {words}", &text[..60], output.status).into());
+        }
+    }
+    Ok(())
+}
+
+/// The process of a rehearsal over a job.
+fn rehearsed(job: &str) -> Result<Output, Failed> {
+    let mut rehearsal = Command::new(env!("CARGO_BIN_EXE_lamplight"))
+        .args(["rehearse", "naga"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    if let Some(mut input) = rehearsal.stdin.take() {
+        input.write_all(job.as_bytes())?;
+    }
+    Ok(rehearsal.wait_with_output()?)
 }
 
 /// What is beyond the calm part of a limit and within reason is compiled, as `gen` does too.

@@ -5,13 +5,18 @@ use std::process::Command;
 
 use crate::{Failure, Outcome, test};
 
-/// Writes them, or with `--check` fails if any is not up to date.
+/// Writes them, or with `--check` fails if any is not up to date. `--costs` measures what functions
+/// and axes cost before.
 ///
 /// The modules come first: the second run is of a binary that carries them. The book is only
 /// written: its pages are checked by the tests `guide::`.
 pub fn run(arguments: &[String]) -> Outcome {
-    let check: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let (costs, check): (Vec<&str>, Vec<&str>) =
+        arguments.iter().map(String::as_str).partition(|argument| *argument == "--costs");
     let lamplight = ["run", "--quiet", "--package", "lamplight", "--", "catalogue", "--force"];
+    if !costs.is_empty() {
+        test::cargo(&[&lamplight[..], &["--costs", "shaderlib/costs.toml"]].concat(), &[])?;
+    }
     for made in [["--modules", "shaderlib"], ["--output", "docs/catalogue"]] {
         test::cargo(&[&lamplight[..], &made, &check].concat(), &[])?;
     }

@@ -28,7 +28,7 @@ const NEEDS: &[Need] = &[
     },
     Need {
         package: "chromium",
-        what: "SwiftShader",
+        what: "Chromium with its SwiftShader",
         found: || Path::new("/usr/lib/chromium/vk_swiftshader_icd.json").exists(),
     },
     Need { package: "nodejs", what: "node, for the typed keys", found: || program("node") },
@@ -78,7 +78,8 @@ fn missing() -> Vec<(&'static str, &'static str)> {
     listed.map(|need| (need.package, need.what)).collect()
 }
 
-fn install(packages: &[&str]) -> Outcome {
+/// Installs packages of Debian.
+pub fn install(packages: &[&str]) -> Outcome {
     let by_hand = format!(
         "sudo apt-get update && sudo apt-get install -y --no-install-recommends {}",
         packages.join(" ")

@@ -13,6 +13,7 @@ mod generate;
 mod machine;
 mod mutate;
 mod new;
+mod site;
 mod tables;
 mod test;
 mod validate;
@@ -69,7 +70,7 @@ const COMMANDS: &[Command] = &[
     ("validate", "let the judges of all targets look at a bundle", validate::run),
     (
         "docs",
-        "write the catalogue, the modules made from data, the guide as a book (--check: only compare)",
+        "write the catalogue, the modules made from data, the guide as a book (--check: only compare, --costs: measure first)",
         docs::run,
     ),
     (
@@ -96,6 +97,11 @@ const COMMANDS: &[Command] = &[
         "frames",
         "draw permutations of `forward` from the bytes of every target: [--permutations N] [--target T]",
         frames::run,
+    ),
+    (
+        "site",
+        "the toolchain as WebAssembly (target/toolchain/) and the site: [--toolchain] [--quick]",
+        site::run,
     ),
     ("ci", "what continuous integration runs: format, lints, tests", ci::run),
 ];

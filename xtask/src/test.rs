@@ -1,11 +1,13 @@
 //! The one test command.
 
-use crate::{Failure, Outcome, machine};
+use crate::{Failure, Outcome, machine, site};
 use std::process::Command;
 
 /// Prepares the machine, then runs every test; arguments go to the test binary.
 pub fn run(arguments: &[String]) -> Outcome {
     machine::prepare()?;
+    // The trials `toolchain::` run it in Node.
+    site::toolchain(site::Build::Quick)?;
     // With every feature: shared stores are tested against a server.
     let test = |what: &[&str], rest| {
         cargo(&[&["test", "--package", "lamplight", "--features", "store"], what].concat(), rest)

@@ -1,5 +1,6 @@
 //! The catalogue as Markdown: an index, a page for each module, one for programs, one for presets.
 
+mod cost;
 mod markdown;
 mod module;
 mod preset;
@@ -8,6 +9,7 @@ mod program;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use super::cost::Costs;
 use super::preset::Preset;
 use super::probe::Probe;
 use super::{Kind, Module};
@@ -22,17 +24,19 @@ pub struct Contents<'c> {
     pub manifest: &'c Manifest,
     pub presets: &'c [Preset],
     pub probes: &'c [Probe],
+    pub costs: &'c Costs,
 }
 
 /// The files of the catalogue: path below its folder and text.
 pub fn pages(contents: &Contents) -> BTreeMap<String, String> {
     let mut files = BTreeMap::from([
         ("README.md".to_owned(), index(contents)),
-        ("programs.md".to_owned(), program::page(contents.manifest)),
+        ("programs.md".to_owned(), program::page(contents.manifest, contents.costs)),
+        ("costs.md".to_owned(), cost::page(contents.modules, contents.costs)),
         ("presets.md".to_owned(), preset::page(contents.presets, contents.probes)),
     ]);
     for module in contents.modules {
-        files.insert(page_of(&module.path), module::page(module, contents.plots));
+        files.insert(page_of(&module.path), module::page(module, contents.plots, contents.costs));
     }
     for (path, svg) in contents.plots {
         files.insert(format!("{}.svg", path.replace("::", "/")), svg.clone());
@@ -62,8 +66,8 @@ import lamplight::brdf::specular::blinn_phong;
 Vectors named `n l v h` are unit; `l` and `v` point away from the surface. Colours are linear.
 Visibility and attenuation are factors from 0 to 1, 1 fully lit. Depth is from 0 to 1, near to far.
 
-Beside the modules: the [programs](programs.md) with their axes, and the [presets](presets.md),
-one for each published example.
+Beside the modules: the [programs](programs.md) with their axes, the [presets](presets.md), one for
+each published example, and the [costs](costs.md) of functions on GPUs, the dearest first.
 
 This catalogue is made from the library by `cargo xtask docs`.
 ";

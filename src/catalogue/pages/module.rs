@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use super::super::cost::Costs;
 use super::super::{Item, Kind, Module, SECTIONS};
+use super::cost;
 use super::markdown::{block, cell, prose};
 
 /// Sections printed as paragraphs; the parameters are a table.
 const PARAGRAPHS: std::ops::RangeFrom<usize> = 1..;
 
 /// The page: the module's own words, a table of contents, every item.
-pub fn page(module: &Module, plots: &BTreeMap<String, String>) -> String {
+pub fn page(module: &Module, plots: &BTreeMap<String, String>, costs: &Costs) -> String {
     let mut text = format!("# {}\n", module.path);
     for paragraph in &module.doc {
         let _ = write!(text, "\n{}\n", prose(paragraph));
@@ -23,6 +25,7 @@ pub fn page(module: &Module, plots: &BTreeMap<String, String>) -> String {
     contents(&mut text, module);
     for item in &module.items {
         entry(&mut text, item, plots.contains_key(&item.path()));
+        cost::of_function(&mut text, item, costs);
     }
     let up = "../".repeat(module.path.matches("::").count());
     let _ = write!(text, "\n---\n[Catalogue]({up}README.md)\n");

@@ -2,22 +2,24 @@
 
 use std::fmt::Write as _;
 
+use super::super::cost::Costs;
+use super::cost;
 use super::markdown::{cell, prose};
 use crate::permute::{Axis, Manifest, Program};
 
 /// The page.
-pub fn page(manifest: &Manifest) -> String {
+pub fn page(manifest: &Manifest, costs: &Costs) -> String {
     let mut text = "# Programs\n\nEntry points in both languages. An axis multiplies permutations; a constraint takes some away;\n\
                     what ships is listed in `shaderlib/lamplight.toml`.\n"
         .to_owned();
     for program in &manifest.programs {
-        entry(&mut text, program);
+        entry(&mut text, program, costs);
     }
     text.push_str("\n---\n[Catalogue](README.md)\n");
     text
 }
 
-fn entry(text: &mut String, program: &Program) {
+fn entry(text: &mut String, program: &Program, costs: &Costs) {
     let _ = write!(text, "\n## {}\n", prose(&program.name));
     if let Some(doc) = &program.doc {
         let _ = write!(text, "\n{}\n", prose(doc));
@@ -39,6 +41,7 @@ fn entry(text: &mut String, program: &Program) {
         space.count()
     );
     axes(text, space.axes());
+    cost::of_program(text, &program.name, costs);
     for (index, constraint) in space.constraints().iter().enumerate() {
         let start = if index == 0 { "\nConstraints:\n\n" } else { "" };
         let doc =

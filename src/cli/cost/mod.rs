@@ -1,9 +1,11 @@
 //! `lamplight cost`: what functions and permutations cost on GPUs that are not there.
 
 mod axes;
+mod record;
 mod subjects;
 
 pub use axes::{changes, changes_table};
+pub use record::record;
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -104,6 +106,11 @@ impl Gpus {
     /// Whether any is named.
     pub fn are_named(&self) -> bool {
         !self.gpu.is_empty()
+    }
+
+    /// One GPU of each generation.
+    pub fn of_each_generation() -> Opened {
+        Self { gpu: Vec::new() }.open()
     }
 
     /// The GPUs, opened. To be called while the process has one thread.

@@ -126,7 +126,7 @@ fn shaders(
 }
 
 /// The subjects of functions, modules and folders; of all functions where none is named.
-fn functions(
+pub fn functions(
     items: &[&Item],
     paths: &[&String],
     language: Language,

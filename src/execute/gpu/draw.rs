@@ -13,7 +13,9 @@ use wgpu::util::DeviceExt;
 
 use super::{Gpu, failed};
 use crate::diagnostic::Diagnostic;
-use crate::execute::frame::{Drawing, EntryPoint, Frame, Mesh, Place, Side, State};
+use crate::execute::frame::{
+    Attribute, Drawing, EntryPoint, Frame, Mesh, Place, Side, State, VertexFormat,
+};
 use crate::execute::shipped::Format;
 use bindings::Bindings;
 use target::{DEPTH_FORMAT, Targets};
@@ -91,7 +93,7 @@ impl Gpu {
         formats: &[Format],
     ) -> wgpu::RenderPipeline {
         let mesh = drawing.items.first().map(|item| item.mesh);
-        let attributes = mesh.map(Mesh::layout).unwrap_or_default();
+        let attributes = mesh.map(vertex_layout).unwrap_or_default();
         let vertices = wgpu::VertexBufferLayout {
             array_stride: mesh.map_or(0, Mesh::stride),
             step_mode: wgpu::VertexStepMode::Vertex,
@@ -286,4 +288,20 @@ fn used(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
     Ok(variables
         .filter_map(|(_, variable)| variable.binding.map(|place| (place.group, place.binding)))
         .collect())
+}
+
+/// The attributes of a mesh as wgpu takes them.
+fn vertex_layout(mesh: &Mesh) -> Vec<wgpu::VertexAttribute> {
+    let attribute = |(attribute, offset): (Attribute, u64)| wgpu::VertexAttribute {
+        format: match attribute.format {
+            VertexFormat::Uint32 => wgpu::VertexFormat::Uint32,
+            VertexFormat::Float32 => wgpu::VertexFormat::Float32,
+            VertexFormat::Float32x2 => wgpu::VertexFormat::Float32x2,
+            VertexFormat::Float32x3 => wgpu::VertexFormat::Float32x3,
+            VertexFormat::Float32x4 => wgpu::VertexFormat::Float32x4,
+        },
+        offset,
+        shader_location: attribute.location,
+    };
+    mesh.layout().into_iter().map(attribute).collect()
 }

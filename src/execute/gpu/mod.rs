@@ -1,7 +1,6 @@
 //! Runs kernels through wgpu, without a surface. What the GPU executors share.
 
 mod draw;
-pub mod emitted;
 mod fixtures;
 mod heaps;
 mod hlsl;
@@ -10,6 +9,7 @@ mod opengl;
 mod passthrough;
 mod pipeline;
 
+pub use super::emitted;
 pub use open::{Named, Shaders, Wanted, open};
 pub use opengl::{Api, OpenGl};
 

@@ -48,7 +48,7 @@ fn same(a: Source, b: Source) -> bool {
 
 /// A component of an attribute of a vertex; 0 where the mesh has none.
 pub fn attribute(mesh: &Mesh, vertex: u32, location: u32, component: usize) -> u32 {
-    let sizes = mesh.attributes.iter().map(|attribute| attribute.format.size() as usize / 4);
+    let sizes = mesh.attributes.iter().map(|attribute| attribute.format.words() as usize);
     let mut first = vertex as usize * sizes.clone().sum::<usize>();
     for (attribute, size) in mesh.attributes.iter().zip(sizes) {
         if attribute.location == location && component < size {

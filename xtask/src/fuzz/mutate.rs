@@ -39,19 +39,8 @@ pub fn corpus(root: &Path, kind: &Kind) -> Vec<Vec<u8>> {
     inputs
 }
 
-/// The files of a folder whose names end so, sorted; an empty one where there are none.
-pub fn files(folder: &Path, ending: &str) -> Vec<Vec<u8>> {
-    let mut files = Vec::new();
-    collect(folder, ending, &mut files);
-    files.sort();
-    let mut inputs: Vec<Vec<u8>> = files.iter().filter_map(|path| fs::read(path).ok()).collect();
-    if inputs.is_empty() {
-        inputs.push(Vec::new());
-    }
-    inputs
-}
-
-fn collect(folder: &Path, ending: &str, found: &mut Vec<std::path::PathBuf>) {
+/// Adds the files of a folder whose names end so.
+pub fn collect(folder: &Path, ending: &str, found: &mut Vec<std::path::PathBuf>) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         match path.is_dir() {

@@ -8,7 +8,7 @@ use super::{Unit, plain_state, program, texture};
 use crate::bundle::{Combined, FrontFace, Slot};
 use crate::execute::Pair;
 use crate::execute::fixture::{Fixture, Sampler};
-use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh, Place, State};
+use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh, Place, State, VertexFormat};
 use crate::execute::gpu::opengl::context::Api;
 use crate::execute::kernel::SENTINEL;
 use crate::execute::shipped::{Format, Shipped};
@@ -238,11 +238,11 @@ unsafe fn attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow::Buf
     // SAFETY: the offsets are those of the interleaved words.
     unsafe {
         let vertices = buffer(gl, glow::ARRAY_BUFFER, &bytes(&mesh.words))?;
-        for attribute in mesh.layout() {
-            let size = attribute.format.size() as i32 / 4;
-            let (location, offset) = (attribute.shader_location, attribute.offset as i32);
+        for (attribute, offset) in mesh.layout() {
+            let size = attribute.format.words() as i32;
+            let (location, offset) = (attribute.location, offset as i32);
             gl.enable_vertex_attrib_array(location);
-            if attribute.format == wgpu::VertexFormat::Uint32 {
+            if attribute.format == VertexFormat::Uint32 {
                 let ty = glow::UNSIGNED_INT;
                 gl.vertex_attrib_pointer_i32(location, size, ty, stride, offset);
             } else {

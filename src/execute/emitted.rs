@@ -3,7 +3,6 @@
 use naga::Module;
 use naga::valid::{ValidationFlags, Validator};
 
-use super::failed;
 use crate::bundle::{Language, Native, Target};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::Emitted;
@@ -50,4 +49,8 @@ fn refused(errors: Diagnostics, target: Target) -> Diagnostic {
     } else {
         error
     }
+}
+
+fn failed(message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }

@@ -1,0 +1,34 @@
+import type * as raw from "./toolchain.js";
+
+export type * from "./toolchain.js";
+
+/** Where the WebAssembly comes from: an address, its bytes, or a module that is compiled. */
+export type Source = URL | string | BufferSource | WebAssembly.Module;
+
+/** The functions of the toolchain. Inputs are never changed. */
+export interface Toolchain {
+    version: typeof raw.version;
+    targets: typeof raw.targets;
+    library: typeof raw.library;
+    search: typeof raw.search;
+    written: typeof raw.written;
+    files: typeof raw.files;
+    file: typeof raw.file;
+    programs: typeof raw.programs;
+    point: typeof raw.point;
+    compose: typeof raw.compose;
+    compile: typeof raw.compile;
+    lint: typeof raw.lint;
+    evaluate: typeof raw.evaluate;
+    curves: typeof raw.curves;
+    reference: typeof raw.reference;
+    studio: typeof raw.studio;
+    pictureStart: typeof raw.pictureStart;
+    pictureFrames: typeof raw.pictureFrames;
+}
+
+/** An input for which the toolchain stopped; the next call finds it begun anew. */
+export declare class Stopped extends Error {}
+
+/** Loads the toolchain, by itself from beside this file. */
+export declare function load(source?: Source): Promise<Toolchain>;

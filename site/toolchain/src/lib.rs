@@ -1,0 +1,35 @@
+//! Lamplight's toolchain for browsers and Node: the same functions as the command line's, over
+//! files in memory.
+//!
+//! Each function takes and gives one value; the types of both are generated for TypeScript. What
+//! is wrong with the input comes back as diagnostics in the value, and never as an exception.
+
+mod choose;
+mod diagnostic;
+mod library;
+mod number;
+mod package;
+mod picture;
+mod shader;
+
+use tsify::{Ts, Tsify};
+use wasm_bindgen::prelude::{JsError, wasm_bindgen};
+
+/// A value of the page's; the error is one of its form, and the caller's mistake.
+type Answer<T> = Result<Ts<T>, JsError>;
+
+fn answer<T: Tsify + serde::Serialize>(value: &T) -> Answer<T> {
+    value.into_ts().map_err(JsError::from)
+}
+
+/// Version of Lamplight, and of naga below it.
+#[wasm_bindgen]
+pub fn version() -> String {
+    format!("lamplight {}", env!("CARGO_PKG_VERSION"))
+}
+
+/// Names of the output languages.
+#[wasm_bindgen]
+pub fn targets() -> Vec<String> {
+    lamplight::bundle::Target::ALL.iter().map(|target| target.name().to_owned()).collect()
+}

@@ -1,0 +1,152 @@
+//! A Chromium without windows, driven by its DevTools protocol.
+//!
+//! `Browser::start -> Browser::open -> Page::evaluate, until, errors, screenshot`
+//!
+//! Messages go through a pair of pipes (`--remote-debugging-pipe`) and not through a socket: no port
+//! is open to others, no second protocol is needed, and the browser ends when the pipes close. So it
+//! goes away with this process, however this process ends, and the shell that started it removes its
+//! profile ([`process`]). Every wait has a limit. What a page is made of comes from [`serve`].
+
+mod page;
+mod process;
+pub mod serve;
+mod wire;
+
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::time::Duration;
+
+use serde_json::json;
+
+pub use page::{Page, Shot};
+use process::Process;
+use wire::Wire;
+
+/// The Debian package.
+pub const PACKAGE: &str = "chromium";
+
+/// Longest wait for what a browser does at once.
+pub const PATIENCE: Duration = Duration::from_secs(30);
+
+/// What can go wrong with a browser or a page of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Problem {
+    /// There is none, or it does not start.
+    Missing(String),
+    /// It has ended; with its last words.
+    Gone(String),
+    /// The page's process has ended.
+    Crashed,
+    /// Nothing came within a time.
+    Late { what: String, after: Duration },
+    /// The browser refuses a command.
+    Refused(String),
+    /// A script of the page threw this.
+    Threw(String),
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing(words) => f.write_str(words),
+            Self::Gone(words) if words.is_empty() => f.write_str("the browser has ended"),
+            Self::Gone(words) => write!(f, "the browser has ended: {words}"),
+            Self::Crashed => f.write_str("the page crashed"),
+            Self::Late { what, after } => {
+                write!(f, "the page did not answer {what} within {:.1} s", after.as_secs_f64())
+            }
+            Self::Refused(words) => write!(f, "the browser refuses a command: {words}"),
+            Self::Threw(words) => write!(f, "the page threw: {words}"),
+        }
+    }
+}
+
+impl std::error::Error for Problem {}
+
+/// A browser with a profile of its own. It ends when the last page and the last owner are gone.
+#[derive(Debug)]
+pub struct Browser {
+    wire: Arc<Wire>,
+    version: String,
+    process: Process,
+}
+
+impl Browser {
+    /// Starts the browser that is installed.
+    ///
+    /// # Errors
+    /// `Missing` where it does not start.
+    pub fn start() -> Result<Arc<Self>, Problem> {
+        Self::start_as("chromium")
+    }
+
+    /// Starts the browser that is called so.
+    ///
+    /// # Errors
+    /// Those of [`Self::start`].
+    pub fn start_as(program: &str) -> Result<Arc<Self>, Problem> {
+        let (process, stdin, stdout) = Process::start(program)?;
+        let wire = Wire::new(stdin, stdout);
+        let said = wire.call(None, "Browser.getVersion", json!({}), PATIENCE);
+        let said = said.map_err(|problem| match problem {
+            Problem::Gone(_) => {
+                Problem::Missing(format!("`{program}` does not start: {}", process.words()))
+            }
+            other => other,
+        })?;
+        let version =
+            said["product"].as_str().unwrap_or("Chromium").replace("Chrome/", "Chromium ");
+        Ok(Arc::new(Self { wire, version, process }))
+    }
+
+    /// The browser of this process: one for all who ask while anybody has it.
+    ///
+    /// # Errors
+    /// Those of [`Self::start`].
+    pub fn shared() -> Result<Arc<Self>, Problem> {
+        static SHARED: Mutex<Weak<Browser>> = Mutex::new(Weak::new());
+        // Held while it starts, so that there is one.
+        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(browser) = shared.upgrade().filter(|browser| !browser.wire.is_closed()) {
+            return Ok(browser);
+        }
+        let browser = Self::start()?;
+        *shared = Arc::downgrade(&browser);
+        Ok(browser)
+    }
+
+    /// Name and version.
+    pub fn version(&self) -> &str {
+        &self.version
+    }
+
+    /// Opens an address in a page of its own, without waiting until it is loaded.
+    ///
+    /// # Errors
+    /// The browser's.
+    pub fn open(self: &Arc<Self>, address: &str) -> Result<Page, Problem> {
+        Page::open(Arc::clone(self), address)
+    }
+
+    /// The result of a command, of a page if one is named.
+    fn call(
+        &self,
+        page: Option<&str>,
+        method: &str,
+        parameters: serde_json::Value,
+        patience: Duration,
+    ) -> Result<serde_json::Value, Problem> {
+        let result = self.wire.call(page, method, parameters, patience);
+        result.map_err(|problem| match problem {
+            Problem::Gone(_) => Problem::Gone(self.process.words()),
+            other => other,
+        })
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        self.wire.close();
+        self.process.end();
+    }
+}

@@ -1,0 +1,133 @@
+//! Recorded costs: what functions and values of axes cost on GPUs that are not there, from
+//! `costs.toml`. `cargo xtask docs --costs` measures and writes that file; [`super::pages`] shows it.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use serde::Deserialize;
+
+use super::reader;
+use crate::bundle::Stage;
+use crate::diagnostic::Diagnostics;
+use crate::project::LIBRARY;
+use crate::source::{self, Embedded, Package, SourceSet};
+
+/// Path of the record below the library's root.
+pub const PATH: &str = "costs.toml";
+
+/// Headings of a function's figures, in the order of [`Costs::functions`].
+pub const FIGURES: [&str; 4] = ["instructions", "VGPRs", "latency", "inverse throughput"];
+
+/// The figure by which functions are sorted.
+pub const SORTED_BY: usize = 3;
+
+/// The GPU that tables show where they have room for one.
+pub const SHOWN: &str = "navi21";
+
+/// Everything that is recorded.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Costs {
+    /// The driver that compiled. Figures of another version are not comparable.
+    pub driver: String,
+    /// The GPUs of each function's rows.
+    pub gpus: Vec<Chip>,
+    /// By path: for each GPU the [`FIGURES`] that the function adds to a fragment stage.
+    pub functions: BTreeMap<String, Vec<[i64; FIGURES.len()]>>,
+    /// What values of axes change on [`SHOWN`].
+    #[serde(default)]
+    pub axes: Vec<AxisCost>,
+}
+
+/// A GPU.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Chip {
+    /// What Mesa calls it.
+    pub name: String,
+    /// Its architecture.
+    pub generation: String,
+}
+
+/// What one value of an axis changes in a stage, against the axis's default.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AxisCost {
+    pub program: String,
+    pub axis: String,
+    pub value: String,
+    pub stage: Stage,
+    /// Pairs of permutations that differ in the axis alone.
+    pub pairs: usize,
+    /// The least change, the median, the most.
+    pub instructions: [i64; 3],
+    /// The median change.
+    pub vgprs: i64,
+    /// Waves on a SIMD with the default and with the value, of the median pair.
+    pub waves: [i64; 2],
+    /// The median change.
+    pub inverse_throughput: i64,
+}
+
+impl Costs {
+    /// Where the GPU of [`SHOWN`] is in rows.
+    pub fn shown(&self) -> Option<usize> {
+        self.gpus.iter().position(|gpu| gpu.name == SHOWN)
+    }
+
+    /// The text of the record: a line for each function and each value.
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "# What functions and axes cost. Measured by `cargo xtask docs --costs`: not edited by hand.\n\n\
+             driver = {}\ngpus = [\n",
+            quoted(&self.driver)
+        );
+        for Chip { name, generation } in &self.gpus {
+            let (name, generation) = (quoted(name), quoted(generation));
+            let _ = writeln!(text, "    {{ name = {name}, generation = {generation} }},");
+        }
+        let _ = write!(text, "]\naxes = [\n");
+        for axis in &self.axes {
+            let _ = writeln!(text, "    {{ {} }},", axis.fields());
+        }
+        let _ = write!(text, "]\n\n# For each GPU: {}.\n[functions]\n", FIGURES.join(", "));
+        for (path, rows) in &self.functions {
+            let _ = writeln!(text, "{} = {rows:?}", quoted(path));
+        }
+        text
+    }
+}
+
+impl AxisCost {
+    fn fields(&self) -> String {
+        let Self { pairs, instructions, vgprs, waves, inverse_throughput, .. } = self;
+        let stage = format!("{:?}", self.stage).to_lowercase();
+        format!(
+            "program = {}, axis = {}, value = {}, stage = {}, pairs = {pairs}, \
+             instructions = {instructions:?}, vgprs = {vgprs}, waves = {waves:?}, \
+             inverse_throughput = {inverse_throughput}",
+            quoted(&self.program),
+            quoted(&self.axis),
+            quoted(&self.value),
+            quoted(&stage),
+        )
+    }
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+/// Whether a file that begins like this is such a record.
+pub fn is_record(head: &[u8]) -> bool {
+    head.starts_with(b"# What functions and axes cost.")
+}
+
+/// What is recorded of the library; nothing where there is no record.
+pub fn library(sources: &mut SourceSet) -> Result<Costs, Diagnostics> {
+    let library = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
+    match source::read(sources, &library, PATH).map_err(|error| vec![error.into()])? {
+        Some(id) => reader::data(sources, id),
+        None => Ok(Costs::default()),
+    }
+}

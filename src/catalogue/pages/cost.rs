@@ -1,0 +1,112 @@
+//! What functions and axes cost: a table at each function, a page of sorted tables, a table at each
+//! program.
+
+use std::cmp::Reverse;
+use std::fmt::Write as _;
+
+use super::super::cost::{AxisCost, Costs, FIGURES, SHOWN, SORTED_BY};
+use super::super::{Item, Module};
+use super::markdown::cell;
+use super::page_of;
+
+const HEAD: &str = "\
+# Costs
+
+What each function adds to a fragment stage, compiled for GPUs by Mesa's driver for AMD, with
+nothing known of its arguments. Latency and inverse throughput are the compiler's estimates in
+cycles of a wave. They compare functions on one GPU; they do not foretell milliseconds.
+`lamplight cost` measures the same, and shaders of your own; the guide's page *Cost on GPUs* has the
+columns.
+";
+
+/// The table of one function: a column for each GPU.
+pub fn of_function(text: &mut String, item: &Item, costs: &Costs) {
+    let Some(rows) = costs.functions.get(&item.path()) else { return };
+    let headings: Vec<String> =
+        costs.gpus.iter().map(|gpu| format!("{} ({})", gpu.name, gpu.generation)).collect();
+    let _ = write!(
+        text,
+        "\n**Cost.** What it adds, by GPU ({}):\n\n| | {} |\n|---|{}\n",
+        costs.driver,
+        headings.join(" | "),
+        "---:|".repeat(headings.len())
+    );
+    for (index, figure) in FIGURES.iter().enumerate() {
+        let values: Vec<String> = rows.iter().map(|row| row[index].to_string()).collect();
+        let _ = writeln!(text, "| {figure} | {} |", values.join(" | "));
+    }
+}
+
+/// The page: the functions of each module, the dearest first.
+pub fn page(modules: &[Module], costs: &Costs) -> String {
+    let mut text = HEAD.to_owned();
+    let Some(shown) = costs.shown() else { return text };
+    let generation = &costs.gpus[shown].generation;
+    let _ = write!(
+        text,
+        "\nThe figures here are those of `{SHOWN}` ({generation}), {}.\n",
+        costs.driver
+    );
+    for module in modules {
+        let mut rows: Vec<(&Item, &[i64; FIGURES.len()])> = module
+            .items
+            .iter()
+            .filter_map(|item| Some((item, costs.functions.get(&item.path())?.get(shown)?)))
+            .collect();
+        if rows.is_empty() {
+            continue;
+        }
+        rows.sort_by_key(|(item, row)| (Reverse(row[SORTED_BY]), &item.name));
+        let _ = write!(
+            text,
+            "\n## {}\n\n{}\n\n| function | {} |\n|---|{}\n",
+            module.path,
+            cell(module.summary()),
+            FIGURES.join(" | "),
+            "---:|".repeat(FIGURES.len())
+        );
+        for (item, row) in rows {
+            let values = row.map(|value| value.to_string()).join(" | ");
+            let link = format!("[`{}`]({}#{})", item.name, page_of(&module.path), item.name);
+            let _ = writeln!(text, "| {link} | {values} |");
+        }
+    }
+    text.push_str("\n---\n[Catalogue](README.md)\n");
+    text
+}
+
+/// What the values of a program's axes change.
+pub fn of_program(text: &mut String, program: &str, costs: &Costs) {
+    let rows: Vec<&AxisCost> =
+        costs.axes.iter().filter(|row| row.program == program && !row.is_free()).collect();
+    if rows.is_empty() {
+        return;
+    }
+    let _ = write!(
+        text,
+        "\nWhat each value changes on `{SHOWN}`, against the default of its axis: the median over all\n\
+         pairs of permutations that differ in that axis alone, and the range of the instructions.\n\
+         Values that change nothing are left out.\n\n\
+         | axis and value | stage | pairs | instructions | range | VGPRs | waves | inverse throughput |\n\
+         |---|---|---:|---:|---:|---:|---:|---:|\n"
+    );
+    for row in rows {
+        let AxisCost { axis, value, pairs, instructions, vgprs, waves, inverse_throughput, .. } =
+            row;
+        let stage = format!("{:?}", row.stage).to_lowercase();
+        let [least, median, most] = instructions;
+        let [before, after] = waves;
+        let _ = writeln!(
+            text,
+            "| `{axis}={value}` | {stage} | {pairs} | {median:+} | {least:+} to {most:+} | {vgprs:+} | \
+             {before} to {after} | {inverse_throughput:+} |"
+        );
+    }
+}
+
+impl AxisCost {
+    /// Whether no pair shows a difference.
+    fn is_free(&self) -> bool {
+        self.instructions == [0; 3] && self.vgprs == 0 && self.inverse_throughput == 0
+    }
+}

@@ -1,0 +1,373 @@
+//! The toolchain as WebAssembly, in Node through its npm package: it gives the bytes that the
+//! native tool gives. `cargo xtask test` makes the package first.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Mutex;
+
+use lamplight::bundle::{Language, Target};
+use lamplight::compose::{Options, compose};
+use lamplight::diagnostic::render::{Form, render};
+use lamplight::diagnostic::{Diagnostics, Severity};
+use lamplight::execute::executors::eval::EXECUTOR;
+use lamplight::generate::Root;
+use lamplight::link::Linker;
+use lamplight::permute::{Program, Quoted, Setting, Settings, key};
+use lamplight::project::{self, library_manifest};
+use lamplight::proof::expression::evaluate;
+use lamplight::proof::library::Library;
+use lamplight::proof::references;
+use lamplight::resolve::{self, Packages};
+use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
+use lamplight::{catalogue, lint};
+use libtest_mimic::{Failed, Trial};
+use serde_json::{Value, json};
+
+/// Permutations of `forward` that are compared, half of them in GLSL.
+const PERMUTATIONS: usize = 300;
+
+pub fn trials() -> Vec<Trial> {
+    vec![Trial::test("toolchain::same_bytes", same_bytes)]
+}
+
+/// Requests for the package, and what the native tool answers.
+struct Asked {
+    linker: Linker<'static>,
+    shaders: Vec<Value>,
+    expressions: Vec<Value>,
+    mistakes: Vec<Value>,
+    references: Vec<Value>,
+    expected: Vec<(String, Vec<u8>)>,
+}
+
+fn same_bytes() -> Result<(), Failed> {
+    let package = package()?;
+    let mut asked = Asked {
+        linker: Linker::new(Target::ALL),
+        shaders: Vec::new(),
+        expressions: Vec::new(),
+        mistakes: Vec::new(),
+        references: Vec::new(),
+        expected: Vec::new(),
+    };
+    lamplight::validate::on_large_stack(|| {
+        permutations(&mut asked)?;
+        examples(&mut asked)?;
+        expressions(&mut asked)?;
+        mistakes(&mut asked)?;
+        formulas(&mut asked)
+    })?;
+    let hostile = [
+        format!("fn f() -> f32 {{ return {}1{}; }}", "(".repeat(100_000), ")".repeat(100_000)),
+        format!(
+            "@fragment fn f() -> @location(0) vec4f {{ return vec4f(1.0{}); }}",
+            "+1.0".repeat(50_000)
+        ),
+        "struct A { a: array<array<array<A, 9>, 9>, 9> } @fragment fn f(a: A) {}".to_owned(),
+    ];
+    let hostile: Vec<Value> = hostile.iter().map(|text| json!({ "a.wesl": text })).collect();
+    for index in 0..hostile.len() {
+        asked.expected.push((format!("after hostile text {index}"), b"3".to_vec()));
+    }
+    let scratch = tempfile::tempdir()?;
+    let (requests, answers) = (scratch.path().join("requests"), scratch.path().join("answers"));
+    let Asked { shaders, expressions, mistakes, references, expected, .. } = asked;
+    let all = json!({
+        "shaders": shaders, "expressions": expressions, "mistakes": mistakes,
+        "references": references, "hostile": hostile,
+    });
+    std::fs::write(&requests, all.to_string())?;
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/toolchain/answer.mjs");
+    let output = Command::new("node").arg(script).args([&package, &requests, &answers]).output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+    }
+    compare(&std::fs::read(&answers)?, &expected)
+}
+
+fn package() -> Result<PathBuf, Failed> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/toolchain");
+    match folder.join("toolchain_bg.wasm").is_file() {
+        true => Ok(folder),
+        false => Err("there is no npm package: run `cargo xtask site --toolchain --quick`".into()),
+    }
+}
+
+fn compare(answers: &[u8], expected: &[(String, Vec<u8>)]) -> Result<(), Failed> {
+    let mut rest = answers;
+    for (name, wanted) in expected {
+        let (length, after) = rest.split_first_chunk::<4>().ok_or("the answers end early")?;
+        let (found, after) = after
+            .split_at_checked(u32::from_le_bytes(*length) as usize)
+            .ok_or("the answers end early")?;
+        rest = after;
+        if found != wanted {
+            let [found, wanted] = [found, wanted].map(String::from_utf8_lossy);
+            return Err(format!("{name}: the package says\n{found}\nand the tool\n{wanted}").into());
+        }
+    }
+    if rest.is_empty() { Ok(()) } else { Err("there are more answers than requests".into()) }
+}
+
+/// Spread over all that ship, in both languages; the other programs, and the published examples.
+fn permutations(asked: &mut Asked) -> Result<(), Failed> {
+    let (mut sources, manifest) = library_manifest().map_err(|_| "the library's manifest")?;
+    for program in &manifest.programs {
+        let points = program.space.enumerate();
+        let step = (points.len() / PERMUTATIONS).max(1);
+        let keys = points.iter().step_by(step).take(PERMUTATIONS);
+        for (index, point) in keys.enumerate() {
+            let key = program.space.key(point).to_string();
+            permutation(asked, program, &key, index % 2 == 1)?;
+        }
+    }
+    let (presets, _) = catalogue::examples(&mut sources, &manifest).map_err(told)?;
+    let mut seen = BTreeSet::new();
+    for preset in &presets {
+        let program = manifest.program(&preset.program).ok_or("a preset without a program")?;
+        if seen.insert((preset.program.clone(), preset.key.clone())) {
+            permutation(asked, program, &preset.key, false)?;
+        }
+    }
+    Ok(())
+}
+
+fn permutation(
+    asked: &mut Asked,
+    program: &Program,
+    text: &str,
+    is_glsl: bool,
+) -> Result<(), Failed> {
+    let mut sources = SourceSet::default();
+    let id = sources.add("key", text.to_owned());
+    let point = key::parse(&program.space, &Quoted::whole(&sources, id)).map_err(told)?;
+    let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
+    let roots: Vec<_> = if is_glsl { glsl.collect() } else { program.wesl.iter().collect() };
+    let axes = program.space.axes().iter().enumerate();
+    let settings: BTreeMap<&str, Value> = axes
+        .map(|(axis, known)| (known.name.as_str(), value(program.space.value(axis, &point))))
+        .collect();
+    for root in roots {
+        let request = json!({ "root": root.path, "settings": settings, "targets": targets() });
+        asked.shaders.push(request);
+        let settings = program.space.settings(&point);
+        let name = format!("{} of {}", text, root.path);
+        shader(asked, &name, &project::library(), &root.path, &settings)?;
+    }
+    Ok(())
+}
+
+fn value(setting: &Setting) -> Value {
+    match setting {
+        Setting::Bool(value) => json!(value),
+        Setting::Int(value) => json!(value),
+        other => json!(other.to_string()),
+    }
+}
+
+fn targets() -> Vec<&'static str> {
+    Target::ALL.iter().map(|target| target.name()).collect()
+}
+
+/// What the native tool makes of a root file.
+fn shader(
+    asked: &mut Asked,
+    name: &str,
+    packages: &Packages,
+    root: &str,
+    settings: &Settings,
+) -> Result<(), Failed> {
+    let language = lint::language(root).unwrap_or(Language::Wesl);
+    let mut sources = SourceSet::default();
+    let graph = resolve::load(&mut sources, packages, root, language).map_err(told)?;
+    let options = Options::default();
+    let composed = compose(&graph, settings, &options).map_err(told)?;
+    let root = Root { graph: &graph, settings, options: &options, clip: Default::default() };
+    let entries = root.entries(&composed).map_err(told)?;
+    let shaders = root.compile_with(&entries, &asked.linker).map_err(told)?;
+    let mut expect = |what: String, bytes: Vec<u8>| {
+        asked.expected.push((format!("{name}, {what}"), bytes));
+    };
+    expect("text".to_owned(), composed.text.into_bytes());
+    for shader in shaders {
+        let unit = &shader.made.unit;
+        expect("entry point".to_owned(), shader.entry.into_bytes());
+        expect("reflection".to_owned(), serde_json::to_vec(&*unit.reflection)?);
+        for target in Target::ALL {
+            let artifact = unit.targets.get(target.name()).ok_or("a target is missing")?;
+            expect(target.name().to_owned(), artifact.bytes.to_vec());
+            expect(format!("{target}'s names"), serde_json::to_vec(&*artifact.native)?);
+        }
+    }
+    Ok(())
+}
+
+fn own(files: &BTreeMap<String, String>) -> Packages {
+    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let files = Box::new(Memory(files.clone()));
+    Packages { root: Package { name: "package".to_owned(), files }, dependencies: vec![library] }
+}
+
+/// The packages in `examples/`: one with a manifest, in all its permutations, and one without.
+fn examples(asked: &mut Asked) -> Result<(), Failed> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let read = |path: &str| std::fs::read_to_string(folder.join(path));
+    let declared = ["lamp.wesl", project::MANIFEST]
+        .map(|name| Ok((name.to_owned(), read(&format!("build_script/shaders/{name}"))?)));
+    let files = declared.into_iter().collect::<std::io::Result<BTreeMap<_, _>>>()?;
+    let mut sources = SourceSet::default();
+    let id = sources.add(project::MANIFEST, files[project::MANIFEST].clone());
+    let manifest = lamplight::permute::manifest::parse(&sources, id).map_err(told)?;
+    let program = manifest.program("lamp").ok_or("the example has no `lamp`")?;
+    for point in program.space.enumerate() {
+        let settings = program.space.settings(&point);
+        example(asked, &files, "lamp.wesl", &settings)?;
+    }
+    let text = read("wesl_crate/shaders/spot.wesl")?;
+    let files = BTreeMap::from([("spot.wesl".to_owned(), text)]);
+    example(asked, &files, "spot.wesl", &Settings::default())?;
+    Ok(())
+}
+
+fn example(
+    asked: &mut Asked,
+    files: &BTreeMap<String, String>,
+    name: &str,
+    settings: &Settings,
+) -> Result<(), Failed> {
+    let given: BTreeMap<&String, Value> =
+        settings.values.iter().map(|(name, setting)| (name, value(setting))).collect();
+    asked.shaders.push(json!({
+        "files": files, "root": name, "settings": given, "targets": targets(),
+    }));
+    shader(asked, name, &own(files), name, settings)
+}
+
+/// The plots of the library at three places, in both languages.
+fn expressions(asked: &mut Asked) -> Result<(), Failed> {
+    let (library, mut session) =
+        (Library::embedded(), EXECUTOR.start().map_err(|_| "no evaluator")?);
+    for module in catalogue::library() {
+        let path = catalogue::plot::path(&module.path);
+        let Some(text) = Embedded.read(&path).ok().flatten() else { continue };
+        let mut sources = SourceSet::default();
+        let id = sources.add(path, text);
+        for (name, plot) in catalogue::plot::parse(&sources, id).map_err(told)? {
+            let second = plot.curves.as_ref().and_then(|curves| curves.values.first().copied());
+            let parameter = plot.curves.as_ref().map_or("unused", |curves| &curves.name);
+            for (index, share) in [0.25, 0.6, 0.85].into_iter().enumerate() {
+                let x = plot.x.from + share * (plot.x.to - plot.x.from);
+                let path = format!("{}::{name}", module.path);
+                let text = substituted(&plot.value, &name, &path, (x, parameter, second));
+                let language = if index == 1 { Language::Glsl } else { Language::Wesl };
+                let texts = Mutex::new(SourceSet::default());
+                let Ok(value) = evaluate(&library, &texts, &text, language, session.as_mut())
+                else {
+                    continue;
+                };
+                asked.expressions.push(json!({ "expression": text, "glsl": index == 1 }));
+                asked.expected.push((text, value.to_string().into_bytes()));
+            }
+        }
+    }
+    match asked.expressions.len() {
+        300.. => Ok(()),
+        few => Err(format!("only {few} expressions have a value").into()),
+    }
+}
+
+/// A plot's expression with numbers in the place of its variables.
+fn substituted(
+    text: &str,
+    name: &str,
+    path: &str,
+    (x, parameter, second): (f64, &str, Option<f64>),
+) -> String {
+    let mut made = String::new();
+    let mut word = String::new();
+    for letter in text.chars().chain(['\n']) {
+        if letter == '_' || letter == '.' || letter.is_alphanumeric() || letter == ':' {
+            word.push(letter);
+            continue;
+        }
+        match word.as_str() {
+            "x" => made.push_str(&format!("({x:?})")),
+            found if found == parameter => {
+                made.push_str(&format!("({:?})", second.unwrap_or_default()));
+            }
+            found if found == name => made.push_str(path),
+            found => made.push_str(found),
+        }
+        word.clear();
+        made.push(letter);
+    }
+    made.trim_end().to_owned()
+}
+
+/// Texts with mistakes: the same words, at the same places.
+fn mistakes(asked: &mut Asked) -> Result<(), Failed> {
+    let texts = [
+        "import lamplight::brdf::diffuse::lambrt;\n@fragment fn f() -> @location(0) vec4f { return vec4f(lambrt()); }",
+        "@fragment fn f() -> @location(0) vec4f {\n    let ä = 1.0; return vec4f(ä, undefined_name, 1);\n}",
+        "@fragment fn f( {",
+    ];
+    for text in texts {
+        let files = BTreeMap::from([("a.wesl".to_owned(), text.to_owned())]);
+        asked.mistakes.push(json!({ "files": files, "root": "a.wesl" }));
+        let mut sources = SourceSet::default();
+        let found = problems(&mut sources, &own(&files));
+        if !found.iter().any(|one| one.severity == Severity::Error) {
+            return Err(format!("nothing is wrong with {text}").into());
+        }
+        let told: String = found
+            .iter()
+            .map(|one| render(&sources, std::slice::from_ref(one), Form::Human))
+            .collect();
+        asked.expected.push((text.to_owned(), told.into_bytes()));
+    }
+    Ok(())
+}
+
+fn problems(sources: &mut SourceSet, packages: &Packages) -> Diagnostics {
+    let settings = Default::default();
+    let options = Options::default();
+    let graph = match resolve::load(sources, packages, "a.wesl", Language::Wesl) {
+        Ok(graph) => graph,
+        Err(errors) => return errors,
+    };
+    let made = compose(&graph, &settings, &options).and_then(|composed| {
+        let root = Root {
+            graph: &graph,
+            settings: &settings,
+            options: &options,
+            clip: Default::default(),
+        };
+        let entries = root.entries(&composed)?;
+        root.compile(&entries, &[Target::WGSL])
+    });
+    made.map_or_else(|errors| graph.traced(errors), |_| Diagnostics::new())
+}
+
+/// Published formulas in f64: exact where only additions and multiplications are in them.
+fn formulas(asked: &mut Asked) -> Result<(), Failed> {
+    let calls = [
+        ("brdf::diffuse", "lambert", vec![0.0, 0.6, 0.8, 0.0, 0.0, 1.0]),
+        ("brdf::specular", "f_schlick", vec![0.25, 0.04, 1.0]),
+    ];
+    for (module, function, words) in calls {
+        let formula = references::find(module, function).ok_or("a reference is missing")?;
+        let value = formula(&mut references::Arguments::new(&words, &[])).value;
+        let path = format!("{module}::{function}");
+        let mut call = vec![json!(path)];
+        call.extend(words.iter().map(|word| json!(word)));
+        asked.references.push(Value::from(call));
+        let told: Vec<String> = value.iter().map(f64::to_string).collect();
+        asked.expected.push((path, told.join(" ").into_bytes()));
+    }
+    Ok(())
+}
+
+fn told(problems: Diagnostics) -> Failed {
+    format!("{:?}", problems.first().map(|one| &one.message)).into()
+}

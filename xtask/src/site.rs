@@ -1,0 +1,154 @@
+//! `cargo xtask site`: the toolchain as WebAssembly, as an npm package.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::{Failure, Outcome, machine};
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// naga recurses along expressions: bytes of stack, of which the limits leave most unused.
+const STACK: &str = "-C link-arg=-zstack-size=8388608";
+
+/// How much work goes into the size and speed of the WebAssembly.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Build {
+    /// As it is published.
+    Small,
+    /// As it is tested: the same code, less optimised, made in half the time.
+    Quick,
+}
+
+impl Build {
+    fn profile(self) -> &'static str {
+        match self {
+            Self::Small => "web",
+            Self::Quick => "dev",
+        }
+    }
+
+    fn folder(self) -> &'static str {
+        match self {
+            Self::Small => "web",
+            Self::Quick => "debug",
+        }
+    }
+}
+
+/// Makes the npm package in `target/toolchain/`.
+pub fn run(arguments: &[String]) -> Outcome {
+    let mut build = Build::Small;
+    for argument in arguments {
+        match argument.as_str() {
+            "--quick" => build = Build::Quick,
+            "--toolchain" => {}
+            _ => return Err(Failure::usage("usage: cargo xtask site [--toolchain] [--quick]")),
+        }
+    }
+    toolchain(build).map(drop)
+}
+
+/// The npm package `@lamplight/toolchain`, in `target/toolchain/`.
+pub fn toolchain(build: Build) -> Result<PathBuf, Failure> {
+    let below = Path::new(ROOT).join("target/wasm");
+    webassembly(build, &below)?;
+    let module = below.join(TARGET).join(build.folder()).join("lamplight_toolchain.wasm");
+    let package = Path::new(ROOT).join("target/toolchain");
+    std::fs::create_dir_all(&package).map_err(|error| unwritten(&package, &error))?;
+    let mut bind = cargo();
+    bind.args(["run", "--quiet", "--package", "lamplight-bind", "--target-dir"]).arg(&below);
+    finish(bind.arg("--").arg(&module).arg(&package), "lamplight-bind")?;
+    let sources = Path::new(ROOT).join("site/toolchain/js");
+    for name in ["index.js", "index.d.ts", "package.json", "README.md"] {
+        let to = package.join(name);
+        std::fs::copy(sources.join(name), &to).map_err(|error| unwritten(&to, &error))?;
+    }
+    sizes(&package.join("toolchain_bg.wasm"), build)?;
+    Ok(package)
+}
+
+/// Compiles to WebAssembly with the target of rustup, or with the packages that Debian has for it.
+fn webassembly(build: Build, below: &Path) -> Outcome {
+    let mut command = match has_target() || added_target() {
+        true => cargo(),
+        false => debian()?,
+    };
+    command.args(["build", "--package", "lamplight-toolchain", "--profile", build.profile()]);
+    command.args(["--target", TARGET, "--target-dir"]).arg(below);
+    if build == Build::Quick {
+        for setting in ["debug-assertions=false", "overflow-checks=false", "opt-level=1"] {
+            command.args(["--config", &format!("profile.dev.package.lamplight.{setting}")]);
+        }
+    }
+    command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", STACK);
+    finish(&mut command, "cargo build --package lamplight-toolchain")
+}
+
+fn cargo() -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(ROOT);
+    command
+}
+
+/// Whether the compiler in use has the standard library of the target.
+fn has_target() -> bool {
+    let arguments = ["--print", "target-libdir", "--target", TARGET];
+    let found = Command::new("rustc").args(arguments).current_dir(ROOT).output();
+    found.is_ok_and(|found| Path::new(String::from_utf8_lossy(&found.stdout).trim()).is_dir())
+}
+
+fn added_target() -> bool {
+    let mut add = Command::new("rustup");
+    add.args(["target", "add", TARGET]).current_dir(ROOT).stderr(Stdio::null());
+    machine::program("rustup") && add.status().is_ok_and(|status| status.success()) && has_target()
+}
+
+/// Debian's own compiler, which builds the standard library from its sources.
+fn debian() -> Result<Command, Failure> {
+    const LINKER: &str = "/usr/bin/wasm-ld-22";
+    if !Path::new(LINKER).exists() || !Path::new("/usr/lib/rustlib/src/rust/library").is_dir() {
+        machine::install(&["rustc-web", "cargo-web", "rust-web-src", "lld-22"])?;
+    }
+    let mut command = Command::new("/usr/bin/cargo");
+    command.args(["-Zbuild-std=std,panic_abort"]).current_dir(ROOT);
+    command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
+    command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
+    command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", LINKER);
+    Ok(command)
+}
+
+fn finish(command: &mut Command, name: &str) -> Outcome {
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(_) => Err(Failure::check(format!("failed: {name}"))),
+        Err(error) => Err(Failure::environment(format!("{name} could not be run: {error}"))),
+    }
+}
+
+fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::environment(format!("cannot write `{}`: {error}", path.display()))
+}
+
+/// Largest compressed size of the toolchain, bytes.
+const LARGEST: usize = 3 << 20;
+
+/// Says how large the toolchain is, as a server would send it.
+fn sizes(module: &Path, build: Build) -> Outcome {
+    let script = "const { gzipSync, brotliCompressSync } = require('zlib'); \
+        const bytes = require('fs').readFileSync(process.argv[1]); \
+        console.log(bytes.length, gzipSync(bytes, { level: 9 }).length, \
+            brotliCompressSync(bytes, { params: { [require('zlib').constants.BROTLI_PARAM_QUALITY]: 9 } }).length)";
+    let output = Command::new("node").args(["-e", script]).arg(module).output();
+    let output = output.map_err(|error| Failure::environment(format!("node: {error}")))?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let sizes: Vec<usize> = text.split_whitespace().filter_map(|size| size.parse().ok()).collect();
+    let [raw, gzip, brotli] = sizes[..] else {
+        return Err(Failure::environment("node could not compress the toolchain"));
+    };
+    println!("toolchain: {raw} bytes, {gzip} with gzip, {brotli} with brotli");
+    if build == Build::Small && gzip > LARGEST {
+        return Err(Failure::check(format!("more than {LARGEST} bytes, compressed")));
+    }
+    Ok(())
+}
