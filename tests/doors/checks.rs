@@ -188,6 +188,19 @@ fn haze(x: f32) -> f32 { return x; }
     let more = case.replace("outer", "haze").replace("2*x", "x");
     package.write("fog.toml", &[case, &more].concat())?;
     package.run("check fog.toml")?.ends(0)?.is_silent_of(&["no case"])?;
+    let glsl = "#define TWICE(x) (2.0 * (x))
+float inner(float x);
+float outer(float x) { return inner(x); }
+#ifdef HAZE
+float haze(float x) { { return x; } }
+#else
+float haze(float x) { return x + 0.0; }
+#endif
+float inner(float x) { return TWICE(x); }\n";
+    package.write("mist.glsl", glsl)?;
+    package.write("mist.toml", case)?;
+    let run = package.run("check mist.toml")?.ends(0)?;
+    run.says(&["1 function has no case: mist::haze\n", "1 of 1 pass"])?;
     Ok(())
 }
 
