@@ -9,7 +9,7 @@ use crate::execute::Session;
 use crate::output::Folder;
 use crate::picture::frame::Programs;
 use crate::picture::gallery::{self, Card, Exhibit, StripCard};
-use crate::picture::strip;
+use crate::picture::strip::{self, Comparison};
 use crate::picture::{Plan, Shot};
 
 /// Files that are not named after a preset.
@@ -50,17 +50,8 @@ pub fn run(
         exhibits.push(exhibit);
     }
     let mut lines = gallery::adapters(&exhibits, shot);
-    let mut strips = Vec::new();
-    for comparison in compared {
-        let picture = strip::draw(painter, programs, &comparison, shot)
-            .map_err(|problems| input(programs, problems))?;
-        let file = gallery::strip_file(&comparison.name);
-        folder.write(&file, &picture.png().map_err(Failure::environment)?)?;
-        let card = StripCard::new(programs, comparison, shot.language)
-            .map_err(|problems| input(programs, problems))?;
-        lines += &format!("{}, {}\n", card.current(shot), painter.adapter());
-        strips.push(card);
-    }
+    let (strips, drawn) = draw_strips(painter, programs, shot, &mut folder, compared)?;
+    lines += &drawn;
     let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
     folder.write("README.md", gallery::markdown(&cards, &strips).as_bytes())?;
     for (path, text) in gallery::composed(&cards) {
@@ -77,4 +68,26 @@ pub fn run(
         exhibits.len() + strips.len(),
         painter.adapter()
     )?)
+}
+
+/// Draws all comparisons into the folder; gives what the page says of them, and who drew them.
+fn draw_strips(
+    painter: &mut dyn Session,
+    programs: &Programs,
+    shot: &Shot,
+    folder: &mut Folder,
+    compared: Vec<Comparison>,
+) -> Result<(Vec<StripCard>, String), Failure> {
+    let (mut strips, mut lines) = (Vec::new(), String::new());
+    for comparison in compared {
+        let picture = strip::draw(painter, programs, &comparison, shot)
+            .map_err(|problems| input(programs, problems))?;
+        let file = gallery::strip_file(&comparison.name);
+        folder.write(&file, &picture.png().map_err(Failure::environment)?)?;
+        let card = StripCard::new(programs, comparison, shot.language)
+            .map_err(|problems| input(programs, problems))?;
+        lines += &format!("{}, {}\n", card.current(shot), painter.adapter());
+        strips.push(card);
+    }
+    Ok((strips, lines))
 }
