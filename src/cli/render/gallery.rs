@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::super::terminal::stdout;
 use super::{Failure, comparisons, input, library};
+use crate::catalogue::preset::Preset;
 use crate::execute::Session;
 use crate::output::Folder;
 use crate::picture::frame::Programs;
@@ -24,19 +25,8 @@ pub fn run(
 ) -> Result<(), Failure> {
     let start = Instant::now();
     let (presets, probes) = library(programs)?;
-    // What is not ours is found before hours of drawing, not after.
-    for name in PAGES {
-        folder.check(name, None)?;
-    }
-    for preset in &presets {
-        for file in gallery::files(&preset.name) {
-            folder.check(&file, None)?;
-        }
-    }
     let compared = comparisons(programs)?;
-    for comparison in &compared {
-        folder.check(&gallery::strip_file(&comparison.name), None)?;
-    }
+    check(&folder, &presets, &compared)?;
     let mut exhibits = Vec::new();
     for preset in &presets {
         let plan = Plan::of_preset(programs, preset, &probes)
@@ -68,6 +58,17 @@ pub fn run(
         exhibits.len() + strips.len(),
         painter.adapter()
     )?)
+}
+
+/// What is not ours is found before minutes of drawing, not after.
+fn check(folder: &Folder, presets: &[Preset], compared: &[Comparison]) -> Result<(), Failure> {
+    let drawn = presets.iter().flat_map(|preset| gallery::files(&preset.name));
+    let strips = compared.iter().map(|comparison| gallery::strip_file(&comparison.name));
+    let pages = PAGES.iter().map(ToString::to_string);
+    for file in pages.chain(drawn).chain(strips) {
+        folder.check(&file, None)?;
+    }
+    Ok(())
 }
 
 /// Draws all comparisons into the folder; gives what the page says of them, and who drew them.
