@@ -233,7 +233,7 @@ fn playground() -> Outcome {
         "document.querySelector('.texts pre')?.textContent.includes('fn lambert')",
         PATIENCE,
     )?;
-    page.until("document.querySelector('.eval output').textContent !== ''", PATIENCE)?;
+    page.until("document.querySelector('.eval output').textContent === '0.25'", PATIENCE)?;
     // Another function is called from the end of the line that `let n` is in.
     let typed = |text: &str| {
         format!(

@@ -9,6 +9,9 @@ export const TYPED = 1000;
 /** What the library's own programs may take: nobody typed them. */
 export const OWN = 20000;
 
+/** What the first answer may take: the browser compiles the toolchain while it runs. */
+const COLD = 10000;
+
 export class TooLong extends Error {}
 
 export class Client {
@@ -18,6 +21,7 @@ export class Client {
     replaced = 0;
     #worker!: Worker;
     #ready = false;
+    #warm = false;
     #next = 0;
     #waiting = new Map<number, Waiting>();
 
@@ -27,6 +31,7 @@ export class Client {
 
     #begin() {
         this.#ready = false;
+        this.#warm = false;
         this.#worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
         this.#worker.onmessage = ({ data }: MessageEvent<Answer>) => this.#told(data);
         this.#worker.onerror = (event) => this.#drop(new Error(event.message || "the toolchain could not be loaded"));
@@ -41,6 +46,7 @@ export class Client {
         } else if (answer.id !== undefined) {
             const waiting = this.#waiting.get(answer.id);
             this.#waiting.delete(answer.id);
+            this.#warm = true;
             this.milliseconds = answer.milliseconds ?? 0;
             if (answer.error === undefined) waiting?.resolve(answer.value);
             else waiting?.reject(new Error(answer.error));
@@ -70,7 +76,7 @@ export class Client {
                     this.replaced++;
                     this.#drop(new TooLong(`no answer within ${limit / 1000} s: the toolchain was begun anew`));
                     this.#begin();
-                }, limit);
+                }, this.#warm ? limit : Math.max(limit, COLD));
             };
             this.#waiting.set(id, {
                 resolve: done(resolve as (value: unknown) => void), reject: done(reject), start,

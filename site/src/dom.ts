@@ -32,7 +32,7 @@ export function choose(
     label: string, values: string[], value: string, change: (value: string) => void,
 ): HTMLLabelElement {
     const select = h("select", { onchange: () => change(select.value) },
-        ...values.map((one) => h("option", { value: one, selected: one === value }, one)));
+        ...values.map((one) => h("option", { value: one, selected: one === value }, one || "as published")));
     return h("label", {}, h("span", {}, label), select);
 }
 

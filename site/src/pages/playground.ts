@@ -119,7 +119,7 @@ export async function page(into: HTMLElement) {
     }
     function files() {
         tabs.replaceChildren(...Object.keys(state.files).map((name) => h("button", {
-            role: "tab", "aria-selected": name === state.open, onclick: () => { state.open = name; begin(); files(); changed(); },
+            role: "tab", "aria-selected": String(name === state.open), onclick: () => { state.open = name; begin(); files(); changed(); },
         }, name)), h("button", { onclick: add, "aria-label": "Add a file" }, "+"));
     }
     function add() {
