@@ -175,7 +175,7 @@ pub mod tools;
 #[cfg(feature = "compile")]
 pub mod validate;
 
-#[cfg(feature = "harness")]
+#[cfg(all(feature = "harness", not(target_family = "wasm")))]
 #[doc(hidden)]
 pub mod browser;
 #[cfg(feature = "harness")]

@@ -1,6 +1,8 @@
 //! The browser that trials and executors drive: what pages compute, say and show, and what is told
 //! where a page hangs or crashes, or where there is no browser.
 
+mod executors;
+
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
@@ -20,7 +22,8 @@ pub fn trials() -> Vec<Trial> {
         ("a_page_crashes", a_page_crashes),
         ("missing", missing),
     ];
-    cases.into_iter().map(|(name, case)| Trial::test(format!("browser::{name}"), case)).collect()
+    let own = cases.into_iter().map(|(name, case)| Trial::test(format!("browser::{name}"), case));
+    own.chain(executors::trials()).collect()
 }
 
 /// Long enough for what is at hand, and short enough for what never comes.

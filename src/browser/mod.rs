@@ -128,6 +128,24 @@ impl Browser {
         Page::open(Arc::clone(self), address)
     }
 
+    /// The result of any command of the protocol to the browser.
+    ///
+    /// # Errors
+    /// The browser's.
+    pub fn command(
+        &self,
+        method: &str,
+        parameters: serde_json::Value,
+    ) -> Result<serde_json::Value, Problem> {
+        self.call(None, method, parameters, PATIENCE)
+    }
+
+    /// Ends it at once, whatever it does.
+    fn kill(&self) {
+        self.wire.close();
+        self.process.terminate();
+    }
+
     /// The result of a command, of a page if one is named.
     fn call(
         &self,

@@ -138,6 +138,11 @@ impl Page {
         BASE64_STANDARD.decode(text).map_err(|error| Problem::Refused(error.to_string()))
     }
 
+    /// Ends the browser at once, with all its pages.
+    pub fn end_browser(&self) {
+        self.browser.kill();
+    }
+
     /// The result of any command of the protocol to this page.
     ///
     /// # Errors

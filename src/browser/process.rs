@@ -124,7 +124,7 @@ impl Process {
     }
 
     /// Has the shell kill the browser.
-    fn terminate(&self) {
+    pub fn terminate(&self) {
         let shell = self.shell.id().to_string();
         let _ = Command::new("sh").args(["-c", "kill -TERM \"$0\"", &shell]).status();
     }

@@ -25,7 +25,7 @@ pub struct Entry {
 /// Opens a session.
 pub type Open = fn() -> Result<Box<dyn Session>, Unavailable>;
 
-/// A target, and what opens a session that draws its files as they are. Each target has one
+/// A target, and what opens a session that draws its files as they are. Each target has an
 /// executor that does.
 pub struct Shipping {
     pub target: Target,
@@ -78,6 +78,15 @@ fn opened_opengl(api: super::gpu::Api, target: Target) -> Result<Box<dyn Session
     }
 }
 
+/// A session in a page of a browser.
+#[cfg(not(target_family = "wasm"))]
+fn opened_page(api: super::web::Api) -> Result<Box<dyn Session>, Unavailable> {
+    match super::web::Web::open(api) {
+        Ok(web) => Ok(Box::new(web)),
+        Err(reason) => Err(Unavailable { reason }),
+    }
+}
+
 include!(concat!(env!("OUT_DIR"), "/executors.rs"));
 
 /// Prepares the process for executors. Call this while it has one thread.
@@ -88,10 +97,10 @@ pub fn prepare(entries: &[&Entry]) {
     entries.iter().filter_map(|entry| entry.before_threads).for_each(|prepare| prepare());
 }
 
-/// The executor that draws a target's files as they are.
-pub fn shipping(target: Target) -> Option<(&'static Entry, &'static Shipping)> {
-    let mut all = ALL.iter().filter_map(|entry| Some((*entry, entry.shipping.as_ref()?)));
-    all.find(|(_, shipping)| shipping.target == target)
+/// The executors that draw a target's files as they are.
+pub fn shipping(target: Target) -> impl Iterator<Item = (&'static Entry, &'static Shipping)> {
+    let all = ALL.iter().filter_map(|entry| Some((*entry, entry.shipping.as_ref()?)));
+    all.filter(move |(_, shipping)| shipping.target == target)
 }
 
 /// Tells Mesa's layers that there is no window system, where there is none: they look for Wayland in

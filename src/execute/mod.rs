@@ -5,7 +5,8 @@
 //! [`kernel`] wraps a function into a fragment shader, an executor of [`executors`] runs it over
 //! rows of arguments; [`fixture`] is what textures and samplers hold. Devices of wgpu are in
 //! `gpu`; the evaluator runs kernels in `interpreter`, compiled MSL in `metal`, and both draw
-//! [`frame`]s in [`raster`]. Frames are drawn from the bytes of a bundle too: [`shipped`].
+//! [`frame`]s in [`raster`]. Pages of a browser are in [`web`]. Frames are drawn from the
+//! bytes of a bundle too: [`shipped`].
 
 pub mod emitted;
 pub mod executors;
@@ -20,6 +21,8 @@ mod metal;
 pub mod raster;
 pub(crate) mod sampling;
 pub mod shipped;
+#[cfg(not(target_family = "wasm"))]
+pub mod web;
 
 use crate::diagnostic::{Diagnostic, codes};
 use frame::{Drawing, Frame};

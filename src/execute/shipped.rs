@@ -2,7 +2,7 @@
 
 use super::emitted;
 use super::frame::EntryPoint;
-use crate::bundle::{Kind, Native, Reflection, Stage, Target};
+use crate::bundle::{Kind, Native, Reflection, Stage, Target, Varying};
 use crate::diagnostic::Diagnostic;
 use crate::emit::{self, Emitted};
 
@@ -60,6 +60,19 @@ impl Shipped {
         let count = located.iter().map(|(location, _)| location + 1).max().unwrap_or(0);
         let format = |location: u32| located.iter().find(|(other, _)| *other == location);
         Ok((0..count).map(|location| format(location).map_or(Format::Float, |one| one.1)).collect())
+    }
+
+    /// What WebGPU cannot do with a fragment stage and the targets that are made here.
+    pub fn lacks_of_webgpu(&self) -> Option<&'static str> {
+        let outputs = &self.reflection.outputs;
+        let is_small = |one: &Varying| one.location.is_some() && !one.ty.starts_with("vec4");
+        if outputs.iter().any(|one| one.builtin.as_deref() == Some("frag_depth")) {
+            return Some("WebGPU asks for a depth target where a stage writes depth");
+        }
+        outputs.iter().any(is_small).then_some(
+            "WebGPU asks for targets of as many numbers as a stage writes, and there are none of \
+             three",
+        )
     }
 
     /// Groups and bindings of its uniform buffers.

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::diagnostic::Diagnostic;
-use lamplight::execute::executors;
+use lamplight::execute::executors::{self, Entry, Shipping};
 use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Pair, Session, on_thread};
@@ -58,6 +58,19 @@ fn targets() -> Result<Vec<Target>, String> {
     names.split(',').map(target).collect()
 }
 
+/// Everything that draws the files of some targets: one driver, or one and a browser.
+fn drivers(targets: &[Target]) -> Result<Vec<Driver>, String> {
+    let mut drivers = Vec::new();
+    for target in targets {
+        let mut found = executors::shipping(*target).peekable();
+        found.peek().ok_or_else(|| format!("nothing draws {target}"))?;
+        for (entry, shipping) in found {
+            drivers.push(Driver::open(entry, shipping)?);
+        }
+    }
+    Ok(drivers)
+}
+
 /// How many permutations are drawn: of the environment, or as many as the tests have time for.
 fn most_points() -> Result<usize, String> {
     match std::env::var("LAMPLIGHT_FRAMES_PERMUTATIONS") {
@@ -72,8 +85,7 @@ fn drawn(language: Language) -> Result<(), String> {
     points.truncate(most_points()?);
     let start = Instant::now();
     let bundle = bundle(&sources, &points, &targets)?;
-    let mut drivers =
-        targets.iter().map(|one| Driver::open(*one)).collect::<Result<Vec<_>, _>>()?;
+    let mut drivers = drivers(&targets)?;
     for point in &points {
         let (key, scene) = (sources.space.key(point).to_string(), sources.scene(point)?);
         permutation(&bundle, language, &key, &scene, &mut drivers)?;
@@ -84,7 +96,7 @@ fn drawn(language: Language) -> Result<(), String> {
         println!("{language:?} {driver}");
         failures.extend(driver.failures.iter().take(MOST_FAILURES).cloned());
         // Nothing may be left out unnoticed: all that is listed can be drawn today.
-        failures.extend(driver.lacks.keys().map(|reason| format!("{}: {reason}", driver.target)));
+        failures.extend(driver.lacks.keys().map(|reason| format!("{}: {reason}", driver.name)));
     }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
@@ -101,7 +113,8 @@ fn others_are_noticed() -> Result<(), String> {
     };
     let other = space.pick_valid(&[(axis, 1)], choose).ok_or("no other permutation")?;
     let bundle = bundle(&sources, &[usual.clone(), other.clone()], &[Target::GLSL330])?;
-    let (mut driver, scene) = (Driver::open(Target::GLSL330)?, sources.scene(&usual)?);
+    let mut driver = drivers(&[Target::GLSL330])?.remove(0);
+    let scene = sources.scene(&usual)?;
     for (point, is_right) in [(&usual, true), (&other, false)] {
         let key = space.key(point).to_string();
         let targets = driver.frame(&bundle, Language::Wesl, &key, &scene);
@@ -122,6 +135,8 @@ fn others_are_noticed() -> Result<(), String> {
 
 /// What draws the files of a target, and what became of them.
 struct Driver {
+    /// The executor's.
+    name: &'static str,
     target: Target,
     session: Box<dyn Session>,
     drawn: usize,
@@ -135,12 +150,11 @@ struct Driver {
 }
 
 impl Driver {
-    fn open(target: Target) -> Result<Self, String> {
-        let found = executors::shipping(target);
-        let (entry, shipping) = found.ok_or_else(|| format!("nothing draws {target}"))?;
+    fn open(entry: &'static Entry, shipping: &'static Shipping) -> Result<Self, String> {
         let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
+        let (name, target) = (entry.name, shipping.target);
         let (tally, failures, lacks, telling, time) = Default::default();
-        Ok(Self { target, session, drawn: 0, tally, failures, lacks, telling, time })
+        Ok(Self { name, target, session, drawn: 0, tally, failures, lacks, telling, time })
     }
 
     /// The targets of both draws, the fragment stage's own first.
@@ -210,16 +224,16 @@ impl Driver {
     fn count(&mut self, key: &str, found: Result<Tally, String>) {
         match found {
             Ok(tally) if tally.tried < LEAST => {
-                let text = format!("{} [{key}] only {} fragments", self.target, tally.tried);
+                let text = format!("{} [{key}] only {} fragments", self.name, tally.tried);
                 self.failures.push(text);
             }
             Ok(tally) if tally.open as f64 > OPEN * tally.tried as f64 => {
                 let Tally { tried, open, .. } = tally;
-                let text = format!("{} [{key}] {open} of {tried} are open", self.target);
+                let text = format!("{} [{key}] {open} of {tried} are open", self.name);
                 self.failures.push(text);
             }
             Ok(tally) => self.tally.add(&tally),
-            Err(error) => self.failures.push(format!("{} [{key}] {error}", self.target)),
+            Err(error) => self.failures.push(format!("{} [{key}] {error}", self.name)),
         }
     }
 }
@@ -260,7 +274,7 @@ fn permutation(
                 *driver.lacks.entry(error.message).or_default() += 1;
             }
             Err(error) => {
-                driver.failures.push(format!("{} [{key}] {}", driver.target, error.message))
+                driver.failures.push(format!("{} [{key}] {}", driver.name, error.message))
             }
         }
     }

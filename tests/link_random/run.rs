@@ -107,7 +107,7 @@ impl Runner {
     /// What is missing.
     pub fn open() -> Result<Self, String> {
         let session = |target: &Target| {
-            let found = executors::shipping(*target);
+            let found = executors::shipping(*target).next();
             let (entry, shipping) = found.ok_or_else(|| format!("nothing runs {target}"))?;
             let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
             Ok((*target, session))

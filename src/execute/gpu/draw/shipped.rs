@@ -6,7 +6,7 @@ use super::super::passthrough::Binary;
 use super::super::{Gpu, Shaders, failed, heaps, hlsl, lock};
 use super::bindings::Bindings;
 use super::{LAVAPIPE_BLOCKS, Meshes, Stages};
-use crate::bundle::{SamplerHeap, Stage, Target, Varying};
+use crate::bundle::{SamplerHeap, Stage, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Pair;
 use crate::execute::fixture::{Fixture, Sampler};
@@ -137,15 +137,8 @@ impl Gpu {
 
 /// What the way to the device cannot do with a fragment stage.
 fn lacks(stage: &Shipped) -> Option<&'static str> {
-    let outputs = &stage.reflection.outputs;
-    let is_small = |one: &Varying| one.location.is_some() && !one.ty.starts_with("vec4");
     match stage.target {
-        Target::WGSL if outputs.iter().any(|one| one.builtin.as_deref() == Some("frag_depth")) => {
-            Some("wgpu asks for a depth target where a stage writes depth")
-        }
-        Target::WGSL if outputs.iter().any(is_small) => Some(
-            "wgpu asks for targets of as many numbers as a stage writes, and there are none of three",
-        ),
+        Target::WGSL => stage.lacks_of_webgpu(),
         Target::HLSL => hlsl::lacks(&stage.text()),
         _ => None,
     }

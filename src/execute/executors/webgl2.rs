@@ -1,0 +1,21 @@
+//! The emitted GLSL ES 3.00 as it is, in a page of Chromium: ANGLE, which is others' work than Mesa.
+
+use super::{Entry, Shipping, Unavailable};
+use crate::browser::PACKAGE;
+use crate::bundle::Target;
+use crate::execute::Session;
+use crate::execute::web::Api;
+
+pub const EXECUTOR: Entry = Entry {
+    name: "webgl2",
+    about: "the emitted GLSL ES 3.00 as it is, on WebGL2 in Chromium",
+    needs: &[PACKAGE],
+    before_threads: None,
+    samples: None,
+    open,
+    shipping: Some(Shipping { target: Target::ESSL300, open }),
+};
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    super::opened_page(Api::WebGl2)
+}

@@ -1,0 +1,22 @@
+//! The emitted WGSL as it is, in a page of Chromium: Tint and Dawn, which are others' work than naga
+//! and wgpu.
+
+use super::{Entry, Shipping, Unavailable};
+use crate::browser::PACKAGE;
+use crate::bundle::Target;
+use crate::execute::Session;
+use crate::execute::web::Api;
+
+pub const EXECUTOR: Entry = Entry {
+    name: "webgpu",
+    about: "the emitted WGSL as it is, on WebGPU in Chromium",
+    needs: &[PACKAGE],
+    before_threads: None,
+    samples: None,
+    open,
+    shipping: Some(Shipping { target: Target::WGSL, open }),
+};
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    super::opened_page(Api::WebGpu)
+}

@@ -1,0 +1,138 @@
+//! Kernels, textures and samplers as the scripts take them.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::{Value, json};
+
+use super::failed;
+use crate::bundle::Combined;
+use crate::diagnostic::Diagnostic;
+use crate::emit::Emitted;
+use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture};
+use crate::execute::kernel::Kernel;
+
+/// Stages that may read a binding, in the numbers of WebGPU.
+const VERTEX_AND_FRAGMENT: u32 = 3;
+
+/// Bytes as text.
+pub fn bytes(bytes: &[u8]) -> String {
+    BASE64_STANDARD.encode(bytes)
+}
+
+/// Words as text.
+pub fn words(words: &[u32]) -> String {
+    let all: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    bytes(&all)
+}
+
+/// The words of an answer.
+pub fn unpacked(value: &Value) -> Result<Vec<u32>, String> {
+    let text = value.as_str().ok_or_else(|| format!("no words: {value}"))?;
+    let bytes = BASE64_STANDARD.decode(text).map_err(|error| error.to_string())?;
+    Ok(bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect())
+}
+
+/// A kernel with what it is bound to.
+pub fn kernel(kernel: &Kernel, emitted: &Emitted) -> Result<Value, Diagnostic> {
+    let code = str::from_utf8(&emitted.bytes).map_err(|error| failed(error.to_string()))?;
+    let fixtures: Vec<((u32, u32), &Fixture)> =
+        kernel.resources().map(|resource| ((0, resource.binding), &*resource.fixture)).collect();
+    let filters = filters(fixtures.iter().map(|(_, fixture)| *fixture));
+    let inputs = json!({
+        "binding": 0,
+        "visibility": VERTEX_AND_FRAGMENT,
+        "texture": { "sampleType": "uint", "viewDimension": "2d" },
+    });
+    let layout = fixtures.iter().map(|(place, fixture)| entry(*place, Some(fixture), filters));
+    let units: Vec<Value> = emitted.native.combined.iter().map(unit).collect();
+    Ok(json!({
+        "id": kernel.id,
+        "code": code,
+        "entry": emitted.native.entry_name,
+        "layout": std::iter::once(inputs).chain(layout).collect::<Vec<_>>(),
+        "fixtures": fixtures.iter().map(|(place, one)| fixture(*place, one)).collect::<Vec<_>>(),
+        "units": units,
+    }))
+}
+
+/// The key of a place in what the scripts take.
+pub fn key((group, binding): (u32, u32)) -> String {
+    format!("{group}/{binding}")
+}
+
+/// A combined sampler of GLSL.
+pub fn unit(combined: &Combined) -> Value {
+    let key_of = |place: [u32; 2]| key((place[0], place[1]));
+    json!({
+        "name": combined.name,
+        "texture": key_of(combined.texture),
+        "sampler": combined.sampler.map(key_of),
+    })
+}
+
+/// Whether a texture is to be filtered: not every device filters textures of f32.
+pub fn filters<'a>(mut fixtures: impl Iterator<Item = &'a Fixture>) -> bool {
+    fixtures.any(|one| matches!(one, Fixture::Sampler(one) if one.linear && one.compare.is_none()))
+}
+
+/// The layout of a binding in WebGPU; without a fixture it is a uniform buffer.
+pub fn entry((_, binding): (u32, u32), fixture: Option<&Fixture>, filters: bool) -> Value {
+    let mut entry = json!({ "binding": binding, "visibility": VERTEX_AND_FRAGMENT });
+    match fixture {
+        Some(Fixture::Texture(texture)) => {
+            let sample = match (texture.kind.is_depth(), filters) {
+                (true, _) => "depth",
+                (false, true) => "float",
+                (false, false) => "unfilterable-float",
+            };
+            let dimension = if texture.kind.layers() == 6 { "cube" } else { "2d" };
+            entry["texture"] = json!({ "sampleType": sample, "viewDimension": dimension });
+        }
+        Some(Fixture::Sampler(sampler)) => {
+            let kind = match sampler {
+                Sampler { compare: Some(_), .. } => "comparison",
+                Sampler { linear: true, .. } => "filtering",
+                _ => "non-filtering",
+            };
+            entry["sampler"] = json!({ "type": kind });
+        }
+        None => entry["buffer"] = json!({ "type": "uniform" }),
+    }
+    entry
+}
+
+/// A texture or a sampler with its place.
+pub fn fixture(place: (u32, u32), fixture: &Fixture) -> Value {
+    match fixture {
+        Fixture::Texture(texture) => json!({ "place": key(place), "texture": image(texture) }),
+        Fixture::Sampler(one) => json!({ "place": key(place), "sampler": sampler(*one) }),
+    }
+}
+
+fn image(texture: &Texture) -> Value {
+    let texels: Vec<u32> = texture.texels.iter().map(|texel| texel.to_bits()).collect();
+    json!({
+        "width": texture.width,
+        "height": texture.height,
+        "layers": texture.kind.layers(),
+        "depth": texture.kind.is_depth(),
+        "texels": words(&texels),
+    })
+}
+
+/// In the words of WebGPU.
+fn sampler(sampler: Sampler) -> Value {
+    let address = match sampler.address {
+        Address::Clamp => "clamp-to-edge",
+        Address::Repeat => "repeat",
+        Address::Mirror => "mirror-repeat",
+    };
+    let compare = sampler.compare.map(|compare| match compare {
+        Compare::Less => "less",
+        Compare::LessEqual => "less-equal",
+        Compare::Greater => "greater",
+        Compare::GreaterEqual => "greater-equal",
+    });
+    let filter = if sampler.linear { "linear" } else { "nearest" };
+    json!({ "address": address, "filter": filter, "compare": compare })
+}

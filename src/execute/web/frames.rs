@@ -1,0 +1,155 @@
+//! Frames from the bytes of a bundle, as the scripts take and give them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde_json::{Map, Value, json};
+
+use super::{Api, asked, failed};
+use crate::bundle::{ClipSpace, FrontFace, Target};
+use crate::diagnostic::{Diagnostic, codes};
+use crate::execute::Pair;
+use crate::execute::fixture::Fixture;
+use crate::execute::frame::{Attribute, Buffers, Drawing, Frame, Item, Mesh, Place, State};
+use crate::execute::shipped::{Format, Shipped};
+
+/// What `frames` of the script is given.
+///
+/// # Errors
+/// What cannot be drawn here.
+pub fn question(api: Api, pair: Pair<'_>, drawing: &Drawing<'_>) -> Result<Value, Diagnostic> {
+    for stage in [pair.vertex, pair.fragment] {
+        if stage.target != api.target() {
+            return Err(failed(format!("this executor draws no {}", stage.target)));
+        }
+    }
+    let lacks = pair.fragment.lacks_of_webgpu().filter(|_| api.target() == Target::WGSL);
+    if let Some(reason) = lacks {
+        return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
+    }
+    if drawing.state != State::default() || !drawing.levels.is_empty() {
+        let message = "shipped texts are drawn without depth test, culling and smaller levels";
+        return Err(failed(message));
+    }
+    let formats = pair.fragment.targets().map_err(failed)?;
+    let places = places(pair);
+    let fixtures: Vec<(Place, &Fixture)> =
+        places.iter().filter_map(|place| Some((*place, &**drawing.fixtures.get(place)?))).collect();
+    let views = drawing.views.iter().map(|view| {
+        let items = drawing.items.iter();
+        items.map(|item| buffers(drawing, view, item, &places)).collect::<Result<Vec<_>, _>>()
+    });
+    let views = views.collect::<Result<Vec<_>, _>>().map_err(failed)?;
+    let reversed = |clip: &ClipSpace| clip.front_face == FrontFace::Reversed;
+    Ok(json!({
+        "size": drawing.size,
+        "formats": formats.iter().map(|one| *one == Format::Float).collect::<Vec<_>>(),
+        "vertex": stage(pair.vertex),
+        "fragment": stage(pair.fragment),
+        "layout": layout(drawing, &places, &fixtures),
+        "fixtures": fixtures.iter().map(|(place, one)| asked::fixture(*place, one)).collect::<Vec<_>>(),
+        "units": units(pair),
+        "blocks": blocks(pair).map_err(failed)?,
+        "reversed": pair.vertex.native.clip.as_ref().is_some_and(reversed),
+        "meshes": drawing.items.iter().map(|item| mesh(item.mesh)).collect::<Vec<_>>(),
+        "views": views,
+    }))
+}
+
+/// The frames of an answer: the words of each target of each view.
+pub fn answer(said: &Value) -> Result<Vec<Frame>, String> {
+    let list = |value: &Value| match value {
+        Value::Array(list) => Ok(list.clone()),
+        other => Err(format!("no frames: {other}")),
+    };
+    let frame = |said: &Value| {
+        let targets = list(said)?.iter().map(asked::unpacked).collect::<Result<_, String>>()?;
+        Ok(Frame { targets, depth: Vec::new(), detour: None })
+    };
+    list(said)?.iter().map(frame).collect()
+}
+
+fn stage(shipped: &Shipped) -> Value {
+    json!({ "code": shipped.text(), "entry": shipped.native.entry_name })
+}
+
+/// Everything that one of the stages reads.
+fn places(pair: Pair<'_>) -> BTreeSet<Place> {
+    let stages = [pair.vertex, pair.fragment].into_iter();
+    let bindings = stages.flat_map(|stage| &stage.reflection.bindings);
+    bindings.map(|binding| (binding.group, binding.binding)).collect()
+}
+
+/// The layout of each group, from the first on.
+fn layout(
+    drawing: &Drawing<'_>,
+    places: &BTreeSet<Place>,
+    fixtures: &[(Place, &Fixture)],
+) -> Vec<Vec<Value>> {
+    let filters = asked::filters(fixtures.iter().map(|(_, fixture)| *fixture));
+    let groups = places.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
+    let entry = |place: &Place| {
+        let fixture = drawing.fixtures.get(place).map(|fixture| &**fixture);
+        asked::entry(*place, fixture, filters)
+    };
+    (0..groups)
+        .map(|group| places.iter().filter(|place| place.0 == group).map(entry).collect())
+        .collect()
+}
+
+/// The uniform buffers of an item in a view.
+fn buffers(
+    drawing: &Drawing<'_>,
+    view: &Buffers,
+    item: &Item<'_>,
+    places: &BTreeSet<Place>,
+) -> Result<Value, String> {
+    let mut found = Map::new();
+    for place in places.iter().filter(|place| !drawing.fixtures.contains_key(place)) {
+        let bytes = drawing.buffer(view, item, *place);
+        let bytes = bytes.ok_or_else(|| format!("nothing is given for {place:?}"))?;
+        found.insert(asked::key(*place), asked::bytes(bytes).into());
+    }
+    Ok(Value::Object(found))
+}
+
+/// The combined samplers of both stages of GLSL.
+fn units(pair: Pair<'_>) -> Vec<Value> {
+    let stages = [pair.vertex, pair.fragment].into_iter();
+    stages.flat_map(|stage| &stage.native.combined).map(asked::unit).collect()
+}
+
+/// The uniform blocks of both stages of GLSL by their names, with a number for each place.
+fn blocks(pair: Pair<'_>) -> Result<Vec<Value>, String> {
+    let mut numbers: BTreeMap<Place, usize> = BTreeMap::new();
+    let mut found = Vec::new();
+    for stage in [pair.vertex, pair.fragment] {
+        for place in stage.blocks() {
+            let slots = &stage.native.slots;
+            let slot = slots.iter().find(|slot| (slot.group, slot.binding) == place);
+            let next = numbers.len();
+            let number = *numbers.entry(place).or_insert(next);
+            let name = slot.and_then(|slot| slot.name.as_deref());
+            found.push(json!({ "name": name, "place": asked::key(place), "number": number }));
+        }
+    }
+    Ok(found)
+}
+
+fn mesh(mesh: &Mesh) -> Value {
+    let attribute = |(one, offset): (Attribute, u64)| {
+        json!({
+            "shaderLocation": one.location,
+            "offset": offset,
+            // `Float32x3` is called `float32x3` there.
+            "format": format!("{:?}", one.format).to_lowercase(),
+            "words": one.format.words(),
+        })
+    };
+    json!({
+        "stride": mesh.stride(),
+        "attributes": mesh.layout().into_iter().map(attribute).collect::<Vec<_>>(),
+        "words": asked::words(&mesh.words),
+        "indices": asked::words(&mesh.indices),
+        "count": if mesh.indices.is_empty() { mesh.vertices() } else { mesh.indices.len() as u32 },
+    })
+}

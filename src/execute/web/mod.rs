@@ -1,0 +1,301 @@
+//! Emitted WGSL and GLSL ES as they are, in a page of a browser: WebGPU and WebGL2.
+//!
+//! The page's script (`webgpu.js`, `webgl2.js`) keeps kernels and draws; what it is given and what
+//! comes back are JSON, with textures and words as base64. A page that is lost is opened again: a
+//! kernel that ends its page fails, and the ones after it run.
+
+mod asked;
+mod frames;
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use rayon::prelude::*;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::emitted;
+use super::frame::{Drawing, Frame};
+use super::gpu::{batched, input_texels, unpack};
+use super::kernel::{Kernel, TARGET_WIDTH};
+use super::{Pair, Session};
+use crate::browser::serve::{Files, Server};
+use crate::browser::{Browser, PATIENCE, Page, Problem};
+use crate::bundle::Target;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::validate::on_large_stack;
+
+/// Longest wait for one draw, or for compiling some kernels.
+const LONGEST: Duration = Duration::from_secs(60);
+/// Kernels that are compiled at once.
+const AT_ONCE: usize = 32;
+
+const COMMON: &str = include_str!("common.js");
+
+/// What a page offers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Api {
+    WebGpu,
+    WebGl2,
+}
+
+impl Api {
+    fn name(self) -> &'static str {
+        match self {
+            Self::WebGpu => "WebGPU",
+            Self::WebGl2 => "WebGL2",
+        }
+    }
+
+    fn target(self) -> Target {
+        match self {
+            Self::WebGpu => Target::WGSL,
+            Self::WebGl2 => Target::ESSL300,
+        }
+    }
+
+    fn script(self) -> &'static str {
+        match self {
+            Self::WebGpu => include_str!("webgpu.js"),
+            Self::WebGl2 => include_str!("webgl2.js"),
+        }
+    }
+}
+
+/// What starts the browser of a session.
+pub type Start = Box<dyn Fn() -> Result<Arc<Browser>, Problem> + Send>;
+
+/// A session: a page, opened again where it is lost.
+pub struct Web {
+    api: Api,
+    start: Start,
+    server: Server,
+    patience: Duration,
+    adapter: String,
+    state: Mutex<State>,
+    runs: u32,
+}
+
+#[derive(Default)]
+struct State {
+    page: Option<Page>,
+    /// Kernels that the page has, and why it has not.
+    kept: HashMap<u64, Result<(), Diagnostic>>,
+}
+
+/// What the script gives back.
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Answer {
+    Value(Value),
+    /// What cannot be run here, in words.
+    Lacks(String),
+    /// What went wrong with one kernel or frame.
+    Error(String),
+    /// The device is gone, and all that it had.
+    Lost(String),
+}
+
+impl Web {
+    /// Opens a page.
+    ///
+    /// # Errors
+    /// In words: there is no browser, or it has no such interface.
+    pub fn open(api: Api) -> Result<Self, String> {
+        Self::open_in(Box::new(Browser::shared), api, LONGEST)
+    }
+
+    /// Opens a page of a browser; it has so long for each answer.
+    ///
+    /// # Errors
+    /// Those of [`Self::open`].
+    pub fn open_in(start: Start, api: Api, patience: Duration) -> Result<Self, String> {
+        let page = "<!doctype html><title>kernels</title><link rel=icon href=data:,>
+            <script src=common.js></script><script src=script.js></script>";
+        let files = [("index.html", page), ("common.js", COMMON), ("script.js", api.script())];
+        let files = files.map(|(path, text)| (path.to_owned(), text.as_bytes().to_vec()));
+        let server = Server::start(Files::Memory(BTreeMap::from(files)));
+        let server = server.map_err(|error| format!("nothing can be served: {error}"))?;
+        let (state, runs) = (Mutex::default(), 0);
+        let mut web = Self { api, start, server, patience, adapter: String::new(), state, runs };
+        let (page, adapter) = web.opened().map_err(|problem| problem.to_string())?;
+        web.adapter = adapter;
+        web.state = Mutex::new(State { page: Some(page), ..State::default() });
+        Ok(web)
+    }
+
+    /// A page with its device, and what that is called.
+    fn opened(&self) -> Result<(Page, String), Problem> {
+        let browser = (self.start)()?;
+        let page = browser.open(&self.server.address(""))?;
+        page.loaded(PATIENCE)?;
+        let device = page.evaluate("lamplight.open()", PATIENCE)?;
+        let device = device.as_str().unwrap_or_default();
+        let adapter = format!("{}, {} on {device}", browser.version(), self.api.name());
+        Ok((page, adapter))
+    }
+
+    /// The script's answer. A lost page is no longer there afterwards.
+    fn ask(&self, state: &mut State, call: &str) -> Result<Value, Failure> {
+        let page = match &state.page {
+            Some(page) => page,
+            None => {
+                let (page, _) = self.opened().map_err(Failure::lost)?;
+                state.page.insert(page)
+            }
+        };
+        let answer = page.evaluate(call, self.patience).and_then(|answer| {
+            serde_json::from_value(answer).map_err(|error| Problem::Refused(error.to_string()))
+        });
+        let failure = match answer {
+            Ok(Answer::Value(value)) => return Ok(value),
+            Ok(Answer::Lacks(words)) => {
+                return Err(Failure::Of(Diagnostic::error(codes::EXECUTOR_LACKS, words)));
+            }
+            Ok(Answer::Error(words)) => return Err(Failure::Of(failed(words))),
+            Err(Problem::Threw(words)) => return Err(Failure::Of(failed(words))),
+            Ok(Answer::Lost(words)) => Failure::Lost(failed(words)),
+            // What is slow once is slow again. It may go on in the process that draws for all
+            // pages, and nothing stops it there but the end of the browser.
+            Err(problem @ Problem::Late { .. }) => {
+                page.end_browser();
+                Failure::Of(failed(problem.to_string()))
+            }
+            Err(problem) => Failure::lost(problem),
+        };
+        *state = State::default();
+        Err(failure)
+    }
+
+    /// Does something once more where the page is lost: another page may have ended the device.
+    fn twice<T>(
+        &self,
+        mut job: impl FnMut(&Self, &mut State) -> Result<T, Failure>,
+    ) -> Result<T, Diagnostic> {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let result = match job(self, &mut state) {
+            Err(Failure::Lost(_)) => job(self, &mut state),
+            other => other,
+        };
+        result.map_err(|failure| match failure {
+            Failure::Of(error) | Failure::Lost(error) => error,
+        })
+    }
+
+    /// Gives those of the kernels that are new to the page, some at a time.
+    fn compile(&self, state: &mut State, kernels: &[&Kernel]) -> Result<(), Failure> {
+        let new: Vec<&Kernel> =
+            kernels.iter().copied().filter(|kernel| !state.kept.contains_key(&kernel.id)).collect();
+        let target = self.api.target();
+        for some in new.chunks(AT_ONCE) {
+            let emit = |kernel: &&Kernel| asked::kernel(kernel, &emitted::emit(kernel, target)?);
+            let made: Vec<Result<Value, Diagnostic>> =
+                on_large_stack(|| some.par_iter().map(emit).collect());
+            let texts: Vec<&Value> = made.iter().flatten().collect();
+            let said = match texts.is_empty() {
+                true => Value::Array(Vec::new()),
+                false => self.ask(state, &format!("lamplight.prepare({})", json!(texts)))?,
+            };
+            let said: Vec<Answer> = serde_json::from_value(said)
+                .map_err(|error| Failure::Of(failed(error.to_string())))?;
+            if let Some(Answer::Lost(words)) =
+                said.iter().find(|one| matches!(one, Answer::Lost(_)))
+            {
+                let lost = failed(words.clone());
+                *state = State::default();
+                return Err(Failure::Lost(lost));
+            }
+            let mut said = said.into_iter();
+            for (kernel, made) in some.iter().zip(&made) {
+                let result = made.as_ref().map_err(Clone::clone).and_then(|_| kept(said.next()));
+                state.kept.insert(kernel.id, result);
+            }
+        }
+        Ok(())
+    }
+
+    /// One draw: the result words of `count` invocations.
+    fn draw(
+        &self,
+        kernel: &Kernel,
+        inputs: &[u32],
+        [count, run]: [u32; 2],
+    ) -> Result<Vec<u32>, Diagnostic> {
+        let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
+        let header = [count, rows * TARGET_WIDTH, run, 0];
+        let texels = asked::words(&input_texels(kernel, inputs, header));
+        let question = json!({ "id": kernel.id, "rows": rows, "texels": texels });
+        let call = format!("lamplight.run({question})");
+        let said = self.twice(|web, state| {
+            web.compile(state, &[kernel])?;
+            match state.kept.get(&kernel.id) {
+                Some(Err(error)) => Err(Failure::Of(error.clone())),
+                _ => web.ask(state, &call),
+            }
+        })?;
+        unpack(kernel, &asked::unpacked(&said).map_err(failed)?, header)
+    }
+}
+
+impl Session for Web {
+    fn adapter(&self) -> String {
+        self.adapter.clone()
+    }
+
+    fn prepare(&mut self, kernels: &[&Kernel]) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        // Where the page is lost over some, each is tried by itself when it is to run.
+        let _ = self.compile(&mut state, kernels);
+    }
+
+    fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        let web = &*self;
+        let mut run = web.runs;
+        let results = batched(kernel, inputs, |batch, count| {
+            run = run.wrapping_add(1);
+            web.draw(kernel, batch, [count, run])
+        });
+        self.runs = run;
+        results
+    }
+
+    fn draw_shipped(
+        &self,
+        pair: Pair<'_>,
+        drawing: &Drawing<'_>,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        let question = frames::question(self.api, pair, drawing)?;
+        let call = format!("lamplight.frames({question})");
+        let said = self.twice(|web, state| web.ask(state, &call))?;
+        frames::answer(&said).map_err(failed)
+    }
+}
+
+/// Whether the page has a kernel, or why not.
+fn kept(said: Option<Answer>) -> Result<(), Diagnostic> {
+    match said {
+        Some(Answer::Value(_)) => Ok(()),
+        Some(Answer::Lacks(words)) => Err(Diagnostic::error(codes::EXECUTOR_LACKS, words)),
+        Some(Answer::Error(words) | Answer::Lost(words)) => Err(failed(words)),
+        None => Err(failed("the page has forgotten a kernel")),
+    }
+}
+
+/// Why there is no answer.
+enum Failure {
+    /// Of what was asked.
+    Of(Diagnostic),
+    /// Of the page, perhaps for somebody else's reason.
+    Lost(Diagnostic),
+}
+
+impl Failure {
+    fn lost(problem: Problem) -> Self {
+        Self::Lost(failed(problem.to_string()))
+    }
+}
+
+fn failed(message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, message)
+}
