@@ -61,7 +61,7 @@ pub fn pages() -> Outcome {
         command.args(arguments).current_dir(&folder).stdout(Stdio::null());
         finish(&mut command, &format!("npm {}", arguments.join(" ")))
     };
-    npm(&["ci", "--no-audit", "--no-fund", "--loglevel=error"])?;
+    npm(&["install", "--no-save", "--no-audit", "--no-fund", "--loglevel=error"])?;
     npm(&["run", "build"])
 }
 

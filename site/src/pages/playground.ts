@@ -25,7 +25,7 @@ fn fs_main(@location(0) normal: vec3f, @location(1) to_light: vec3f) -> @locatio
         "lamp.wesl": `import lamplight::lighting::attenuation::inverse_square;
 
 fn falloff(distance: f32) -> f32 {
-    return inverse_square(distance, 0.01);
+    return inverse_square(distance * distance, 0.01);
 }
 `,
         "lit.frag.glsl": `#version 450
