@@ -10,7 +10,7 @@
 use std::error::Error;
 use std::sync::mpsc;
 
-use lamplight::bundle::{Bundle, Target};
+use lamplight::bundle::{Bundle, Found, Target};
 
 /// Width and height of the picture: a row of 64 RGBA pixels is as long as copies must be.
 const SIZE: u32 = 64;
@@ -37,11 +37,58 @@ pub fn draw(path: &str) -> Result<[u8; 4], Box<dyn Error>> {
     let fragment = program.shader("fs_main")?.get(KEY, Target::WGSL)?;
 
     let (device, queue) = open()?;
+    let pipeline = pipeline(&device, &vertex, &fragment)?;
+
+    let filled = |numbers: &[f32], usage| filled(&device, &queue, numbers, usage);
+    let camera = filled(&[identity(), identity()].concat(), wgpu::BufferUsages::UNIFORM);
+    let object =
+        filled(&[&identity()[..], &identity(), &[1.0; 4]].concat(), wgpu::BufferUsages::UNIFORM);
+    let corners = filled(&corners(), wgpu::BufferUsages::VERTEX);
+    let bound = |group: u32, buffer: &wgpu::Buffer| {
+        let entries = [wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }];
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(group),
+            entries: &entries,
+        })
+    };
+
+    let picture = picture(&device);
+    let view = picture.create_view(&Default::default());
+    let mut encoder = device.create_command_encoder(&Default::default());
+    {
+        let mut pass = cleared(&mut encoder, &view);
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &bound(0, &camera), &[]);
+        pass.set_bind_group(2, &bound(2, &object), &[]);
+        pass.set_vertex_buffer(0, corners.slice(..));
+        pass.draw(0..3, 0..1);
+    }
+    let pixels = read(&device, &queue, encoder, &picture)?;
+    let middle = ((SIZE / 2 * SIZE + SIZE / 2) * 4) as usize;
+    Ok([pixels[middle], pixels[middle + 1], pixels[middle + 2], pixels[middle + 3]])
+}
+
+/// A device, on a software adapter where there is one.
+fn open() -> Result<(wgpu::Device, wgpu::Queue), Box<dyn Error>> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
+    adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
+    let adapter = adapters.first().ok_or("no adapter: install mesa-vulkan-drivers")?;
+    Ok(pollster::block_on(adapter.request_device(&Default::default()))?)
+}
+
+/// The pipeline of two shaders of the bundle.
+fn pipeline(
+    device: &wgpu::Device,
+    vertex: &Found,
+    fragment: &Found,
+) -> Result<wgpu::RenderPipeline, Box<dyn Error>> {
     let module = |bytes: &[u8]| -> Result<wgpu::ShaderModule, std::str::Utf8Error> {
         let source = wgpu::ShaderSource::Wgsl(std::str::from_utf8(bytes)?.into());
         Ok(device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source }))
     };
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    Ok(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(KEY),
         layout: None,
         vertex: wgpu::VertexState {
@@ -65,33 +112,30 @@ pub fn draw(path: &str) -> Result<[u8; 4], Box<dyn Error>> {
         }),
         multiview_mask: None,
         cache: None,
+    }))
+}
+
+/// A buffer with numbers in it.
+fn filled(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    numbers: &[f32],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: bytes.len() as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
     });
+    queue.write_buffer(&buffer, 0, &bytes);
+    buffer
+}
 
-    let buffer = |numbers: &[f32], usage| {
-        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: bytes.len() as u64,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        queue.write_buffer(&buffer, 0, &bytes);
-        buffer
-    };
-    let camera = buffer(&[identity(), identity()].concat(), wgpu::BufferUsages::UNIFORM);
-    let object =
-        buffer(&[&identity()[..], &identity(), &[1.0; 4]].concat(), wgpu::BufferUsages::UNIFORM);
-    let corners = buffer(&corners(), wgpu::BufferUsages::VERTEX);
-    let bound = |group: u32, buffer: &wgpu::Buffer| {
-        let entries = [wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }];
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &pipeline.get_bind_group_layout(group),
-            entries: &entries,
-        })
-    };
-
-    let picture = device.create_texture(&wgpu::TextureDescriptor {
+/// What is drawn into.
+fn picture(device: &wgpu::Device) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: SIZE, height: SIZE, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -100,41 +144,27 @@ pub fn draw(path: &str) -> Result<[u8; 4], Box<dyn Error>> {
         format: FORMAT,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
-    });
-    let view = picture.create_view(&Default::default());
-    let mut encoder = device.create_command_encoder(&Default::default());
-    {
-        let attachment = wgpu::RenderPassColorAttachment {
-            view: &view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                store: wgpu::StoreOp::Store,
-            },
-        };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(attachment)],
-            ..Default::default()
-        });
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bound(0, &camera), &[]);
-        pass.set_bind_group(2, &bound(2, &object), &[]);
-        pass.set_vertex_buffer(0, corners.slice(..));
-        pass.draw(0..3, 0..1);
-    }
-    let pixels = read(&device, &queue, encoder, &picture)?;
-    let middle = ((SIZE / 2 * SIZE + SIZE / 2) * 4) as usize;
-    Ok([pixels[middle], pixels[middle + 1], pixels[middle + 2], pixels[middle + 3]])
+    })
 }
 
-/// A device, on a software adapter where there is one.
-fn open() -> Result<(wgpu::Device, wgpu::Queue), Box<dyn Error>> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
-    adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
-    let adapter = adapters.first().ok_or("no adapter: install mesa-vulkan-drivers")?;
-    Ok(pollster::block_on(adapter.request_device(&Default::default()))?)
+/// A pass over a picture that begins black.
+fn cleared<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    view: &wgpu::TextureView,
+) -> wgpu::RenderPass<'e> {
+    let attachment = wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            store: wgpu::StoreOp::Store,
+        },
+    };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(attachment)],
+        ..Default::default()
+    })
 }
 
 fn read(

@@ -11,7 +11,7 @@ pub struct Limit {
     /// What is counted.
     pub what: &'static str,
     pub value: u64,
-    pub unit: Unit,
+    pub unit: Measure,
     /// What would be exhausted without it.
     pub protects: &'static str,
     /// The code or the words of the error.
@@ -20,7 +20,7 @@ pub struct Limit {
 
 /// How a bound is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
+pub enum Measure {
     Count,
     Bytes,
     Seconds,
@@ -30,11 +30,11 @@ impl Limit {
     /// The value as a person writes it: `4 MiB`, `1,048,576`, `5 s`.
     pub fn written(&self) -> String {
         match self.unit {
-            Unit::Count => thousands(self.value),
-            Unit::Seconds => format!("{} s", self.value),
-            Unit::Bytes if self.value >= 1 << 30 => format!("{} GiB", self.value >> 30),
-            Unit::Bytes if self.value >= 1 << 20 => format!("{} MiB", self.value >> 20),
-            Unit::Bytes => format!("{} KiB", self.value >> 10),
+            Measure::Count => thousands(self.value),
+            Measure::Seconds => format!("{} s", self.value),
+            Measure::Bytes if self.value >= 1 << 30 => format!("{} GiB", self.value >> 30),
+            Measure::Bytes if self.value >= 1 << 20 => format!("{} MiB", self.value >> 20),
+            Measure::Bytes => format!("{} KiB", self.value >> 10),
         }
     }
 }
@@ -55,7 +55,7 @@ macro_rules! limits {
         pub const ALL: &[Limit] = &[$(Limit {
             what: $what,
             value: $value as u64,
-            unit: Unit::$unit,
+            unit: Measure::$unit,
             protects: $protects,
             error: $error,
         }),*];

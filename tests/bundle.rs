@@ -1,16 +1,21 @@
 //! Bundles written, loaded, damaged, merged and timed.
 
+mod damage;
+mod large;
+mod schema;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use lamplight::bundle::{
     Artifact, Axis, Bundle, Contents, EntryContents, Error, Language, Native, ProgramContents,
-    Reflection, SCHEMA, Stage, Target, Unit, Usage, canonical, diff, pack, write_directory,
-    write_file,
+    Reflection, Stage, Target, Unit, Usage, canonical, diff, pack, write_directory, write_file,
 };
 use libtest_mimic::{Failed, Trial};
-use serde_json::Value;
+
+use damage::{damaged_directories, flips, truncations, versions};
+use large::large;
+use schema::schema;
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -243,98 +248,6 @@ fn unknown_names() -> Outcome {
     })
 }
 
-/// A generator good enough to choose positions: xorshift.
-fn random(state: &mut u64, below: usize) -> usize {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    (*state % below as u64) as usize
-}
-
-fn flips() -> Outcome {
-    let packed = pack(&small())?;
-    let mut state = 0x1234_5678_9abc_def1;
-    for round in 0..2_000 {
-        // The header by every byte, the rest at random.
-        let at = if round < 300 { round } else { random(&mut state, packed.len()) };
-        let mut damaged = packed.clone();
-        damaged[at] ^= 1 << random(&mut state, 8);
-        use_all(damaged, &format!("byte {at}"))?;
-    }
-    Ok(())
-}
-
-/// Loading must not panic, whatever it gives; verifying must notice.
-fn use_all(bytes: Vec<u8>, what: &str) -> Outcome {
-    let Ok(bundle) = Bundle::from_bytes(bytes) else { return Ok(()) };
-    if let Ok(shader) = bundle.program("forward").and_then(|program| program.shader("fs_main")) {
-        let _ = shader.get("shadow=hard", Target::WGSL);
-        let _ = shader.get("taps=16", Target::WGSL);
-    }
-    let _ = bundle.contents();
-    check(bundle.verify().is_err(), &format!("damage was not noticed: {what}"))
-}
-
-fn truncations() -> Outcome {
-    let packed = pack(&small())?;
-    let mut state = 0xdead_beef_0bad_cafe;
-    for round in 0..500 {
-        let length = if round < 300 { round } else { random(&mut state, packed.len()) };
-        use_all(packed[..length].to_vec(), &format!("cut to {length}"))?;
-    }
-    use_all([packed.as_slice(), b"x"].concat(), "one byte more")?;
-    let folder = tempfile::tempdir()?;
-    let empty = folder.path().join("empty");
-    std::fs::write(&empty, b"")?;
-    check(matches!(Bundle::open(empty), Err(Error::Corrupt { .. })), "an empty file was opened")
-}
-
-fn damaged_directories() -> Outcome {
-    let folder = tempfile::tempdir()?;
-    write_directory(&small(), folder.path())?;
-    let manifest = std::fs::read(folder.path().join("manifest.json"))?;
-    let mut state = 0x0123_4567_89ab_cdef;
-    for round in 0..500 {
-        let mut damaged = manifest.clone();
-        if round % 5 == 0 {
-            damaged.truncate(random(&mut state, manifest.len()));
-        } else {
-            damaged[random(&mut state, manifest.len())] ^= 1 << random(&mut state, 8);
-        }
-        std::fs::write(folder.path().join("manifest.json"), &damaged)?;
-        check(Bundle::open(folder.path()).is_err(), "damage of the manifest was not noticed")?;
-    }
-    std::fs::write(folder.path().join("manifest.json"), &manifest)?;
-    let bundle = Bundle::open(folder.path())?;
-    bundle.verify()?;
-    let blob = std::fs::read_dir(folder.path().join("blobs"))?.next().ok_or("no blob")??.path();
-    let good = std::fs::read(&blob)?;
-    let mut bad = good.clone();
-    bad[0] ^= 1;
-    std::fs::write(&blob, &bad)?;
-    check(matches!(bundle.verify(), Err(Error::Corrupt { .. })), "a damaged blob was not noticed")?;
-    std::fs::remove_file(&blob)?;
-    check(bundle.verify().is_err(), "a missing blob was not noticed")
-}
-
-fn versions() -> Outcome {
-    let mut packed = pack(&small())?;
-    packed[8] = 9;
-    check(
-        matches!(Bundle::from_bytes(packed), Err(Error::Version { found: 9, known: 1 })),
-        "a file of version 9 was read",
-    )?;
-    let folder = tempfile::tempdir()?;
-    std::fs::write(
-        folder.path().join("manifest.json"),
-        "{\"version\": 9, \"something\": \"else\"}",
-    )?;
-    check(
-        matches!(Bundle::open(folder.path()), Err(Error::Version { found: 9, known: 1 })),
-        "a manifest of version 9 was read",
-    )
-}
-
 fn rewriting() -> Outcome {
     let folder = tempfile::tempdir()?;
     let blobs = folder.path().join("blobs");
@@ -430,120 +343,4 @@ fn merging() -> Outcome {
     let mut other = small();
     other.programs.values_mut().for_each(|program| program.axes.clear());
     check(matches!(merged.merge(other), Err(Error::Conflict(_))), "other axes were merged")
-}
-
-fn schema() -> Outcome {
-    let folder = tempfile::tempdir()?;
-    write_directory(&small(), folder.path())?;
-    let schema: Value = serde_json::from_str(SCHEMA)?;
-    let manifest: Value =
-        serde_json::from_slice(&std::fs::read(folder.path().join("manifest.json"))?)?;
-    conforms(&schema, &schema, &manifest, "manifest")
-}
-
-/// The part of JSON Schema that the published schema uses.
-pub fn conforms(root: &Value, schema: &Value, value: &Value, place: &str) -> Outcome {
-    if let Some(name) = schema["$ref"].as_str() {
-        return conforms(
-            root,
-            root.pointer(&name[1..]).ok_or("a reference leads nowhere")?,
-            value,
-            place,
-        );
-    }
-    let is_type = match schema["type"].as_str() {
-        Some("object") => value.is_object(),
-        Some("array") => value.is_array(),
-        Some("string") => value.is_string(),
-        Some("integer") => value.is_u64(),
-        Some("boolean") => value.is_boolean(),
-        _ => true,
-    };
-    check(is_type, &format!("{place} has the wrong type"))?;
-    check(schema.get("const").is_none_or(|only| only == value), place)?;
-    check(
-        schema["enum"].as_array().is_none_or(|known| known.contains(value)),
-        &format!("{place}: {value}"),
-    )?;
-    for name in schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str) {
-        check(value.get(name).is_some(), &format!("{place} has no {name}"))?;
-    }
-    for (name, member) in value.as_object().into_iter().flatten() {
-        let known = schema["properties"].get(name).unwrap_or(&schema["additionalProperties"]);
-        check(known != &Value::Bool(false), &format!("{place} has an unknown {name}"))?;
-        conforms(root, known, member, &format!("{place}.{name}"))?;
-    }
-    value
-        .as_array()
-        .into_iter()
-        .flatten()
-        .try_for_each(|item| conforms(root, &schema["items"], item, place))
-}
-
-/// Opening, looking up and fetching stay quick; the figures are printed with `--nocapture`.
-fn large() -> Outcome {
-    let axis = |name: &str, count: usize| Axis {
-        name: name.into(),
-        values: (0..count).map(|value| format!("value_{value}")).collect(),
-        default: "value_0".into(),
-        mode: "static".into(),
-    };
-    let axes: Vec<Axis> = ["ambient", "attenuation", "specular", "shadow", "lights"]
-        .map(|name| axis(name, 10))
-        .into();
-    let mut entry = EntryContents::default();
-    let hashes: Vec<_> = (0..2_000)
-        .map(|index| {
-            entry.add(unit(&format!("unit {index}"), &[Target::SPIRV, Target::WGSL])).unwrap()
-        })
-        .collect();
-    for index in 0..100_000usize {
-        let value = |axis: u32| index / 10usize.pow(axis) % 10;
-        let key: Vec<String> = (0..5)
-            .map(|axis| format!("{}=value_{}", axes[axis as usize].name, value(axis)))
-            .collect();
-        entry.keys.insert(canonical(&axes, &key.join(",")).unwrap(), hashes[index % hashes.len()]);
-    }
-    let keys: Vec<String> = entry.keys.keys().cloned().collect();
-    let program = ProgramContents {
-        axes,
-        languages: BTreeMap::from([(
-            Language::Wesl,
-            BTreeMap::from([("fs_main".to_owned(), entry)]),
-        )]),
-    };
-    let contents = Contents { programs: BTreeMap::from([("forward".to_owned(), program)]) };
-
-    let folder = tempfile::tempdir()?;
-    let path = folder.path().join("large.lamplight");
-    let (_, packing) = timed(|| write_file(&contents, &path));
-    let (bundle, opening) = timed(|| Bundle::open(&path));
-    let bundle = bundle?;
-    let shader = bundle.program("forward")?.shader("fs_main")?;
-    let (_, first) = timed(|| shader.find(&keys[0]));
-    // Copied in the order of asking: what is timed is the bundle's memory, not the test's.
-    let asked: Vec<String> =
-        (0..keys.len()).map(|index| keys[index * 7919 % keys.len()].clone()).collect();
-    let (found, looking) = timed(|| asked.iter().filter(|key| shader.find(key).is_ok()).count());
-    check(found == 100_000, "a key was not found")?;
-    let (_, fetching) = timed(|| {
-        asked.iter().take(1_000).filter(|key| shader.get(key, Target::SPIRV).is_ok()).count()
-    });
-    let (_, verifying) = timed(|| bundle.verify());
-    let size = std::fs::metadata(&path)?.len();
-    println!(
-        "100,000 keys, {size} bytes: pack {packing:?}, open {opening:?}, first lookup {first:?}, lookup {:?}, fetch {:?}, verify {verifying:?}",
-        looking / 100_000,
-        fetching / 1_000
-    );
-    // Bounds for an unoptimised build on a busy machine; optimised builds are far below.
-    check(opening < Duration::from_millis(50), &format!("opening took {opening:?}"))?;
-    check(looking / 100_000 < Duration::from_micros(20), &format!("looking up took {looking:?}"))?;
-    check(fetching / 1_000 < Duration::from_millis(2), &format!("fetching took {fetching:?}"))
-}
-
-fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
-    let start = Instant::now();
-    let value = work();
-    (value, start.elapsed())
 }

@@ -141,7 +141,7 @@ fn presets_ship() -> Result<(), Failed> {
 fn preset_mistakes_are_reported() -> Result<(), Failed> {
     let (_, manifest) = project::library_manifest()
         .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
-    let head = "[a]\ndoc = \"d\"\nsource = \"s\"\ndeviations = []\n";
+    let head = "[a]\ndoc = \"d\"\nlook = \"l\"\nsource = \"s\"\ndeviations = []\n";
     let cases = [
         ("program = \"forwards\"\nkey = \"default\"\nscene = \"floor\"", "unknown-program"),
         ("program = \"forward\"\nkey = \"shadw=hard\"\nscene = \"floor\"", "unknown-axis"),

@@ -1,13 +1,13 @@
 //! The examples do what they say.
 
 #[path = "../examples/hot_reload.rs"]
-#[allow(dead_code)]
+#[expect(dead_code, reason = "`main` is run by the example alone")]
 mod hot_reload;
 #[path = "../examples/load_bundle.rs"]
-#[allow(dead_code)]
+#[expect(dead_code, reason = "`main` is run by the example alone")]
 mod load_bundle;
 #[path = "../examples/wesl_crate/main.rs"]
-#[allow(dead_code)]
+#[expect(dead_code, reason = "`main` is run by the example alone")]
 mod wesl_crate;
 
 use std::ffi::OsString;

@@ -1,16 +1,23 @@
 //! `gen`, `merge` and `watch` over a small package: what is done again and what is not, that
 //! caches and shards change no byte, and that mistakes are told alike from a cache.
 
+mod shards;
+mod shared;
+mod watched;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Output};
 
 use lamplight::compose::lean;
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 use tempfile::TempDir;
+
+use shards::{parallel, shards, wrong_shards};
+use shared::{shared_folder, shared_server};
+use watched::watch;
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -351,78 +358,6 @@ fn check() -> Outcome {
     equal(run()?, Some(0))
 }
 
-fn shards() -> Outcome {
-    let package = Package::new()?;
-    package.generate(&["-o", "whole"])?;
-    // Each in a process of its own, as under GNU parallel or in an array of jobs.
-    let names: Vec<(String, String)> =
-        (1..=5).map(|index| (format!("{index}/5"), format!("shard-{index}"))).collect();
-    let children = names.iter().map(|(shard, out)| {
-        package
-            .command(&["gen", "--no-cache", "--shard", shard, "-o", out])
-            .stdout(Stdio::null())
-            .spawn()
-    });
-    for mut child in children.collect::<Result<Vec<_>, _>>()? {
-        ensure(child.wait()?.success(), "a shard failed")?;
-    }
-    for order in [[1, 2, 3, 4, 5], [4, 1, 5, 3, 2]] {
-        let shards: Vec<String> = order.iter().map(|index| format!("shard-{index}")).collect();
-        let arguments: Vec<&str> =
-            ["merge", "merged"].into_iter().chain(shards.iter().map(String::as_str)).collect();
-        let output =
-            package.run(&[arguments.as_slice(), &["--manifest", "lamplight.toml"]].concat())?;
-        ensure(output.status.success(), String::from_utf8_lossy(&output.stderr))?;
-        equal(package.files("merged")?, package.files("whole")?)?;
-    }
-    Ok(())
-}
-
-/// The command of `docs/many-machines.md`.
-fn parallel() -> Outcome {
-    let package = Package::new()?;
-    package.generate(&["-o", "whole"])?;
-    let run = |line: &str| -> Outcome {
-        let mut command = Command::new("sh");
-        command
-            .args(["-c", line])
-            .current_dir(package.path())
-            .env("LAMPLIGHT", env!("CARGO_BIN_EXE_lamplight"));
-        let output = command.env("HOME", package.path()).output()?;
-        ensure(
-            output.status.success(),
-            format!("`{line}`: {}", String::from_utf8_lossy(&output.stderr)),
-        )
-    };
-    let found = run("parallel --version | grep -q GNU");
-    found.map_err(
-        |_| "GNU parallel is not installed: `apt-get install parallel`, as `cargo xtask test` does",
-    )?;
-    run(
-        "parallel --will-cite --jobs 2 --halt now,fail=1 $LAMPLIGHT gen --no-cache --shard {}/4 --out shards/{} ::: $(seq 4)",
-    )?;
-    run("$LAMPLIGHT merge merged shards/* --manifest lamplight.toml")?;
-    equal(package.files("merged")?, package.files("whole")?)
-}
-
-fn wrong_shards() -> Outcome {
-    let package = Package::new()?;
-    for (shard, out) in [("1/2", "one"), ("2/2", "two")] {
-        package.generate(&["--shard", shard, "-o", out])?;
-    }
-    equal(
-        package.run(&["merge", "merged", "one", "--manifest", "lamplight.toml"])?.status.code(),
-        Some(3),
-    )?;
-    package.write("tint.wesl", &TINT.replace("1.0, 0.0, 0.0", "0.5, 0.0, 0.0"))?;
-    package.generate(&["--shard", "1/1", "-o", "other"])?;
-    equal(package.run(&["merge", "merged", "one", "other"])?.status.code(), Some(3))?;
-    let blob = fs::read_dir(package.path().join("two/blobs"))?.next().ok_or("no blob")??.path();
-    fs::write(blob, "something else")?;
-    equal(package.run(&["merge", "merged", "one", "two"])?.status.code(), Some(3))?;
-    equal(package.run(&["gen", "--shard", "3/2"])?.status.code(), Some(2))
-}
-
 fn choices() -> Outcome {
     let package = Package::new()?;
     let summary = package.generate(&[
@@ -437,83 +372,4 @@ fn choices() -> Outcome {
     equal(summary["targets"].as_array().map(Vec::len), Some(1))?;
     equal(package.run(&["gen", "--program", "smal"])?.status.code(), Some(1))?;
     equal(package.run(&["gen", "--only", "tint=purple"])?.status.code(), Some(1))
-}
-
-fn watch() -> Outcome {
-    let package = Package::new()?;
-    package.generate(&[])?;
-    let arguments = ["watch", "--cache", "cache", "--program", "small", "--key", "tint=green"];
-    let mut child =
-        package.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
-    let outcome = followed(&package);
-    child.kill()?;
-    child.wait()?;
-    outcome?;
-    equal(&package.generate(&[])?["up_to_date"], &Value::Bool(true))
-}
-
-fn followed(package: &Package) -> Outcome {
-    let manifest = || fs::read(package.path().join("bundle/manifest.json"));
-    for text in ["0.0, 0.5, 0.0", "nonsense", "0.0, 0.25, 0.0"] {
-        let before = manifest()?;
-        package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", text))?;
-        if text == "nonsense" {
-            // It goes on watching.
-            std::thread::sleep(Duration::from_millis(300));
-            continue;
-        }
-        let start = Instant::now();
-        while manifest()? == before || package.generate(&["--check"]).is_err() {
-            ensure(start.elapsed() < Duration::from_secs(20), "the bundle did not change")?;
-            std::thread::sleep(Duration::from_millis(50));
-        }
-    }
-    Ok(())
-}
-
-fn shared_folder() -> Outcome {
-    shared(&format!("fs:{}", tempfile::tempdir()?.path().display()))
-}
-
-/// What one machine made, another one takes; a third without a cache of its own too.
-fn shared(store: &str) -> Outcome {
-    let package = Package::new()?;
-    package.generate(&["--store", store, "-o", "one"])?;
-    fs::rename(package.path().join("cache"), package.path().join("cache of another machine"))?;
-    equal(compiled(&package.generate(&["--store", store, "-o", "two"])?), 0)?;
-    equal(package.files("one")?, package.files("two")?)?;
-    // What came from the store is near from now on.
-    equal(compiled(&package.generate(&["-o", "three"])?), 0)
-}
-
-/// With the feature `store` against a server that is started here; without, only that the
-/// command says what is missing.
-fn shared_server() -> Outcome {
-    let package = Package::new()?;
-    let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
-    let address = format!("redis://127.0.0.1:{port}");
-    let unanswered = package.run(&["gen", "--store", &address])?;
-    equal(unanswered.status.code(), Some(4))?;
-    if String::from_utf8_lossy(&unanswered.stderr).contains("--features store") {
-        return Ok(());
-    }
-    let folder = tempfile::tempdir()?;
-    let server = Command::new("redis-server")
-        .args(["--bind", "127.0.0.1", "--port", &port.to_string(), "--save", "", "--dir"])
-        .arg(folder.path())
-        .stdout(Stdio::null())
-        .spawn();
-    let mut server = server.map_err(|error| {
-        format!("redis-server: {error}; install it with `apt-get install redis-server`")
-    })?;
-    let start = Instant::now();
-    while std::net::TcpStream::connect(("127.0.0.1", port)).is_err()
-        && start.elapsed() < Duration::from_secs(10)
-    {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let outcome = shared(&address);
-    server.kill()?;
-    server.wait()?;
-    outcome
 }

@@ -1,5 +1,7 @@
 //! The repository itself: folders of `src/` without cycles, a map in ARCHITECTURE.md that is true,
-//! short paths, and nothing that a run left behind.
+//! short paths, short functions and files, and nothing that a run left behind.
+
+mod lengths;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -26,6 +28,8 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("house::one_way_to_the_terminal", one_way_to_the_terminal),
         Trial::test("house::needs_of_executors", needs_are_installed),
         Trial::test("house::described", entries_are_described),
+        Trial::test("house::lengths", lengths::are_kept),
+        Trial::test("house::lengths_are_counted", lengths::are_counted),
     ]
 }
 

@@ -1,13 +1,17 @@
 //! The judges of the targets: what they refuse, what is told of it, and what is there afterwards.
 
+mod placed;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output as Said};
 
-use lamplight::bundle::{Bundle, Target, blob_files};
+use lamplight::bundle::{Target, blob_files};
 use lamplight::judge::{self, Output};
 use libtest_mimic::{Failed, Trial};
+
+use placed::{glsl_means_something_else, refusals_are_placed, writers_are_placed};
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -209,106 +213,6 @@ fn counted(value: u32) -> u32 {
 ";
 
 const COUNTED_MANIFEST: &str = "[program.one]\nwesl = \"one.wesl\"\ntargets = [\"essl300\", \"hlsl\"]\naxis.bits = { values = [false, true] }\n";
-
-/// A judge's refusal is told in the author's line, with permutation and target; the older bundle
-/// stays as it was, in both forms.
-fn refusals_are_placed() -> Outcome {
-    // naga writes the mask of samples as one number where GLSL has an array.
-    let masked = "@fragment fn fs_main(
-    @location(0) at: vec2f,
-    @if(bits) @builtin(sample_mask) mask: u32,
-) -> @location(0) vec4f {
-    @if(bits) { return vec4f(f32(mask)); }";
-    let head = "@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {";
-    let refused = COUNTED.replace("countOneBits", "abs").replace(head, masked);
-    let sound = COUNTED.replace("countOneBits", "abs");
-    let package = Package::new(COUNTED_MANIFEST, &sound)?;
-    for out in ["bundle", "one.lamplight"] {
-        fs::write(package.path("one.wesl"), &sound)?;
-        let arguments = ["gen", "--validate", "--no-cache", "-o", out];
-        expect(&package.run(&arguments)?, 0, &["4 outputs judged, 0 known to pass"])?;
-        let before = Bundle::open(package.path(out))?.contents()?;
-        fs::write(package.path("one.wesl"), &refused)?;
-        let words = [
-            "error[output-refused]: glslangValidator refuses the output for `essl300`",
-            "one.wesl:10:15",
-            "line ",
-            "in permutation `bits` of one fs_main (wesl)",
-        ];
-        expect(&package.run(&arguments)?, 1, &words)?;
-        let bundle = Bundle::open(package.path(out))?;
-        bundle.verify()?;
-        if bundle.contents()? != before {
-            return Err(format!("{out} was replaced").into());
-        }
-    }
-    Ok(())
-}
-
-/// What a writer has no words for is told in the author's function, with permutation and target.
-fn writers_are_placed() -> Outcome {
-    let cubes = "
-@group(0) @binding(0) var cubes: texture_cube_array<f32>;
-@group(0) @binding(1) var smp: sampler;
-fn plain(x: f32) -> f32 { return x; }
-// Not in GLSL ES 3.00.
-fn looked(at: vec3f) -> vec4f { return textureSample(cubes, smp, at, 1); }
-@fragment fn fs_main(@location(0) at: vec3f) -> @location(0) vec4f {
-    var sum = vec4f(plain(at.x));
-    @if(bits) { sum += looked(at); }
-    return sum;
-}
-";
-    let package = Package::new(COUNTED_MANIFEST, cubes)?;
-    let words = ["error[emit-failed]: target `essl300`", "one.wesl:6:1", "in permutation `bits`"];
-    expect(&package.run(&["gen", "--no-cache"])?, 1, &words)
-}
-
-/// What GLSL takes and computes otherwise is refused in the author's line, and where other targets
-/// are asked for it is not.
-fn glsl_means_something_else() -> Outcome {
-    let fragment = |body: &str| {
-        format!(
-            "struct Turn {{ turns: array<mat2x2f, 2>, by: vec4f }}
-@if(bits) @group(0) @binding(0) var<uniform> turn: Turn;
-@fragment fn fs_main(@location(0) at: vec3f) -> @location(0) vec4f {{
-    @if(bits) {{ return {body}; }}
-    @else {{ return vec4f(at, 0.0); }}
-}}
-"
-        )
-    };
-    let columns = fragment("vec4f(turn.turns[1] * at.xy, turn.by.xy)");
-    let fraction = fragment("vec4f(frexp(at.x).fract)");
-    let depth = "@group(1) @binding(0) var depths: texture_depth_2d;
-@group(1) @binding(1) var smp: sampler;
-@group(1) @binding(2) var map: texture_2d<f32>;
-";
-    let plain = fragment("vec4f(textureSampleLevel(depths, smp, at.xy, 0))") + depth;
-    let levels = fragment("vec4f(f32(textureNumLevels(map)))") + depth;
-    let arrays = fragment("vec4f(array<array<f32, 2>, 2>()[i32(at.x) & 1][i32(at.y) & 1])");
-    let cases = [
-        (&columns, "glsl450", "target `glsl450`: a matrix of two rows", "one.wesl:2:"),
-        (&columns, "essl300", "target `essl300`: a matrix of two rows", "one.wesl:2:"),
-        (&fraction, "glsl330", "target `glsl330`: the language has no `frexp`", "one.wesl:4:"),
-        (&fraction, "essl300", "target `essl300`: the language has no `frexp`", "one.wesl:4:"),
-        (&plain, "essl300", "target `essl300`: the language has no depth texture", "one.wesl:4:"),
-        (&plain, "glsl450", "target `glsl450`: the language has no depth texture", "one.wesl:4:"),
-        (&levels, "glsl330", "the language has no `textureQueryLevels`", "one.wesl:4:"),
-        (&arrays, "glsl330", "the language has no array of arrays", "one.wesl:4:"),
-        (&arrays, "essl300", "the language has no array of arrays", "one.wesl:4:"),
-    ];
-    for (text, target, words, place) in cases {
-        let manifest = COUNTED_MANIFEST.replace("essl300", target);
-        let package = Package::new(&manifest, text)?;
-        let arguments = ["gen", "--no-cache"];
-        expect(&package.run(&arguments)?, 1, &[words, place, "in permutation `bits`"])?;
-        let others = COUNTED_MANIFEST.replace("essl300", "spirv");
-        fs::write(package.path("lamplight.toml"), others)?;
-        expect(&package.run(&arguments)?, 0, &[])?;
-    }
-    Ok(())
-}
 
 /// An output that passed is not judged again, and one that did not is.
 fn what_passed_is_known() -> Outcome {

@@ -11,7 +11,8 @@ use lamplight::compose::{Keep, Options, compose};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Request, in_memory};
 use lamplight::judge;
-use lamplight::permute::{Program, Quoted, key};
+use lamplight::permute::{Program, Quoted, Settings, key};
+use lamplight::source::SourceSet;
 use lamplight::validate::on_large_stack;
 use lamplight::{project, resolve};
 use libtest_mimic::{Failed, Trial};
@@ -72,16 +73,6 @@ fn review(name: &str, text: &str) -> Result<(), Failed> {
     let made = made.map_err(|errors| render(&sources, &errors, Form::Human))?;
     let shipped = made.contents.programs.get("forward").ok_or("no program `forward` is made")?;
     for (path, language, entry) in roots(program) {
-        let packages = project::library();
-        let graph = resolve::load(&mut sources, &packages, path, language)
-            .map_err(|errors| render(&sources, &errors, Form::Human))?;
-        let keep = if language == Language::Wesl {
-            Keep::Items(vec![entry.to_owned()])
-        } else {
-            Keep::EntryPoints
-        };
-        let composed = compose(&graph, &settings, &Options { keep, ..Options::default() });
-        let composed = composed.map_err(|errors| render(&sources, &errors, Form::Human))?;
         // A GLSL stage is shipped by the name of its twin.
         let label =
             if path.ends_with(".vert.glsl") || entry == "vs_main" { "vs_main" } else { "fs_main" };
@@ -99,7 +90,8 @@ fn review(name: &str, text: &str) -> Result<(), Failed> {
             }
         };
         let folder = format!("shaderlib/programs/forward/{name}");
-        snapshot::check(&folder, &file("composed"), &composed.text)?;
+        let text = composed(&mut sources, (path, language, entry), &settings)?;
+        snapshot::check(&folder, &file("composed"), &text)?;
         for &target in Target::ALL {
             let shader = unit
                 .targets
@@ -111,8 +103,29 @@ fn review(name: &str, text: &str) -> Result<(), Failed> {
     Ok(())
 }
 
+/// A root file with its language and an entry point.
+type Root<'a> = (&'a str, Language, &'static str);
+
+/// What is composed of a root file under some settings.
+fn composed(
+    sources: &mut SourceSet,
+    (path, language, entry): Root<'_>,
+    settings: &Settings,
+) -> Result<String, Failed> {
+    let packages = project::library();
+    let graph = resolve::load(sources, &packages, path, language)
+        .map_err(|errors| render(sources, &errors, Form::Human))?;
+    let keep = if language == Language::Wesl {
+        Keep::Items(vec![entry.to_owned()])
+    } else {
+        Keep::EntryPoints
+    };
+    let composed = compose(&graph, settings, &Options { keep, ..Options::default() });
+    Ok(composed.map_err(|errors| render(sources, &errors, Form::Human))?.text)
+}
+
 /// Root files with an entry point each: those of WESL for every reviewed permutation, and GLSL.
-fn roots(program: &Program) -> Vec<(&str, Language, &'static str)> {
+fn roots(program: &Program) -> Vec<Root<'_>> {
     let wesl = program.wesl.iter().flat_map(|file| [("vs_main", file), ("fs_main", file)]);
     let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
     let wesl = wesl.map(|(entry, file)| (file.path.as_str(), Language::Wesl, entry));

@@ -3,6 +3,7 @@
 //! extend), and `expected.txt`, which `UPDATE_EXPECT=1` rewrites. The modules are laws that must
 //! hold whatever the space.
 
+mod key_laws;
 mod laws;
 mod random;
 

@@ -2,13 +2,13 @@
 //! and targets come from the reflection alone. wgpu accepts a pipeline only if they fit its
 //! own reading of the shader.
 
+mod described;
+
 use std::collections::{BTreeMap, BTreeSet};
-use std::num::NonZeroU64;
 use std::time::Instant;
 
 use lamplight::bundle::{
-    Binding, Bundle, Found, Kind, Language, Program as Loaded, Reflection, Stage, Target, Varying,
-    pack,
+    Binding, Bundle, Found, Language, Program as Loaded, Reflection, Stage, Target, pack,
 };
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Request, in_memory};
@@ -19,6 +19,8 @@ use lamplight::permute::{Assignment, Manifest, Space, cover};
 use lamplight::project;
 use libtest_mimic::{Failed, Trial};
 use pollster::block_on;
+
+use described::{attributes, depth, entry, fill, targets};
 
 /// Set to test every permutation that ships, instead of a covering sample of all pairs.
 const EVERYTHING: &str = "LAMPLIGHT_EVERY_PIPELINE";
@@ -253,37 +255,22 @@ impl Device {
     fn create(&self, pair: &Pair, spirv: bool) -> Result<(), String> {
         let stages = || std::iter::once(&pair.vertex).chain(&pair.fragment);
         let layout = self.layout(stages().map(|found| &*found.reflection), spirv)?;
-        let modules = if spirv {
-            pair.spirv
-                .iter()
-                .flatten()
-                .map(|found| self.passed(found))
-                .collect::<Result<Vec<_>, _>>()?
+        let modules: Vec<_> = if spirv {
+            let words = pair.spirv.iter().flatten();
+            words.map(|found| self.passed(found)).collect::<Result<_, _>>()?
         } else {
-            stages().map(|found| self.module(found)).collect::<Result<Vec<_>, _>>()?
+            stages().map(|found| self.module(found)).collect::<Result<_, _>>()?
         };
         let attributes = attributes(&pair.vertex.reflection.inputs)?;
-        let stride = attributes
-            .iter()
-            .map(|attribute| attribute.offset + attribute.format.size())
-            .max()
-            .unwrap_or(0);
+        let ends = attributes.iter().map(|found| found.offset + found.format.size());
         let buffer = wgpu::VertexBufferLayout {
-            array_stride: stride,
+            array_stride: ends.max().unwrap_or(0),
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         };
-        let targets = pair
-            .fragment
-            .as_ref()
-            .map_or(Ok(Vec::new()), |found| targets(&found.reflection.outputs))?;
-        let depth = wgpu::DepthStencilState {
-            format: wgpu::TextureFormat::Depth32Float,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::LessEqual),
-            stencil: Default::default(),
-            bias: Default::default(),
-        };
+        let fragment = pair.fragment.as_ref();
+        let targets =
+            fragment.map_or(Ok(Vec::new()), |found| targets(&found.reflection.outputs))?;
         let _pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
             layout: Some(&layout),
@@ -294,9 +281,9 @@ impl Device {
                 buffers: &[(!attributes.is_empty()).then_some(buffer)],
             },
             primitive: Default::default(),
-            depth_stencil: Some(depth),
+            depth_stencil: Some(depth()),
             multisample: Default::default(),
-            fragment: pair.fragment.as_ref().map(|found| wgpu::FragmentState {
+            fragment: fragment.map(|found| wgpu::FragmentState {
                 module: &modules[1],
                 entry_point: Some(&found.native.entry_name),
                 compilation_options: Default::default(),
@@ -376,108 +363,4 @@ impl Device {
             entries: &entries,
         })
     }
-}
-
-fn fill(group: &mut BTreeMap<u32, wgpu::BindGroupLayoutEntry>) {
-    let last = group.last_key_value().map_or(0, |(binding, _)| *binding);
-    for binding in 0..last {
-        let ty = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let unseen = wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::NONE,
-            ty,
-            count: None,
-        };
-        group.entry(binding).or_insert(unseen);
-    }
-}
-
-fn entry(binding: &Binding, reflection: &Reflection) -> Result<wgpu::BindGroupLayoutEntry, String> {
-    let place = [binding.group, binding.binding];
-    let ty = match binding.kind {
-        Kind::Uniform => wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: binding.size.and_then(|size| NonZeroU64::new(size.into())),
-        },
-        Kind::Sampler if filters_depth(place, reflection) => {
-            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering)
-        }
-        Kind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-        Kind::ComparisonSampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
-        Kind::Texture => texture(binding)?,
-        Kind::Storage | Kind::StorageTexture => {
-            return Err(format!("`{}` is of a kind that the library has not", binding.name));
-        }
-    };
-    let visibility = match reflection.stage {
-        Stage::Vertex => wgpu::ShaderStages::VERTEX,
-        Stage::Fragment => wgpu::ShaderStages::FRAGMENT,
-        Stage::Compute => wgpu::ShaderStages::COMPUTE,
-    };
-    Ok(wgpu::BindGroupLayoutEntry { binding: binding.binding, visibility, ty, count: None })
-}
-
-/// Whether the sampler reads a depth texture without comparing: such a pair cannot filter.
-fn filters_depth(sampler: [u32; 2], reflection: &Reflection) -> bool {
-    let is_depth = |place: [u32; 2]| {
-        reflection.bindings.iter().any(|binding| {
-            [binding.group, binding.binding] == place && binding.ty.starts_with("texture_depth")
-        })
-    };
-    reflection.pairs.iter().any(|pair| pair.sampler == sampler && is_depth(pair.texture))
-}
-
-fn texture(binding: &Binding) -> Result<wgpu::BindingType, String> {
-    use wgpu::TextureViewDimension::{Cube, CubeArray, D2, D2Array, D3};
-    let float = wgpu::TextureSampleType::Float { filterable: true };
-    let (sample_type, view_dimension) = match binding.ty.as_str() {
-        "texture_2d<f32>" => (float, D2),
-        "texture_2d_array<f32>" => (float, D2Array),
-        "texture_cube<f32>" => (float, Cube),
-        "texture_3d<f32>" => (float, D3),
-        "texture_depth_2d" => (wgpu::TextureSampleType::Depth, D2),
-        "texture_depth_2d_array" => (wgpu::TextureSampleType::Depth, D2Array),
-        "texture_depth_cube" => (wgpu::TextureSampleType::Depth, Cube),
-        "texture_depth_cube_array" => (wgpu::TextureSampleType::Depth, CubeArray),
-        other => return Err(format!("no texture is of type `{other}`")),
-    };
-    Ok(wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false })
-}
-
-/// One interleaved buffer with an attribute for each location.
-fn attributes(inputs: &[Varying]) -> Result<Vec<wgpu::VertexAttribute>, String> {
-    let mut offset = 0;
-    let mut attributes = Vec::new();
-    for input in inputs {
-        let Some(shader_location) = input.location else { continue };
-        let format = match input.ty.as_str() {
-            "f32" => wgpu::VertexFormat::Float32,
-            "vec2<f32>" => wgpu::VertexFormat::Float32x2,
-            "vec3<f32>" => wgpu::VertexFormat::Float32x3,
-            "vec4<f32>" => wgpu::VertexFormat::Float32x4,
-            "u32" => wgpu::VertexFormat::Uint32,
-            "i32" => wgpu::VertexFormat::Sint32,
-            other => return Err(format!("no attribute is of type `{other}`")),
-        };
-        attributes.push(wgpu::VertexAttribute { format, offset, shader_location });
-        offset += format.size();
-    }
-    Ok(attributes)
-}
-
-fn targets(outputs: &[Varying]) -> Result<Vec<Option<wgpu::ColorTargetState>>, String> {
-    let mut targets = Vec::new();
-    for output in outputs {
-        let Some(location) = output.location else { continue };
-        let format = match output.ty.as_str() {
-            "f32" => wgpu::TextureFormat::R8Unorm,
-            "vec2<f32>" => wgpu::TextureFormat::Rg8Unorm,
-            "vec4<f32>" => wgpu::TextureFormat::Rgba8Unorm,
-            other => return Err(format!("no target is of type `{other}`")),
-        };
-        targets.resize(location as usize, None);
-        targets.push(Some(format.into()));
-    }
-    Ok(targets)
 }

@@ -4,6 +4,7 @@
 mod accounted;
 mod closed_forms;
 mod command;
+mod compared;
 mod difference;
 mod frames;
 mod needs;
@@ -29,16 +30,16 @@ use crate::fragments::{self, Tally, Watched};
 
 /// Each driver draws in a language of its own, so that both are seen.
 const BACKENDS: [(&str, Language); 2] = [("vulkan", Language::Wesl), ("gl", Language::Glsl)];
-/// The reviewed pictures, drawn by `lamplight render --all --size 192x192`.
-const GALLERY: &str = "docs/gallery";
-const SIZE: [u32; 2] = [192, 192];
+/// The reviewed pictures: small, so that drawing them takes no time.
+const REVIEWED: &str = "tests/render/reviewed";
+const SIZE: [u32; 2] = [160, 120];
 const SAMPLES: u32 = 4;
 /// Of the frames whose fragments are computed again.
 const SMALL: [u32; 2] = [96, 96];
 /// About so many quads of each are taken; at least so many fragments there must be, and the
 /// largest share of those that stay open.
-const QUADS: usize = 40;
-const LEAST: usize = 120;
+const QUADS: usize = 130;
+const LEAST: usize = 500;
 const OPEN: f64 = 0.05;
 
 pub fn trials() -> Vec<Trial> {
@@ -62,6 +63,7 @@ pub fn trials() -> Vec<Trial> {
     presets
         .chain(forms)
         .chain(accounted::trials())
+        .chain(compared::trials())
         .chain(pages::trials())
         .chain(command::trials())
         .chain(needs::trials())
@@ -139,27 +141,22 @@ fn shown(
     Ok(())
 }
 
-/// Sampled fragments of those objects that share a material with the first.
+/// Sampled fragments of the objects of one material, then of the next, until there are enough.
 fn recomputed(painter: &dyn Session, plan: &Plan, language: Language) -> Result<Tally, String> {
     let small = shot(SMALL, 1, language);
     let mut prepared = prepare(painter, &library().programs, plan, &small).map_err(said)?;
     // How far between two levels a texture is read, drivers decide as they like.
     prepared.levels.clear();
-    let own = fragment_buffers(&prepared);
-    let first = own.first().cloned().unwrap_or_default();
-    let mut same = own.iter().map(|buffers| *buffers == first);
-    prepared.items.retain(|_| same.next().unwrap_or(false));
-    let frame = watched(painter, &prepared, SMALL)?;
-    let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
-    let mut buffers = prepared.buffers.clone();
-    let view = prepared.eye_view([0.0; 2], SMALL).map_err(|problem| problem.message)?;
-    buffers.extend(view);
-    buffers.extend(first);
-    let resources = fragments::resources(buffers, &prepared.fixtures, &prepared.levels);
+    let (items, own) = (prepared.items.clone(), fragment_buffers(&prepared));
     let mut tally = Tally::default();
-    let watched = Watched { size: SMALL, targets: &frame };
-    let step = watched.whole_quads().div_ceil(QUADS).max(1);
-    fragments::recompute(stage, resources, &watched, step, &mut tally)?;
+    for (index, material) in own.iter().enumerate() {
+        if tally.tried >= LEAST || own[..index].contains(material) {
+            continue;
+        }
+        let of_material = items.iter().zip(&own).filter(|(_, buffers)| *buffers == material);
+        prepared.items = of_material.map(|(item, _)| item.clone()).collect();
+        recomputed_of(painter, &prepared, material, &mut tally)?;
+    }
     match tally {
         Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
         Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => {
@@ -167,6 +164,25 @@ fn recomputed(painter: &dyn Session, plan: &Plan, language: Language) -> Result<
         }
         tally => Ok(tally),
     }
+}
+
+/// Sampled fragments of a frame whose objects share the material's buffers.
+fn recomputed_of(
+    painter: &dyn Session,
+    prepared: &Prepared,
+    material: &Buffers,
+    tally: &mut Tally,
+) -> Result<(), String> {
+    let frame = watched(painter, prepared, SMALL)?;
+    let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
+    let mut buffers = prepared.buffers.clone();
+    let view = prepared.eye_view([0.0; 2], SMALL).map_err(|problem| problem.message)?;
+    buffers.extend(view);
+    buffers.extend(material.clone());
+    let resources = fragments::resources(buffers, &prepared.fixtures, &prepared.levels);
+    let watched = Watched { size: SMALL, targets: &frame };
+    let step = (watched.whole_quads() / QUADS).max(1);
+    fragments::recompute(stage, resources, &watched, step, tally)
 }
 
 /// What the fragment stage reads of each object.
@@ -200,7 +216,7 @@ pub fn watched(
 
 /// The reviewed picture of a preset.
 pub fn reviewed_path(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(GALLERY).join(format!("{name}.png"))
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(REVIEWED).join(format!("{name}.png"))
 }
 
 /// Reads a picture.

@@ -1,11 +1,16 @@
 //! Host-side mathematics against closed forms.
 
+mod sets;
+
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
-use glam::{DMat3, DMat4, DVec2, DVec3, Vec4Swizzles};
-use lamplight::scene::sets;
-use lamplight::scene::{self, Bounds, Clip, CubeMap, Depth, Equirect, MeshError, Shape};
+use glam::{DMat3, DMat4, DVec3, Vec4Swizzles};
+use lamplight::scene::{self, Bounds, Clip, CubeMap, Depth, Equirect, MeshError};
 use libtest_mimic::{Failed, Trial};
+
+pub use sets::nothing_is_shown;
+
+use sets::{environments, scenes, volumes};
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -377,86 +382,4 @@ fn filtered() -> Outcome {
         }
     }
     Ok(())
-}
-
-/// Shapes have the volume of what they are, which is negative where they are inside out.
-fn volumes() -> Outcome {
-    let volume = |shape: &Shape| -> f64 {
-        let corner = |index: u32| shape.vertices[index as usize].position;
-        shape
-            .indices
-            .chunks(3)
-            .map(|three| corner(three[0]).dot(corner(three[1]).cross(corner(three[2]))) / 6.0)
-            .sum()
-    };
-    let can = [0.0, 1.0, 2.0].map(|height| DVec2::new(1.0, height));
-    let pipe = [(DVec2::ZERO, 0.5), (DVec2::new(1.0, 0.0), 0.5), (DVec2::new(2.0, 0.0), 0.5)];
-    near("a ball", volume(&Shape::sphere(2.0, (96, 48))), 4.0 / 3.0 * PI * 8.0, 0.1)?;
-    near("a ring", volume(&Shape::torus(2.0, 0.5, (96, 48))), 2.0 * PI * PI * 2.0 * 0.25, 0.05)?;
-    near("a box", volume(&Shape::cuboid(DVec3::new(1.0, 2.0, 3.0), 3)), 48.0, 1e-9)?;
-    // Open at their ends, of which one is at the origin and the other is missing a cone.
-    near("a can", volume(&Shape::lathe(&can, (96, 24))), PI * 2.0 * 2.0 / 3.0, 0.02)?;
-    near("a pipe", volume(&Shape::tube(&pipe, (96, 24))), PI * 0.25 * 2.0 * 2.0 / 3.0, 0.02)?;
-    let moved = Shape::sphere(1.0, (24, 12))
-        .transformed(DMat4::from_translation(DVec3::X) * DMat4::from_scale(DVec3::splat(2.0)));
-    near("a larger ball", volume(&moved), 4.0 / 3.0 * PI * 8.0, 1.5)
-}
-
-/// A scene has something to show.
-pub fn nothing_is_shown(objects: &[sets::Object]) -> Option<String> {
-    let corners: usize = objects.iter().map(|object| object.shape.vertices.len()).sum();
-    (corners < 3).then(|| format!("{} objects have {corners} corners", objects.len()))
-}
-
-/// Normals of corners are of unit length and look where the faces around them do.
-fn scenes() -> Outcome {
-    for sets::Set { name, make, .. } in sets::ALL {
-        if let Some(problem) = nothing_is_shown(&make().objects) {
-            return Err(format!("scene {name}: {problem}").into());
-        }
-        for object in make().objects {
-            let positions: Vec<DVec3> =
-                object.shape.vertices.iter().map(|vertex| vertex.position).collect();
-            let faces = scene::face_normals(&positions, Some(&object.shape.indices))?;
-            for (three, face) in
-                object.shape.indices.chunks(3).zip(&faces).filter(|(_, face)| **face != DVec3::ZERO)
-            {
-                for vertex in three.iter().map(|index| &object.shape.vertices[*index as usize]) {
-                    near(name, vertex.normal.length(), 1.0, 1e-9)?;
-                    if vertex.normal.dot(*face) < 0.0 {
-                        return Err(format!(
-                            "{name}: at {} the normal looks to the other side of the face",
-                            vertex.position
-                        )
-                        .into());
-                    }
-                }
-            }
-            let flat = object.shape.faceted();
-            near(name, flat.indices.len() as f64, object.shape.indices.len() as f64, 0.0)?;
-        }
-    }
-    Ok(())
-}
-
-/// Environments shine, are finite, and the constant one has the coefficients of a constant.
-fn environments() -> Outcome {
-    for (name, _, environment) in scene::ENVIRONMENTS {
-        for (direction, _) in scene::directions(24) {
-            let radiance = environment(direction);
-            if !(radiance.is_finite() && radiance.min_element() > 0.0) {
-                return Err(format!("{name}: {radiance} from {direction}").into());
-            }
-        }
-    }
-    let constant = scene::environment("constant").ok_or("no constant environment")?;
-    let samples = scene::directions(8)
-        .into_iter()
-        .map(|(direction, angle)| (direction, angle, constant(direction)));
-    close(
-        "irradiance",
-        scene::irradiance_sh9(DVec3::Y, &scene::sh9_project(samples)),
-        DVec3::splat(PI),
-        1e-12,
-    )
 }

@@ -1,6 +1,8 @@
 //! Every module of the shader library, by itself: valid in both languages, the same in both, and documented.
 
+mod documented;
 mod emits;
+mod twins;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -14,7 +16,12 @@ use lamplight::resolve::{self, Packages};
 use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
 use naga::front::{glsl, wgsl};
-use naga::{Handle, Module, ShaderStage, Type, TypeInner};
+use naga::{Module, ShaderStage};
+
+pub use documented::undocumented;
+
+use documented::functions_are_documented;
+use twins::{same, twins_agree};
 
 /// What one trial checks of a module, given its path without extension, such as `lighting/spot`.
 type Check = fn(&str) -> Result<(), Failed>;
@@ -56,9 +63,6 @@ const DIALECTS: [Dialect; 4] = [
 
 const ES_300: &str = "#version 300 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\nprecision highp float;\nprecision highp int;\n";
 const ES_310: &str = "#version 310 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\nprecision highp float;\nprecision highp int;\n";
-
-/// The parts every function's documentation has, each at the start of a line.
-const DOC_PARTS: [&str; 5] = ["Parameters: ", "Returns: ", "Source: ", "Edges: ", "Error model: "];
 
 /// One trial for each module and check, and those about the library as a whole.
 pub fn trials() -> Vec<Trial> {
@@ -181,61 +185,6 @@ fn every_target_writes(module: &str) -> Result<(), Failed> {
         })?;
     }
     Ok(())
-}
-
-/// Structures are compared where a function takes or gives them.
-fn twins_agree(module: &str) -> Result<(), Failed> {
-    let documented = |path: String| -> Vec<(String, Vec<String>)> {
-        functions(&read(&path)).into_iter().map(|f| (f.name, f.doc)).collect()
-    };
-    let wesl = documented(format!("{module}.wesl"));
-    same("comments", &wesl, &documented(format!("{module}.glsl")))?;
-    let own = |parsed: Module| -> BTreeMap<String, String> {
-        signatures(&parsed)
-            .into_iter()
-            .filter(|(name, _)| wesl.iter().any(|(own, _)| own == name))
-            .collect()
-    };
-    same("signatures", &own(parse_wesl(module)?), &own(parse_glsl(module)?))
-}
-
-fn functions_are_documented(module: &str) -> Result<(), Failed> {
-    let text = read(&format!("{module}.wesl"));
-    if !text.starts_with("//! ") {
-        return Err("the module has no documentation".into());
-    }
-    let faults = undocumented(&text);
-    if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
-}
-
-/// What the comments of a module's functions lack.
-pub fn undocumented(module: &str) -> Vec<String> {
-    functions(module).iter().flat_map(faults).collect()
-}
-
-fn faults(function: &Function) -> Vec<String> {
-    let part = |name: &str| {
-        function.doc.iter().find_map(|line| line.strip_prefix(name)).filter(|text| !text.is_empty())
-    };
-    let missing = DOC_PARTS
-        .iter()
-        .filter(|name| part(name).is_none())
-        .map(|name| format!("`{}` lacks `{name}`", function.name));
-    let described = part(DOC_PARTS[0]).unwrap_or_default();
-    let unknown =
-        function.parameters.iter().filter(|name| !described.contains(&format!("`{name}`")));
-    let summary = function
-        .doc
-        .first()
-        .filter(|line| line.ends_with('.') && !DOC_PARTS.iter().any(|part| line.starts_with(part)));
-    let unsaid = summary
-        .is_none()
-        .then(|| format!("`{}` does not say in a sentence what it computes", function.name));
-    unsaid
-        .into_iter()
-        .chain(missing)
-        .chain(unknown.map(|name| format!("`{}` does not describe `{name}`", function.name)))
-        .collect()
 }
 
 /// A function as its text has it.
@@ -424,45 +373,5 @@ fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {
         Ok(())
     } else {
         Err(String::from_utf8_lossy(&output.stdout).into_owned().into())
-    }
-}
-
-/// Each function's parameters and result, by its name.
-fn signatures(module: &Module) -> BTreeMap<String, String> {
-    let functions = module.functions.iter().map(|(_, function)| {
-        let name = |name: &Option<String>| name.clone().unwrap_or_default();
-        let parameters: Vec<String> = function
-            .arguments
-            .iter()
-            .map(|argument| format!("{}: {}", name(&argument.name), spelled(module, argument.ty)))
-            .collect();
-        let result =
-            function.result.as_ref().map_or(String::new(), |result| spelled(module, result.ty));
-        (name(&function.name), format!("({}) -> {result}", parameters.join(", ")))
-    });
-    functions.filter(|(name, _)| name != "main").collect()
-}
-
-fn spelled(module: &Module, handle: Handle<Type>) -> String {
-    let Type { name, inner } = &module.types[handle];
-    match inner {
-        TypeInner::Struct { members, .. } => {
-            let members = members.iter().map(|member| {
-                format!("{:?}@{}: {}", member.name, member.offset, spelled(module, member.ty))
-            });
-            format!("{name:?} {{ {} }}", members.collect::<Vec<_>>().join(", "))
-        }
-        TypeInner::Array { base, size, .. } => {
-            format!("array<{}, {size:?}>", spelled(module, *base))
-        }
-        other => format!("{other:?}"),
-    }
-}
-
-fn same<T: PartialEq + std::fmt::Debug>(what: &str, wesl: &T, glsl: &T) -> Result<(), Failed> {
-    if wesl == glsl {
-        Ok(())
-    } else {
-        Err(format!("{what} differ\nWESL: {wesl:#?}\nGLSL: {glsl:#?}").into())
     }
 }

@@ -1,10 +1,12 @@
 //! Every command that writes, beside every kind of thing that is not ours. What is there stays as
 //! it is, or is written to where it is a stream; nothing is deleted; the exit code says so.
 
+mod file;
+mod folder;
+
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{BufRead, BufReader, Read};
-use std::os::unix::fs::{FileTypeExt, symlink};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -70,23 +72,23 @@ type FileTrap = (&'static str, fn(&Writer) -> Outcome);
 
 /// Traps at the place of a file below a folder.
 const FOLDER_TRAPS: &[FolderTrap] = &[
-    ("foreign_file", folder_foreign_file),
-    ("link_to_a_file", folder_link_to_file),
-    ("link_to_a_folder", folder_link_to_folder),
-    ("pipe", folder_pipe),
-    ("folder_in_the_way", folder_in_the_way),
+    ("foreign_file", folder::foreign_file),
+    ("link_to_a_file", folder::link_to_file),
+    ("link_to_a_folder", folder::link_to_folder),
+    ("pipe", folder::a_pipe),
+    ("folder_in_the_way", folder::in_the_way),
 ];
 
 /// Traps at the place of the file that the user names.
 const FILE_TRAPS: &[FileTrap] = &[
-    ("foreign_file", file_foreign),
-    ("own_file", file_own),
-    ("link_to_a_foreign_file", file_link_to_foreign),
-    ("link_to_an_own_file", file_link_to_own),
-    ("link_to_nowhere", file_link_to_nowhere),
-    ("pipe", file_pipe),
-    ("device", file_device),
-    ("folder", file_folder),
+    ("foreign_file", file::foreign),
+    ("own_file", file::own),
+    ("link_to_a_foreign_file", file::link_to_foreign),
+    ("link_to_an_own_file", file::link_to_own),
+    ("link_to_nowhere", file::link_to_nowhere),
+    ("pipe", file::a_pipe),
+    ("device", file::device),
+    ("folder", file::folder),
 ];
 
 pub fn trials() -> Vec<Trial> {
@@ -98,7 +100,7 @@ pub fn trials() -> Vec<Trial> {
         }
         if writer.files.is_empty() {
             let name = format!("traps::folder::{}::neighbours", writer.name);
-            trials.push(Trial::test(name, move || neighbours(writer)));
+            trials.push(Trial::test(name, move || folder::neighbours(writer)));
         }
     }
     for writer in FILES {
@@ -259,207 +261,6 @@ fn refused(place: &Place, writer: &Writer, force: bool) -> Outcome {
         true => place.succeeds(&words, writer.endless),
         false => place.refuses(&words, writer.endless),
     }
-}
-
-fn folder_foreign_file(writer: &Writer, name: &str) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at("out").join(name);
-    fs::create_dir_all(path.parent().ok_or("no folder")?)?;
-    fs::write(&path, MINE)?;
-    let before = listed(&place.at("out"))?;
-    refused(&place, writer, false)?;
-    ensure(fs::read(&path)? == MINE, "it was overwritten")?;
-    if is_cache(writer) || !writer.files.is_empty() {
-        return Ok(());
-    }
-    ensure(listed(&place.at("out"))? == before, "something was written all the same")?;
-    place.succeeds(&Place::command_line(writer, "out", true), writer.endless)?;
-    ensure(fs::read(&path)? != MINE, "`--force` did not replace it")
-}
-
-fn folder_link_to_file(writer: &Writer, name: &str) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at("out").join(name);
-    fs::create_dir_all(path.parent().ok_or("no folder")?)?;
-    fs::write(place.at("victim"), MINE)?;
-    symlink(place.at("victim"), &path)?;
-    for force in [false, true] {
-        refused(&place, writer, force)?;
-        ensure(fs::read(place.at("victim"))? == MINE, "the link was followed")?;
-        ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")?;
-    }
-    Ok(())
-}
-
-fn folder_link_to_folder(writer: &Writer, name: &str) -> Outcome {
-    let Some(folder) = Path::new(name).parent().filter(|folder| folder != &Path::new("")) else {
-        return Ok(());
-    };
-    let place = Place::new(writer)?;
-    let path = place.at("out").join(folder);
-    fs::create_dir_all(path.parent().ok_or("no folder")?)?;
-    fs::create_dir(place.at("victims"))?;
-    for victim in ["notes.txt", "0000000000000000.wgsl", ".tmp-1-1"] {
-        fs::write(place.at("victims").join(victim), MINE)?;
-    }
-    symlink(place.at("victims"), &path)?;
-    let before = listed(&place.at("victims"))?;
-    for force in [false, true] {
-        refused(&place, writer, force)?;
-        ensure(listed(&place.at("victims"))? == before, "the link was followed")?;
-    }
-    Ok(())
-}
-
-fn folder_pipe(writer: &Writer, name: &str) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at("out").join(name);
-    fs::create_dir_all(path.parent().ok_or("no folder")?)?;
-    pipe(&path)?;
-    for force in [false, true] {
-        refused(&place, writer, force)?;
-        ensure(fs::symlink_metadata(&path)?.file_type().is_fifo(), "the pipe was replaced")?;
-    }
-    Ok(())
-}
-
-fn folder_in_the_way(writer: &Writer, name: &str) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at("out").join(name);
-    fs::create_dir_all(&path)?;
-    fs::write(path.join("notes.txt"), MINE)?;
-    for force in [false, true] {
-        refused(&place, writer, force)?;
-        ensure(fs::read(path.join("notes.txt"))? == MINE, "it was removed")?;
-    }
-    Ok(())
-}
-
-/// What a user puts beside our files stays; what a killed run left goes.
-fn neighbours(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    let out = place.at("out");
-    place.succeeds(&Place::command_line(writer, "out", false), writer.endless)?;
-    let mut kept = Vec::new();
-    for folder in places(writer)?.iter().filter_map(|name| Path::new(name).parent()) {
-        for name in ["notes.txt", ".tmp-1-1", "0123456789abcdef.wgsl"] {
-            kept.push(out.join(folder).join(name));
-        }
-    }
-    kept.push(out.join(".lamplight-0123456789abcdef/precious"));
-    kept.push(out.join(".lamplight-fedcba9876543210/mark"));
-    for path in &kept {
-        fs::create_dir_all(path.parent().ok_or("no folder")?)?;
-        fs::write(path, MINE)?;
-    }
-    let left = out.join(".lamplight-00000000000000ff");
-    fs::create_dir(&left)?;
-    fs::write(left.join("mark"), "Lamplight: files of a run that is not over.")?;
-    fs::write(left.join("half"), "half of a file")?;
-    fs::write(place.at("main.wesl"), MAIN.replace("vec4f(x)", "vec4f(0.5 * x)"))?;
-    fs::write(place.at("half.toml"), CASES.replace("2.0", "3.0"))?;
-    place.succeeds(&Place::command_line(writer, "out", false), writer.endless)?;
-    for path in &kept {
-        ensure(fs::read(path).is_ok_and(|found| found == MINE), format!("{path:?} is gone"))?;
-    }
-    ensure(!left.exists(), "what a killed run left is still there")
-}
-
-/// The name that a file command writes to for `out`.
-fn file_name(writer: &Writer) -> &'static str {
-    if writer.arguments.contains(&"OUT.lamplight") { "out.lamplight" } else { "out" }
-}
-
-fn file_foreign(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at(file_name(writer));
-    fs::write(&path, MINE)?;
-    place.refuses(&Place::command_line(writer, "out", false), false)?;
-    ensure(fs::read(&path)? == MINE, "it was overwritten")?;
-    place.succeeds(&Place::command_line(writer, "out", true), false)?;
-    ensure(fs::read(&path)? != MINE, "`--force` did not replace it")
-}
-
-/// An empty file, then its own, then its own again.
-fn file_own(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    fs::write(place.at(file_name(writer)), b"")?;
-    for _ in 0..2 {
-        place.succeeds(&Place::command_line(writer, "out", false), false)?;
-    }
-    let left = listed(place.0.path())?;
-    let left = left.keys().find(|name| name.starts_with(".lamplight"));
-    ensure(left.is_none(), format!("{left:?} was left"))
-}
-
-fn file_link_to_foreign(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at(file_name(writer));
-    fs::write(place.at("victim"), MINE)?;
-    symlink(place.at("victim"), &path)?;
-    place.refuses(&Place::command_line(writer, "out", false), false)?;
-    ensure(fs::read(place.at("victim"))? == MINE, "it was overwritten")?;
-    ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")
-}
-
-fn file_link_to_own(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at(file_name(writer));
-    fs::create_dir(place.at("elsewhere"))?;
-    fs::write(place.at("elsewhere/file"), b"")?;
-    symlink(place.at("elsewhere/file"), &path)?;
-    place.succeeds(&Place::command_line(writer, "out", false), false)?;
-    ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")?;
-    ensure(!fs::read(place.at("elsewhere/file"))?.is_empty(), "nothing was written")
-}
-
-fn file_link_to_nowhere(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    symlink(place.at("nowhere"), place.at(file_name(writer)))?;
-    for force in [false, true] {
-        place.refuses(&Place::command_line(writer, "out", force), false)?;
-        ensure(!place.at("nowhere").exists(), "the link was followed")?;
-    }
-    Ok(())
-}
-
-fn file_pipe(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at(file_name(writer));
-    pipe(&path)?;
-    let reader = std::thread::spawn({
-        let path = path.clone();
-        move || {
-            let mut bytes = Vec::new();
-            fs::File::open(path).and_then(|mut pipe| pipe.read_to_end(&mut bytes)).map(|_| bytes)
-        }
-    });
-    place.succeeds(&Place::command_line(writer, "out", false), false)?;
-    let read = reader.join().map_err(|_| "the reader stopped")??;
-    ensure(!read.is_empty(), "nothing came through the pipe")?;
-    ensure(fs::symlink_metadata(&path)?.file_type().is_fifo(), "the pipe was replaced")
-}
-
-/// Through a link, so that a mistake costs a link and no device.
-fn file_device(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at(file_name(writer));
-    symlink("/dev/null", &path)?;
-    place.succeeds(&Place::command_line(writer, "out", false), false)?;
-    ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")?;
-    ensure(fs::metadata("/dev/null")?.file_type().is_char_device(), "the device was replaced")
-}
-
-fn file_folder(writer: &Writer) -> Outcome {
-    let place = Place::new(writer)?;
-    let path = place.at(file_name(writer));
-    fs::create_dir(&path)?;
-    fs::write(path.join("notes.txt"), MINE)?;
-    for force in [false, true] {
-        place.refuses(&Place::command_line(writer, "out", force), false)?;
-        ensure(fs::read(path.join("notes.txt"))? == MINE, "it was removed")?;
-    }
-    Ok(())
 }
 
 fn pipe(path: &Path) -> Outcome {

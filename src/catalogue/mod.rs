@@ -6,6 +6,7 @@
 //! [`probe`]s from `data/sh9_probes.toml`, recorded [`cost`]s from `costs.toml`. [`pages`] writes the catalogue from them.
 
 pub mod cost;
+mod natural;
 mod outline;
 pub mod pages;
 pub mod plot;

@@ -5,6 +5,7 @@
 //! ```toml
 //! [hpg_5_shadow]
 //! doc = "A hard shadow that takes away half of the diffuse light."
+//! look = "The rim of a shadow has steps, and no shadow is darker than half of the light."
 //! source = "Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, shadow mapping"
 //! program = "forward"
 //! key = "ambient=none,lights=spot,max_lights=1,shadow=hard,specular=none"
@@ -15,7 +16,7 @@
 //! deviations = ["The map is compared with linear filtering, in the recipe with the nearest texel."]
 //! ```
 //!
-//! The tables `light`, `material`, `surroundings`, `haze`, `caster` and `moments` have the numbers
+//! `look` says what to look for in the picture. The tables `light`, `material`, `surroundings`, `haze`, `caster` and `moments` have the numbers
 //! that the source publishes, named after the fields of the uniform they go to. `depth_pass` has
 //! what the shadow map is drawn with: `polygon_offset`, `cull_front`, and of a spot light the whole
 //! angle `fov` in degrees and the planes `near` and `far` in scene units. `open` names the numbers
@@ -29,7 +30,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::probe::Probe;
-use super::reader;
+use super::{natural, reader};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Manifest, Program, Quoted, key};
 use crate::scene::sets;
@@ -40,6 +41,8 @@ use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
 pub struct Preset {
     pub name: String,
     pub doc: String,
+    /// What to look for in the picture.
+    pub look: String,
     /// The publication and the place in it.
     pub source: String,
     /// What is drawn last, into the picture.
@@ -61,7 +64,19 @@ pub struct Preset {
     pub deviations: Vec<String>,
 }
 
+/// Names of presets that are techniques, from no book of examples, and what they are called.
+const TECHNIQUES: (&str, &str) = ("tech_", "Techniques of today");
+
 impl Preset {
+    /// The work that it is from, without the place in it; techniques are together.
+    pub fn work(&self) -> &str {
+        let (prefix, title) = TECHNIQUES;
+        if self.name.starts_with(prefix) {
+            return title;
+        }
+        self.source.split(", ").next().unwrap_or_default()
+    }
+
     /// Whether the source's number of a field is known, or known to be open.
     pub fn accounts_for(&self, group: &str, field: &str) -> bool {
         self.numbers.get(group).is_some_and(|fields| fields.contains_key(field))
@@ -113,6 +128,7 @@ type Entries = BTreeMap<Spanned<String>, Entry>;
 #[serde(deny_unknown_fields)]
 struct Entry {
     doc: String,
+    look: String,
     source: String,
     program: Spanned<String>,
     key: Spanned<String>,
@@ -149,7 +165,7 @@ struct PassEntry {
 /// Path of the presets below the library's root.
 pub const PATH: &str = "presets.toml";
 
-/// The library's presets, by name; its manifest comes from [`crate::project::library_manifest`].
+/// The library's presets, in their natural order; its manifest comes from [`crate::project::library_manifest`].
 pub fn library(
     sources: &mut SourceSet,
     manifest: &Manifest,
@@ -162,7 +178,7 @@ pub fn library(
     }
 }
 
-/// Reads the presets that are in the set, by name; programs and keys are the manifest's.
+/// Reads the presets that are in the set, in their natural order; programs and keys are the manifest's.
 ///
 /// Every mistake is reported: programs, scenes and probes that do not exist, keys that are not
 /// canonical, break a constraint or do not ship.
@@ -174,8 +190,9 @@ pub fn parse(
 ) -> Result<Vec<Preset>, Diagnostics> {
     let entries: Entries = reader::data(sources, id)?;
     let mut checker = Checker { sources, id, manifest, probes, problems: Vec::new() };
-    let presets: Vec<Preset> =
+    let mut presets: Vec<Preset> =
         entries.into_iter().map(|(name, entry)| checker.preset(name.into_inner(), entry)).collect();
+    presets.sort_by(|a, b| natural::order(&a.name, &b.name));
     if checker.problems.is_empty() { Ok(presets) } else { Err(checker.problems) }
 }
 
@@ -212,6 +229,7 @@ impl Checker<'_> {
         Preset {
             name,
             doc: entry.doc,
+            look: entry.look,
             source: entry.source,
             program: entry.program.into_inner(),
             key: entry.key.into_inner(),

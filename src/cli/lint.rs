@@ -43,7 +43,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
         let mut sources = SourceSet::default();
         let found = match one(&root, &paths, &settings, &mut sources) {
             Ok(found) => found,
-            Err(diagnostics) => lint::Found { diagnostics, modules: 0 },
+            Err(diagnostics) => lint::Linted { diagnostics, modules: 0 },
         };
         warn(&sources, &found.diagnostics, form);
         let is_error = |severity| severity == Severity::Error;
@@ -99,7 +99,7 @@ fn one(
     asked: &[PathBuf],
     settings: &Settings,
     sources: &mut SourceSet,
-) -> Result<lint::Found, Diagnostics> {
+) -> Result<lint::Linted, Diagnostics> {
     let packages = project::packages(root, sources)?;
     let manifest = project::manifest(root, sources)?;
     let mut settings = settings.clone();

@@ -14,7 +14,7 @@ use super::terminal::stderr;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
 use crate::cache::{Cache, Folder, Storage};
 use crate::generate::{
-    Generated, Judged, Memory, Recorder, Request, Run, Sink, Summary, Told, Tools, Trace, generate,
+    Generated, Judged, Memory, Observer, Request, Run, Sink, Summary, Told, Tools, Trace, generate,
 };
 use crate::output::Replace;
 use crate::permute::Manifest;
@@ -61,7 +61,7 @@ pub struct Work {
     path: PathBuf,
     packages: Packages,
     manifest: Manifest,
-    recorder: Recorder,
+    observer: Observer,
     cache: Option<Cache>,
     /// Of the cache, as it was asked for.
     cache_folder: Option<PathBuf>,
@@ -78,14 +78,14 @@ impl Work {
         let opened = project::declared(&path, &mut sources);
         let (manifest, packages) =
             opened.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
-        let recorder = Recorder::default();
+        let observer = Observer::default();
         Ok(Self {
             declared: sources.clone(),
             sources,
             out: places.out.clone(),
-            packages: recorder.observe(packages),
+            packages: observer.observe(packages),
             manifest,
-            recorder,
+            observer,
             cache: cache(places, &path)?,
             cache_folder: places.cache.clone(),
             judges: None,
@@ -121,7 +121,7 @@ impl Work {
                 .iter()
                 .map(|(_, source)| &source.text)
                 .eq(self.declared.iter().map(|(_, source)| &source.text));
-        declared && self.recorder.is_current(&self.packages)
+        declared && self.observer.is_current(&self.packages)
     }
 
     /// The account of an earlier run, if there is nothing to do since; says what it said.
@@ -153,7 +153,7 @@ impl Work {
         if let Some(cache) = &self.cache {
             told_failures(cache);
             let told = Told::new(&self.path, &self.sources, &warnings);
-            let trace = Trace::new(&self.recorder, &self.out, summary.clone(), told);
+            let trace = Trace::new(&self.observer, &self.out, summary.clone(), told);
             trace.into_iter().for_each(|trace| trace.keep(cache, self.as_run(request)));
         }
         Ok(summary)

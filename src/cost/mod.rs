@@ -9,6 +9,7 @@
 pub mod baseline;
 pub mod device;
 pub mod gpu;
+mod made;
 pub mod permutations;
 pub mod pipeline;
 pub mod statistics;

@@ -19,6 +19,7 @@ mod lists;
 mod names;
 mod reflect;
 mod rename;
+mod setters;
 mod slots;
 mod specialise;
 pub mod spirv;
@@ -188,17 +189,6 @@ fn written(
     };
     let point = &validated.module.entry_points[index];
     specialise::refuse(&validated.module)?;
-    if writer.target == Target::WGSL || validated.module.overrides.is_empty() {
-        let source = Source {
-            module: &validated.module,
-            info: &validated.info,
-            stage: point.stage,
-            entry: &point.name,
-            index,
-            clip,
-        };
-        return (writer.write)(&source).map_err(failed);
-    }
     let source = Source {
         module: &validated.module,
         info: &validated.info,
@@ -207,6 +197,9 @@ fn written(
         index,
         clip,
     };
+    if writer.target == Target::WGSL || validated.module.overrides.is_empty() {
+        return (writer.write)(&source).map_err(failed);
+    }
     if let Some(written) = specialise::write(&source, writer) {
         return written.map_err(failed);
     }
@@ -218,15 +211,7 @@ fn written(
         &Default::default(),
     )
     .map_err(|error| failed(error.to_string()))?;
-    (writer.write)(&Source {
-        module: &module,
-        info: &info,
-        stage: point.stage,
-        entry: &point.name,
-        index: 0,
-        clip,
-    })
-    .map_err(failed)
+    (writer.write)(&Source { module: &module, info: &info, index: 0, ..source }).map_err(failed)
 }
 
 /// An error of a writer has no place of its own: it is put at the entry point.

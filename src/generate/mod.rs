@@ -23,7 +23,7 @@ pub use shader::{Root, Shader};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
 pub use summary::{EntrySummary, Judged, ProgramSummary, Summary, WholeSummary};
-pub use trace::{Recorder, Run, Told, Trace};
+pub use trace::{Observer, Run, Told, Trace};
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -58,6 +58,17 @@ pub struct Request {
     pub clip: Option<Clip>,
     /// Only this part of each program's permutations.
     pub shard: Option<Shard>,
+}
+
+impl Request {
+    /// The targets of a program, each once and in order.
+    fn targets_of(&self, program: &Program) -> Vec<Target> {
+        let chosen = if self.targets.is_empty() { &program.targets } else { &self.targets };
+        let mut targets = chosen.clone();
+        targets.sort();
+        targets.dedup();
+        targets
+    }
 }
 
 /// What a run works with.
@@ -114,13 +125,7 @@ pub fn generate(
     let mut lints = Lints::default();
     for (program, points, entries) in prepared(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
-        let mut targets = if request.targets.is_empty() {
-            program.targets.clone()
-        } else {
-            request.targets.clone()
-        };
-        targets.sort();
-        targets.dedup();
+        let targets = request.targets_of(program);
         let clip = request.clip.unwrap_or(program.clip);
         let compiler = Compiler {
             targets: &targets,

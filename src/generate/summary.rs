@@ -164,33 +164,8 @@ fn counted(count: usize, what: &str) -> String {
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for program in &self.programs {
-            writeln!(f, "{}: {}", program.name, counted(program.permutations, "permutation"))?;
-            for entry in &program.entries {
-                let language = format!("{:?}", entry.language).to_lowercase();
-                writeln!(
-                    f,
-                    "  {:12} {language}  {:6} unique, {} seen",
-                    entry.entry,
-                    entry.unique,
-                    if entry.axes.len() == 1 {
-                        "1 axis".to_owned()
-                    } else {
-                        format!("{} axes", entry.axes.len())
-                    }
-                )?;
-            }
-        }
-        for target in &self.targets {
-            writeln!(
-                f,
-                "{:8} {:6} {:7} {:8.1} MB",
-                target.target,
-                target.outputs,
-                if target.outputs == 1 { "output" } else { "outputs" },
-                target.bytes as f64 / 1e6
-            )?;
-        }
+        self.programs.iter().try_for_each(|program| write!(f, "{program}"))?;
+        self.targets.iter().try_for_each(|target| write!(f, "{target}"))?;
         if let Some(Judged { now, before }) = self.judged {
             writeln!(f, "{now} outputs judged, {before} known to pass")?;
         }
@@ -203,14 +178,7 @@ impl fmt::Display for Summary {
             );
         }
         writeln!(f, "{}: {} from the cache", counted(self.texts(), "text"), self.cached)?;
-        for whole in &self.whole {
-            let WholeSummary { entry, target, reason, texts, example, .. } = whole;
-            let about = reason.about();
-            writeln!(
-                f,
-                "  {entry} {target}: {texts} compiled as a whole, such as `{example}`: {about}"
-            )?;
-        }
+        self.whole.iter().try_for_each(|whole| write!(f, "{whole}"))?;
         let rate = self.permutations() as f64 / self.seconds.max(1e-9);
         writeln!(
             f,
@@ -218,5 +186,39 @@ impl fmt::Display for Summary {
             counted(self.permutations(), "permutation"),
             self.seconds
         )
+    }
+}
+
+impl fmt::Display for ProgramSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {}", self.name, counted(self.permutations, "permutation"))?;
+        self.entries.iter().try_for_each(|entry| write!(f, "{entry}"))
+    }
+}
+
+impl fmt::Display for EntrySummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let language = format!("{:?}", self.language).to_lowercase();
+        let axes = match self.axes.len() {
+            1 => "1 axis".to_owned(),
+            count => format!("{count} axes"),
+        };
+        writeln!(f, "  {:12} {language}  {:6} unique, {axes} seen", self.entry, self.unique)
+    }
+}
+
+impl fmt::Display for WholeSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { entry, target, reason, texts, example, .. } = self;
+        let about = reason.about();
+        writeln!(f, "  {entry} {target}: {texts} compiled as a whole, such as `{example}`: {about}")
+    }
+}
+
+impl fmt::Display for TargetSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { target, outputs, bytes } = self;
+        let what = if *outputs == 1 { "output" } else { "outputs" };
+        writeln!(f, "{target:8} {outputs:6} {what:7} {:8.1} MB", *bytes as f64 / 1e6)
     }
 }

@@ -19,16 +19,16 @@ type Question = (String, String);
 
 /// Packages that remember what they were asked.
 #[derive(Debug, Clone, Default)]
-pub struct Recorder(Arc<Mutex<BTreeMap<Question, String>>>);
+pub struct Observer(Arc<Mutex<BTreeMap<Question, String>>>);
 
-impl Recorder {
+impl Observer {
     /// The same packages, observed.
     pub fn observe(&self, packages: Packages) -> Packages {
         let observed = |package: Package| Package {
             files: Box::new(Observed {
                 package: package.name.clone(),
                 files: package.files,
-                recorder: self.clone(),
+                observer: self.clone(),
             }),
             name: package.name,
         };
@@ -120,8 +120,8 @@ pub struct Run<'a> {
 
 impl Trace {
     /// The trace of what was recorded; `None` where no bundle is.
-    pub fn new(recorder: &Recorder, out: &Path, summary: Summary, told: Told) -> Option<Self> {
-        let reads = recorder
+    pub fn new(observer: &Observer, out: &Path, summary: Summary, told: Told) -> Option<Self> {
+        let reads = observer
             .answers()
             .into_iter()
             .map(|((package, question), answer)| (package, question, answer));
@@ -186,19 +186,19 @@ fn listed(paths: &[String]) -> String {
 struct Observed {
     package: String,
     files: Box<dyn Files>,
-    recorder: Recorder,
+    observer: Observer,
 }
 
 impl Files for Observed {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
         let answer = self.files.read(path);
-        self.recorder.note(&self.package, path.to_owned(), read(&answer));
+        self.observer.note(&self.package, path.to_owned(), read(&answer));
         answer
     }
 
     fn list(&self, extensions: &[&str]) -> Vec<String> {
         let answer = self.files.list(extensions);
-        self.recorder.note(&self.package, format!("*.{}", extensions.join(",")), listed(&answer));
+        self.observer.note(&self.package, format!("*.{}", extensions.join(",")), listed(&answer));
         answer
     }
 

@@ -27,7 +27,7 @@ const RESULT: &str = "lamplight_result";
 
 /// What is translated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
+pub enum UnitId {
     Function(usize),
     /// The entry point; in GLSL the function that naga wraps around `main`.
     Entry,
@@ -36,7 +36,7 @@ pub enum Unit {
 /// What a unit's text is made of: declarations, by index.
 #[derive(Debug)]
 pub struct Recipe<'s> {
-    pub unit: Unit,
+    pub unit: UnitId,
     /// The function that is kept as it is.
     pub function: Option<usize>,
     /// Structures and constants in the order of the text.
@@ -53,14 +53,14 @@ pub struct Recipe<'s> {
 /// Collects what a unit needs. `summaries` has those of all functions before it.
 pub fn recipe<'s>(
     outline: &Outline<'_>,
-    unit: Unit,
+    unit: UnitId,
     summaries: &dyn Fn(usize) -> Option<&'s Summary>,
 ) -> Result<Recipe<'s>, Reason> {
     let entry = outline.entry();
     let (function, callees): (Option<usize>, Vec<usize>) = match (unit, outline.language) {
-        (Unit::Entry, Language::Glsl) => (None, vec![entry]),
-        (Unit::Entry, Language::Wesl) => (Some(entry), outline.callees(entry).collect()),
-        (Unit::Function(function), _) => (Some(function), outline.callees(function).collect()),
+        (UnitId::Entry, Language::Glsl) => (None, vec![entry]),
+        (UnitId::Entry, Language::Wesl) => (Some(entry), outline.callees(entry).collect()),
+        (UnitId::Function(function), _) => (Some(function), outline.callees(function).collect()),
     };
     let stubs =
         callees.into_iter().map(|callee| summaries(callee).map(|summary| (callee, summary)));
@@ -74,7 +74,7 @@ pub fn recipe<'s>(
             open.push(outline.find(name).ok_or(Reason::Stub)?);
         }
     }
-    if unit == Unit::Entry {
+    if unit == UnitId::Entry {
         let asserted = |index: &usize| outline.declarations[*index].kind == PartKind::Assertion;
         open.extend((0..outline.declarations.len()).filter(asserted));
     }
@@ -91,7 +91,7 @@ pub fn recipe<'s>(
     let others = of(PartKind::Other);
     let interface = outline
         .interface
-        .filter(|interface| matches!(unit, Unit::Function(_)) && others.contains(interface));
+        .filter(|interface| matches!(unit, UnitId::Function(_)) && others.contains(interface));
     Ok(Recipe { unit, function, others, variables, stubs, interface })
 }
 
@@ -117,8 +117,8 @@ impl Recipe<'_> {
     pub fn key(&self, outline: &Outline<'_>) -> Key {
         let declared = |index: &usize| &outline.declarations[*index].hash[..];
         let unit = match self.unit {
-            Unit::Entry => "entry",
-            Unit::Function(_) => "function",
+            UnitId::Entry => "entry",
+            UnitId::Function(_) => "function",
         };
         let language = match outline.language {
             Language::Wesl => "wesl",
@@ -165,7 +165,7 @@ impl Recipe<'_> {
             text.push_str(outline.declarations[function].text);
             text.push('\n');
         }
-        if matches!(self.unit, Unit::Function(_)) {
+        if matches!(self.unit, UnitId::Function(_)) {
             self.write_idle(outline, &mut text);
         }
         Ok(text)

@@ -46,6 +46,7 @@ mod canonical;
 mod compile;
 mod cut;
 mod mark;
+mod marked;
 mod module;
 mod names;
 mod outline;
@@ -57,6 +58,7 @@ mod summary;
 mod text;
 mod texts;
 mod translate;
+mod uses;
 mod words;
 
 pub use compile::{Made, Text, compile, perform};
@@ -136,10 +138,10 @@ impl<'a> Linker<'a> {
         // What several functions name is read once for each of them.
         let mut left = LINKED_BYTES;
         for function in &functions {
-            let unit = canonical::Unit::Function(*function);
+            let unit = canonical::UnitId::Function(*function);
             units[*function] = Some(self.unit(&outline, unit, &units, &mut left)?);
         }
-        let entry = self.unit(&outline, canonical::Unit::Entry, &units, &mut left)?;
+        let entry = self.unit(&outline, canonical::UnitId::Entry, &units, &mut left)?;
         let suspect = entry.summary.parted;
         let reflection = entry.reflection.clone().ok_or(Reason::EntryPoint)?;
         let named = functions.iter().filter_map(|function| {
@@ -164,7 +166,7 @@ impl<'a> Linker<'a> {
         let mut left = LINKED_BYTES;
         for function in &outline.functions[..count] {
             let name = || Some(outline.declarations[*function].name().to_owned());
-            let unit = canonical::Unit::Function(*function);
+            let unit = canonical::UnitId::Function(*function);
             match self.unit(&outline, unit, &units, &mut left) {
                 Ok(unit) if unit.is_refused(index) => return name(),
                 Ok(unit) => units[*function] = Some(unit),
@@ -180,7 +182,7 @@ impl<'a> Linker<'a> {
     fn unit(
         &self,
         outline: &Outline<'_>,
-        unit: canonical::Unit,
+        unit: canonical::UnitId,
         units: &[Option<Arc<Unit>>],
         left: &mut usize,
     ) -> Result<Arc<Unit>, Reason> {
@@ -198,8 +200,8 @@ impl<'a> Linker<'a> {
         self.new.fetch_add(1, Ordering::Relaxed);
         let translated = translate(outline, &recipe, self.targets, self.clip);
         let function = match unit {
-            canonical::Unit::Function(function) => Some(outline.declarations[function].name()),
-            canonical::Unit::Entry => None,
+            canonical::UnitId::Function(function) => Some(outline.declarations[function].name()),
+            canonical::UnitId::Entry => None,
         };
         let callees: BTreeSet<&str> = recipe
             .stubs

@@ -177,20 +177,7 @@ fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
     for (number, (index, _)) in kept.iter().enumerate() {
         numbers[*index] = number;
     }
-    let mut functions: FxHashSet<&String> = FxHashSet::default();
-    // Few texts have any, so that most need not look for it in each declaration.
-    let asks_line = lean.language == Language::Glsl && lean.text.contains("__LINE__");
-    for (_, part) in &kept {
-        let text = &lean.text[part.range.clone()];
-        refuse(part, text, lean.language)?;
-        if asks_line && text.contains("__LINE__") {
-            return Err(Reason::Declaration);
-        }
-        if part.kind == PartKind::Function && !part.names.iter().all(|name| functions.insert(name))
-        {
-            return Err(Reason::Overload);
-        }
-    }
+    refuse_any(lean, &kept)?;
     let number = |used: &u32| match numbers[*used as usize] {
         usize::MAX => all_of(lean, *used, &numbers),
         number => vec![number],
@@ -213,8 +200,16 @@ fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
         }
     });
     let mut declared: Vec<Declaration<'_>> = declared.collect();
-    // What stands in a head is told by its words: a parameter that has the name of a declaration
-    // counts as a use too, and changes no more than the key.
+    find_head_uses(&mut declared);
+    if lean.language == Language::Glsl && initialised_by_variables(&declared) {
+        return Err(Reason::Initialiser);
+    }
+    Ok(declared)
+}
+
+/// What stands in a head is told by its words: a parameter that has the name of a declaration
+/// counts as a use too, and changes no more than the key.
+fn find_head_uses(declared: &mut [Declaration<'_>]) {
     for index in 0..declared.len() {
         if declared[index].kind == PartKind::Function {
             let head: Vec<&str> = words(declared[index].head).map(|word| word.text).collect();
@@ -224,10 +219,6 @@ fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
                 declared[index].uses.iter().copied().filter(named).collect();
         }
     }
-    if lean.language == Language::Glsl && initialised_by_variables(&declared) {
-        return Err(Reason::Initialiser);
-    }
-    Ok(declared)
 }
 
 /// What an alias that is no more stands for: the declarations that it names.
@@ -241,6 +232,25 @@ fn all_of(lean: &Composed, alias: u32, numbers: &[usize]) -> Vec<usize> {
         }
     }
     found
+}
+
+/// Refuses a text for any of its declarations.
+fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
+    let mut functions: FxHashSet<&String> = FxHashSet::default();
+    // Few texts have any, so that most need not look for it in each declaration.
+    let asks_line = lean.language == Language::Glsl && lean.text.contains("__LINE__");
+    for (_, part) in kept {
+        let text = &lean.text[part.range.clone()];
+        refuse(part, text, lean.language)?;
+        if asks_line && text.contains("__LINE__") {
+            return Err(Reason::Declaration);
+        }
+        if part.kind == PartKind::Function && !part.names.iter().all(|name| functions.insert(name))
+        {
+            return Err(Reason::Overload);
+        }
+    }
+    Ok(())
 }
 
 /// Declarations with which no text is taken apart.

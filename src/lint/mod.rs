@@ -28,7 +28,7 @@ pub struct Request<'a> {
 
 /// What was found.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct Linted {
     /// Each once, by place.
     pub diagnostics: Diagnostics,
     /// Modules that were looked at.
@@ -48,7 +48,7 @@ pub fn language(path: &str) -> Option<Language> {
 pub const EXTENSIONS: &[&str] = &["wesl", "wgsl", "glsl", "vert", "frag", "comp"];
 
 /// Looks at modules of the root package.
-pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Found {
+pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Linted {
     let mut graphs = BTreeMap::new();
     let (mut found, mut modules) = (Diagnostics::new(), 0);
     for path in request.paths {
@@ -69,7 +69,7 @@ pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Found {
             found.extend(module(graph, request, path));
         }
     }
-    Found { diagnostics: distinct(sources, found), modules }
+    Linted { diagnostics: distinct(sources, found), modules }
 }
 
 /// Names of the GLSL files that others of the package include.

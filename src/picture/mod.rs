@@ -16,6 +16,7 @@ mod passes;
 mod pixels;
 mod plan;
 mod prepared;
+pub mod strip;
 mod textures;
 mod values;
 

@@ -62,10 +62,12 @@ pub fn prepare(
     let key = scene.lamps.first_mut().ok_or_else(no_lamp)?;
     plan.place(key);
     let key = *key;
-    let size =
-        (2 * shot.size[0].max(shot.size[1])).next_power_of_two().clamp(MAP_SIZES.0, MAP_SIZES.1);
+    let twice = (2 * shot.size[0].max(shot.size[1])).next_power_of_two();
+    let size = scene.map_size.unwrap_or_else(|| twice.clamp(MAP_SIZES.0, MAP_SIZES.1));
     let slice = |scene: &Scene, light: LightView| {
-        let values = Values { plan, scene, last, light: &light, shot };
+        let lit = with_bulbs(scene, plan, last, &light, shot);
+        let values =
+            Values { plan, scene: lit.as_ref().unwrap_or(scene), last, light: &light, shot };
         let studio = Studio { painter, programs, values };
         let mut left = Left::Nothing;
         for pass in &plan.passes[..plan.passes.len() - 1] {
@@ -92,6 +94,26 @@ pub fn prepare(
     let mut slices = slices.into_iter();
     let nearest = slices.next().ok_or_else(|| vec![no_frame()])?;
     Ok(Prepared { farther: slices.collect(), ..nearest })
+}
+
+/// The scene with the lamps that shine from a place, where it shows them.
+fn with_bulbs(
+    scene: &Scene,
+    plan: &Plan,
+    last: &Pass,
+    light: &LightView,
+    shot: &Shot,
+) -> Option<Scene> {
+    if !scene.shows_lamps || last.needs.unlit {
+        return None;
+    }
+    let values = Values { plan, scene, last, light, shot };
+    let shining = scene.lamps.iter().enumerate().take(values.lamps().unwrap_or(0));
+    let kinds = shining.map(|(index, lamp)| (lamp, values.kind(index, lamp)));
+    let bulbs = kinds.filter(|(_, kind)| *kind != LampKind::Directional);
+    let bulbs: Vec<_> = bulbs.flat_map(|(lamp, kind)| Scene::bulb(lamp, kind)).collect();
+    let objects = scene.objects.iter().cloned().chain(bulbs).collect();
+    Some(Scene { objects, ..scene.clone() })
 }
 
 /// How much of the splits is logarithmic.
@@ -264,7 +286,9 @@ impl Studio<'_> {
             let buffers = own.iter().map(buffer).collect::<Result<_, Diagnostic>>()?;
             Ok((mesh::mesh(object, vertex, faceted), buffers))
         };
-        self.values.scene.objects.iter().map(item).collect()
+        let of_light = !std::ptr::eq(pass, self.values.last);
+        let objects = self.values.scene.objects.iter();
+        objects.filter(|object| object.casts || !of_light).map(item).collect()
     }
 }
 

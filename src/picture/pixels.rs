@@ -113,14 +113,19 @@ impl Linear {
             let behind =
                 || background.colour((x + 0.5 - shift[0]) / width, (y + 0.5 + shift[1]) / height);
             let drawn = colour.map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
-            let seen = drawn.unwrap_or_else(behind) * factor;
-            let finite = DVec3::from_array(
-                seen.to_array().map(|part| if part.is_nan() { 0.0 } else { part }),
-            );
-            self.sums[index] += finite.clamp(DVec3::ZERO, DVec3::ONE);
+            self.sums[index] += visible(drawn.unwrap_or_else(behind) * factor);
             if self.samples == 0 {
                 self.first[index] = drawn;
             }
+        }
+        self.samples += 1;
+    }
+
+    /// Adds one sample of every pixel, all of which were drawn.
+    pub fn add_all(&mut self, colours: impl Iterator<Item = DVec3>, exposure: f64) {
+        let factor = exposure.exp2();
+        for (sum, colour) in self.sums.iter_mut().zip(colours) {
+            *sum += visible(colour * factor);
         }
         self.samples += 1;
     }
@@ -139,9 +144,20 @@ impl Linear {
     }
 }
 
+/// What of a colour can be shown.
+fn visible(seen: DVec3) -> DVec3 {
+    let parts = seen.to_array().map(|part| if part.is_nan() { 0.0 } else { part });
+    DVec3::from_array(parts).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
 /// The transfer function of sRGB.
 fn encoded(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The inverse of [`encoded`].
+fn decoded(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// The signature of a PNG file and its first chunk, which is the header.
@@ -176,6 +192,72 @@ impl Picture {
             bytes.splice(PNG_HEADER_BYTES..PNG_HEADER_BYTES, PNG_MARK.iter().copied());
         }
         Ok(bytes)
+    }
+
+    /// One colour everywhere.
+    pub fn filled(width: u32, height: u32, colour: [u8; 3]) -> Self {
+        Self { width, height, pixels: colour.repeat(width as usize * height as usize) }
+    }
+
+    /// Gives a pixel a colour, if there is one at that place.
+    pub fn set(&mut self, [x, y]: [u32; 2], colour: [u8; 3]) {
+        if x < self.width && y < self.height {
+            let at = 3 * (y as usize * self.width as usize + x as usize);
+            self.pixels[at..at + 3].copy_from_slice(&colour);
+        }
+    }
+
+    /// Puts another picture over this one.
+    pub fn place(&mut self, other: &Self, [left, top]: [u32; 2]) {
+        for (index, colour) in other.pixels.as_chunks::<3>().0.iter().enumerate() {
+            let index = index as u32;
+            self.set([left + index % other.width, top + index / other.width], *colour);
+        }
+    }
+
+    /// A part of the picture; what is outside of it is black.
+    #[must_use]
+    pub fn part(&self, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> Self {
+        let mut part = Self::filled(width, height, [0; 3]);
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        for [x, y] in places.filter(|[x, y]| left + x < self.width && top + y < self.height) {
+            let at = 3 * ((top + y) as usize * self.width as usize + (left + x) as usize);
+            part.set([x, y], [self.pixels[at], self.pixels[at + 1], self.pixels[at + 2]]);
+        }
+        part
+    }
+
+    /// Draws a frame of one pixel.
+    pub fn outline(&mut self, [left, top]: [u32; 2], [width, height]: [u32; 2], colour: [u8; 3]) {
+        for x in left..left + width {
+            self.set([x, top], colour);
+            self.set([x, (top + height).saturating_sub(1)], colour);
+        }
+        for y in top..top + height {
+            self.set([left, y], colour);
+            self.set([(left + width).saturating_sub(1), y], colour);
+        }
+    }
+
+    /// The picture in fewer pixels, each the mean of the light of `factor` by `factor`; what is
+    /// left at the right and below is cut off.
+    #[must_use]
+    pub fn shrunk(&self, factor: u32) -> Self {
+        let factor = factor.max(1);
+        let (width, height) = (self.width / factor, self.height / factor);
+        let light: Vec<f64> = (0..=255).map(|byte| decoded(f64::from(byte) / 255.0)).collect();
+        let mean = |x: u32, y: u32, channel: u32| {
+            let at = |i: u32, j: u32| {
+                let pixel = (y * factor + j) * self.width + x * factor + i;
+                light[usize::from(self.pixels[(3 * pixel + channel) as usize])]
+            };
+            let all = (0..factor).flat_map(|j| (0..factor).map(move |i| (i, j)));
+            let sum: f64 = all.map(|(i, j)| at(i, j)).sum();
+            (encoded(sum / f64::from(factor * factor)) * 255.0).round() as u8
+        };
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let pixels = places.flat_map(|(x, y)| [0, 1, 2].map(|channel| mean(x, y, channel)));
+        Self { width, height, pixels: pixels.collect() }
     }
 
     /// The picture of a PNG file.

@@ -61,6 +61,22 @@ impl Plan {
         })
     }
 
+    /// A point of a program's space by its key, with the passes that it needs before it.
+    ///
+    /// # Errors
+    /// A program or key that the manifest does not have, or that breaks a constraint.
+    pub fn of_key(programs: &Programs, program: &str, text: &str) -> Result<Self, Diagnostics> {
+        let found = known(programs, program)?;
+        let mut texts = SourceSet::default();
+        let id = texts.add("key", text.to_owned());
+        let point = key::parse(&found.space, &Quoted::whole(&texts, id))?;
+        if let Some(constraint) = found.space.broken(&point).next() {
+            let message = format!("`{text}` breaks the constraint `{}`", constraint.text);
+            return Err(vec![Diagnostic::error(codes::INVALID_PERMUTATION, message)]);
+        }
+        Self::of_point(programs, found, &point)
+    }
+
     /// A point of a program's space, with the passes that it needs before it.
     ///
     /// # Errors
@@ -116,15 +132,17 @@ impl Plan {
     }
 }
 
+fn known<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Diagnostics> {
+    let unknown = || {
+        let message = format!("there is no program `{name}`");
+        vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
+    };
+    programs.manifest().program(name).ok_or_else(unknown)
+}
+
 impl Pass {
     fn new(programs: &Programs, program: &str, text: &str) -> Result<Self, Diagnostics> {
-        let unknown = || {
-            vec![Diagnostic::error(
-                codes::UNKNOWN_PROGRAM,
-                format!("there is no program `{program}`"),
-            )]
-        };
-        let found = programs.manifest().program(program).ok_or_else(unknown)?;
+        let found = known(programs, program)?;
         let mut texts = SourceSet::default();
         let id = texts.add("key", text.to_owned());
         let point = key::parse(&found.space, &Quoted::whole(&texts, id))?;

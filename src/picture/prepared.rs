@@ -160,7 +160,7 @@ impl Prepared {
 const AT_ONCE: usize = 64 << 20;
 
 /// Where in the pixel a sample is taken, from its middle: Halton's points, the middle alone for one.
-fn shift(index: u32, samples: u32) -> [f64; 2] {
+pub(super) fn shift(index: u32, samples: u32) -> [f64; 2] {
     let radical = |base: u32| {
         let (mut rest, mut place, mut value) = (index + 1, 1.0, 0.0);
         while rest > 0 {

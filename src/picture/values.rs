@@ -111,12 +111,13 @@ impl Values<'_> {
     }
 
     /// How many lamps shine: those of the scene, as far as the array is long.
-    fn lamps(&self) -> Option<usize> {
+    pub fn lamps(&self) -> Option<usize> {
         let most = usize::try_from(self.last.integer("max_lights")?).ok()?;
         Some(self.scene.lamps.len().min(most))
     }
 
-    fn kind(&self, index: usize, lamp: &Lamp) -> LampKind {
+    /// What a lamp is in this permutation.
+    pub fn kind(&self, index: usize, lamp: &Lamp) -> LampKind {
         let needs = &self.last.needs;
         // The first lamp casts the shadow.
         let caster = if index == 0 && needs.has_shadow() { needs.caster } else { None };

@@ -135,8 +135,12 @@ impl Library {
         };
         let mut report = check::check_with(&files, languages, &subjects, open, options)?;
         for (module, file) in &files {
-            let text = self.text(&format!("{}.wesl", module.replace("::", "/")));
-            report.untested.extend(text.iter().flat_map(|text| untested::of(module, text, file)));
+            let text = |ending| self.text(&format!("{}.{ending}", module.replace("::", "/")));
+            report.untested.extend(match (text("wesl"), text("glsl")) {
+                (Some(text), _) => untested::of(module, &text, file),
+                (None, Some(text)) => untested::of_glsl(module, &text, file),
+                (None, None) => Vec::new(),
+            });
         }
         Ok(report)
     }

@@ -1,33 +1,106 @@
 //! Functions of a module that no case calls.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::cases::File;
+use crate::parse::glsl::{self, Kind, Part, Symbol, Symbols, Token, known};
 use crate::parse::wesl::{self, Event, Item, ItemKind, Module, Name, Names, Reference};
-use crate::source::SourceId;
+use crate::source::{SourceId, SourceSet};
 
 /// Paths of the functions of a WESL module that no case names and that no function which a case
 /// names calls. Entry points have no cases.
 pub fn of(module: &str, text: &str, file: &File) -> Vec<String> {
     let mut names = Names::default();
     let parsed = wesl::parse(SourceId(0), text.into(), &mut names);
-    let named = file.cases.iter().flat_map(|case| {
+    let tried = named(file).filter_map(|name| names.find(name)).collect();
+    let reached = reached(tried, |name| {
+        let items = parsed.items.iter().filter(|item| item.name == name);
+        items.flat_map(|item| used(&parsed, item)).collect()
+    });
+    let functions = parsed.items.iter().filter(|item| item.kind == ItemKind::Function);
+    let missed = functions.filter(|item| !item.entry && !reached.contains(&item.name));
+    paths(module, missed.map(|item| names.text(item.name)))
+}
+
+/// The same of a GLSL module, whichever of its conditions hold.
+pub fn of_glsl(module: &str, text: &str, file: &File) -> Vec<String> {
+    let (mut sources, mut symbols) = (SourceSet::default(), Symbols::default());
+    let id = sources.add(format!("{module}.glsl"), text);
+    let functions = definitions(&glsl::parse(&sources, id, &mut symbols));
+    let tried = named(file).filter_map(|name| symbols.find(name)).collect();
+    let reached = reached(tried, |name| functions.get(&name).cloned().unwrap_or_default());
+    let missed = functions.keys().filter(|name| **name != known::MAIN && !reached.contains(name));
+    paths(module, missed.map(|name| symbols.text(*name)))
+}
+
+/// The functions that cases name, partners of laws among them.
+fn named(file: &File) -> impl Iterator<Item = &str> {
+    file.cases.iter().flat_map(|case| {
         let partners = case.laws.iter().flat_map(|law| &law.partners);
         std::iter::once(case.function.as_str()).chain(partners.map(|partner| partner.as_str()))
-    });
-    let mut open: Vec<Name> = named.filter_map(|name| names.find(name)).collect();
+    })
+}
+
+/// What is named, and all that it uses.
+fn reached<N: Copy + Ord>(mut open: Vec<N>, uses: impl Fn(N) -> Vec<N>) -> BTreeSet<N> {
     let mut reached = BTreeSet::new();
     while let Some(name) = open.pop() {
         if reached.insert(name) {
-            let items = parsed.items.iter().filter(|item| item.name == name);
-            open.extend(items.flat_map(|item| used(&parsed, item)));
+            open.extend(uses(name));
         }
     }
-    let functions = parsed.items.iter().filter(|item| item.kind == ItemKind::Function);
-    let missed = functions.filter(|item| !item.entry && !reached.contains(&item.name));
-    let paths: BTreeSet<String> =
-        missed.map(|item| format!("{module}::{}", names.text(item.name))).collect();
+    reached
+}
+
+fn paths<'a>(module: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let paths: BTreeSet<String> = names.map(|name| format!("{module}::{name}")).collect();
     paths.into_iter().collect()
+}
+
+/// Every function that a GLSL file defines, with the identifiers of its body.
+fn definitions(module: &glsl::Module) -> BTreeMap<Symbol, Vec<Symbol>> {
+    let texts = module.parts.iter().filter_map(|part| match part {
+        Part::Text(text) => Some(text.tokens.start as usize..text.tokens.end as usize),
+        Part::Directive(..) => None,
+    });
+    let tokens: Vec<&Token> = texts.flat_map(|range| &module.tokens[range]).collect();
+    let mut found: BTreeMap<Symbol, Vec<Symbol>> = BTreeMap::new();
+    let mut at = 0;
+    while at < tokens.len() {
+        let next = |at: usize| tokens.get(at).map(|token| token.symbol);
+        if next(at) == Some(known::OPEN_BRACE) {
+            at = closed(&tokens, at, known::OPEN_BRACE, known::CLOSE_BRACE);
+        } else if tokens[at].kind == Kind::Identifier && next(at + 1) == Some(known::OPEN) {
+            let body = closed(&tokens, at + 1, known::OPEN, known::CLOSE);
+            if next(body) == Some(known::OPEN_BRACE) {
+                let end = closed(&tokens, body, known::OPEN_BRACE, known::CLOSE_BRACE);
+                let words = tokens[body..end].iter().filter(|word| word.kind == Kind::Identifier);
+                found.entry(tokens[at].symbol).or_default().extend(words.map(|word| word.symbol));
+                at = end;
+            } else {
+                at = body;
+            }
+        } else {
+            at += 1;
+        }
+    }
+    found
+}
+
+/// The token after the bracket that closes the one at `at`.
+fn closed(tokens: &[&Token], at: usize, open: Symbol, close: Symbol) -> usize {
+    let mut depth = 0usize;
+    for (index, token) in tokens.iter().enumerate().skip(at) {
+        if token.symbol == open {
+            depth += 1;
+        } else if token.symbol == close {
+            depth -= 1;
+            if depth == 0 {
+                return index + 1;
+            }
+        }
+    }
+    tokens.len()
 }
 
 /// The module's own names that an item uses.

@@ -85,6 +85,25 @@ pub fn bricks() -> Maps {
     }
 }
 
+/// Soil without a pattern, the rest as of [`bricks`].
+pub fn soil() -> Maps {
+    let base = Map::of(128, |at| {
+        let turn = at * std::f64::consts::TAU;
+        let grain = (5.0 * turn.x).sin() * (7.0 * turn.y).cos() + (11.0 * (turn.x + turn.y)).sin();
+        DVec4::new(0.62, 0.5, 0.36, 1.0) * (1.0 + 0.03 * grain)
+    });
+    Maps { base, ..bricks() }
+}
+
+/// Bright grass of many tones, the rest as of [`bricks`].
+pub fn meadow() -> Maps {
+    let base = Map::of(256, |at| {
+        let tone = 0.9 + 0.06 * grain(at) + 0.04 * grain(at * 2.0);
+        DVec4::new(tone, tone, tone, 1.0)
+    });
+    Maps { base, ..bricks() }
+}
+
 /// Where a place of the wall is on its brick.
 struct Brick {
     /// 0 in the joint, 1 on the brick.

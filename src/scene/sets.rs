@@ -31,6 +31,10 @@ pub struct Scene {
     pub haze_range: (f64, f64),
     /// Textures, made when they are asked for.
     pub maps: fn() -> Maps,
+    /// Texels along an edge of the shadow map, where it does not follow the picture's size.
+    pub map_size: Option<u32>,
+    /// Lamps that have a place are drawn there.
+    pub shows_lamps: bool,
 }
 
 /// A shape in its place.
@@ -46,6 +50,8 @@ pub struct Object {
     pub material: Material,
     /// Of `material=array`.
     pub material_index: u32,
+    /// Whether shadow maps have it: lamps would shade themselves.
+    pub casts: bool,
 }
 
 /// The viewer.
@@ -147,6 +153,7 @@ impl Object {
             color,
             material: Material::default(),
             material_index: 0,
+            casts: true,
         }
     }
 
@@ -175,7 +182,19 @@ impl Eye {
 }
 
 impl Scene {
-    /// Every corner of every object, in world space.
+    /// A lamp as it is seen: a bulb, and behind that of a spot light a shade.
+    pub fn bulb(lamp: &Lamp, kind: LampKind) -> Vec<Object> {
+        let glow = lamp.color / lamp.color.max_element().max(1e-6);
+        let place = DMat4::from_translation(lamp.position);
+        let material = Material { emission: glow * 1.5, ..Material::default().glossy(0.0) };
+        let ball = Object::new(Shape::sphere(0.11, (24, 12)), place, glow).of(material, 7);
+        let tin = Material { emission: DVec3::splat(0.015), ..Material::default().glossy(0.1) };
+        let shade = Object::new(shade(lamp), place, DVec3::splat(0.16)).of(tin, 8);
+        let parts = [Some(ball), (kind == LampKind::Spot).then_some(shade)];
+        parts.into_iter().flatten().map(|part| Object { casts: false, ..part }).collect()
+    }
+
+    /// Every corner of every object that casts a shadow, in world space.
     pub fn points(&self) -> Vec<DVec3> {
         let of = |object: &Object| {
             let matrix = object.world_from_object;
@@ -186,8 +205,20 @@ impl Scene {
                 .map(move |vertex| matrix.transform_point3(vertex.position))
                 .collect::<Vec<_>>()
         };
-        self.objects.iter().flat_map(of).collect()
+        self.objects.iter().filter(|object| object.casts).flat_map(of).collect()
     }
+}
+
+/// An open cone along the lamp's axis.
+fn shade(lamp: &Lamp) -> Shape {
+    let (rim, depth) = (0.3, 0.34);
+    let cone = Shape::surface(28, 1, |u, v| {
+        let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
+        let radius = 0.1 + (rim - 0.1) * v;
+        DVec3::new(radius * cos, 0.2 - depth * v, radius * sin)
+    });
+    let turn = glam::DQuat::from_rotation_arc(DVec3::NEG_Y, lamp.axis());
+    cone.transformed(DMat4::from_quat(turn))
 }
 
 /// A scene, by its name: one file of `sets/` each.
@@ -226,5 +257,7 @@ fn base(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
         haze: DVec3::new(0.42, 0.48, 0.56),
         haze_range: (5.0, 26.0),
         maps: maps::bricks,
+        map_size: None,
+        shows_lamps: false,
     }
 }

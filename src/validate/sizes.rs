@@ -5,7 +5,10 @@
 //! gigabytes. The module that naga's parser gives has every type with its size; nothing behind the
 //! parser sees a module whose types are too large.
 
-use naga::{AddressSpace, ArraySize, Handle, Module, Span, Type, TypeInner};
+use naga::{
+    AddressSpace, ArraySize, Expression, Function, GlobalVariable, Handle, Module, Span, Type,
+    TypeInner,
+};
 
 use crate::limits::{PADDING_BYTES, TYPE_NESTING, VALUE_SCALARS};
 
@@ -13,6 +16,14 @@ use crate::limits::{PADDING_BYTES, TYPE_NESTING, VALUE_SCALARS};
 pub struct Large {
     pub span: Span,
     pub message: String,
+}
+
+/// Something whose scalars an output may write one by one.
+struct Value<'m> {
+    ty: Handle<Type>,
+    what: &'static str,
+    name: Option<&'m str>,
+    span: Span,
 }
 
 /// The size of each type, in the order of the types: parts come before what they are in.
@@ -88,64 +99,70 @@ impl Sizes<'_> {
         })
     }
 
-    /// Variables and constants whose zeros or parts are written one by one.
+    /// The first value with which all together have too many scalars.
     fn values(&self) -> Option<Large> {
-        let module = self.module;
+        let functions = self.module.functions.iter().map(|(_, function)| function);
+        let points = self.module.entry_points.iter().map(|point| &point.function);
+        let of_functions = functions.chain(points).flat_map(|function| self.of_function(function));
         let mut left = VALUE_SCALARS;
-        let mut take = |ty: Handle<Type>, what: &str, name: &Option<String>, span: Span| {
-            let scalars = self.scalars_of(ty);
-            match left.checked_sub(scalars) {
-                Some(rest) => {
-                    left = rest;
-                    None
-                }
-                None => {
-                    let name = name.as_deref().unwrap_or("_");
-                    let message = format!(
-                        "the {what} `{name}` has {scalars} scalars, and all variables and \
-                         constants of a module together may have {VALUE_SCALARS}"
-                    );
-                    Some(Large { span, message })
-                }
-            }
+        self.of_module().chain(of_functions).find_map(|value| {
+            let scalars = self.scalars_of(value.ty);
+            let Some(rest) = left.checked_sub(scalars) else { return Some(value.large(scalars)) };
+            left = rest;
+            None
+        })
+    }
+
+    /// Variables and constants whose zeros or parts are written one by one.
+    fn of_module(&self) -> impl Iterator<Item = Value<'_>> {
+        let (variables, constants) = (&self.module.global_variables, &self.module.constants);
+        let is_written = |variable: &GlobalVariable| {
+            use AddressSpace::{Function, Private, WorkGroup};
+            matches!(variable.space, Private | WorkGroup | Function)
         };
-        for (handle, variable) in module.global_variables.iter() {
-            let is_written = matches!(
-                variable.space,
-                AddressSpace::Private | AddressSpace::WorkGroup | AddressSpace::Function
-            );
-            let span = module.global_variables.get_span(handle);
-            if is_written && let Some(large) = take(variable.ty, "variable", &variable.name, span) {
-                return Some(large);
+        let written = variables.iter().filter(move |(_, variable)| is_written(variable));
+        let written = written.map(|(handle, variable)| Value {
+            ty: variable.ty,
+            what: "variable",
+            name: variable.name.as_deref(),
+            span: variables.get_span(handle),
+        });
+        written.chain(constants.iter().map(|(handle, constant)| Value {
+            ty: constant.ty,
+            what: "constant",
+            name: constant.name.as_deref(),
+            span: constants.get_span(handle),
+        }))
+    }
+
+    /// Variables of a function, and values that are spelt out in it.
+    fn of_function<'f>(&self, function: &'f Function) -> impl Iterator<Item = Value<'f>> {
+        let (variables, expressions) = (&function.local_variables, &function.expressions);
+        let locals = variables.iter().map(|(handle, local)| Value {
+            ty: local.ty,
+            what: "variable",
+            name: local.name.as_deref(),
+            span: variables.get_span(handle),
+        });
+        locals.chain(expressions.iter().filter_map(|(handle, expression)| match *expression {
+            Expression::ZeroValue(ty) | Expression::Compose { ty, .. }
+                if self.scalars_of(ty) > 4 =>
+            {
+                Some(Value { ty, what: "value", name: None, span: expressions.get_span(handle) })
             }
-        }
-        for (handle, constant) in module.constants.iter() {
-            let span = module.constants.get_span(handle);
-            if let Some(large) = take(constant.ty, "constant", &constant.name, span) {
-                return Some(large);
-            }
-        }
-        let functions = module.functions.iter().map(|(_, function)| function);
-        let points = module.entry_points.iter().map(|point| &point.function);
-        for function in functions.chain(points) {
-            for (handle, local) in function.local_variables.iter() {
-                let span = function.local_variables.get_span(handle);
-                if let Some(large) = take(local.ty, "variable", &local.name, span) {
-                    return Some(large);
-                }
-            }
-            for (handle, expression) in function.expressions.iter() {
-                if let naga::Expression::ZeroValue(ty) | naga::Expression::Compose { ty, .. } =
-                    *expression
-                    && self.scalars_of(ty) > 4
-                {
-                    let span = function.expressions.get_span(handle);
-                    if let Some(large) = take(ty, "value", &None, span) {
-                        return Some(large);
-                    }
-                }
-            }
-        }
-        None
+            _ => None,
+        }))
+    }
+}
+
+impl Value<'_> {
+    /// Tells that there is no room for it.
+    fn large(&self, scalars: u64) -> Large {
+        let (what, name) = (self.what, self.name.unwrap_or("_"));
+        let message = format!(
+            "the {what} `{name}` has {scalars} scalars, and all variables and constants of a \
+             module together may have {VALUE_SCALARS}"
+        );
+        Large { span: self.span, message }
     }
 }

@@ -13,6 +13,7 @@ pub const CASES: &[Case] = &[
     ("vectors_are_not_taken_for_numbers", vectors),
     ("formulas_have_the_functions_of_wgsl", formulas),
     ("functions_without_a_case", untested),
+    ("stores_to_matrices_of_two_rows", narrow_matrices),
     ("names_of_modules", names_of_modules),
 ];
 
@@ -188,11 +189,58 @@ fn haze(x: f32) -> f32 { return x; }
     let more = case.replace("outer", "haze").replace("2*x", "x");
     package.write("fog.toml", &[case, &more].concat())?;
     package.run("check fog.toml")?.ends(0)?.is_silent_of(&["no case"])?;
+    let glsl = "#define TWICE(x) (2.0 * (x))
+float inner(float x);
+float outer(float x) { return inner(x); }
+#ifdef HAZE
+float haze(float x) { { return x; } }
+#else
+float haze(float x) { return x + 0.0; }
+#endif
+float inner(float x) { return TWICE(x); }\n";
+    package.write("mist.glsl", glsl)?;
+    package.write("mist.toml", case)?;
+    let run = package.run("check mist.toml")?.ends(0)?;
+    run.says(&["1 function has no case: mist::haze\n", "1 of 1 pass"])?;
     Ok(())
 }
 
 fn names_of_modules() -> Outcome {
     let run = Package::new(&[])?.run("check lighting::spto")?.ends(1)?;
     run.says(&["did you mean `lighting::spot`?"])?;
+    Ok(())
+}
+
+/// Stores to a matrix of two rows within a structure arrive, whole, by column and by number, in
+/// every target's own text.
+fn narrow_matrices() -> Outcome {
+    let module = "struct Held { before: f32, narrow: mat3x2f, after: f32 }
+fn held(x: f32) -> Held { var h: Held; h.before = x; h.after = x; return h; }
+fn whole(x: f32) -> f32 {
+    var h = held(x);
+    h.narrow = mat3x2f(vec2f(1.0), vec2f(2.0), vec2f(x));
+    return h.narrow[2].y;
+}
+fn column(x: f32) -> f32 {
+    var h = held(x);
+    h.narrow[u32(x) % 3u] = vec2f(x, 4.0);
+    return h.narrow[u32(x) % 3u].x;
+}
+fn number(x: f32) -> f32 {
+    var h = held(x);
+    h.narrow[1][u32(x) % 2u] = x;
+    return h.narrow[1][u32(x) % 2u];
+}\n";
+    let case = |name| {
+        format!(
+            "[[case]]\nfunction = \"{name}\"\nformula = \"x\"\ntolerance = {{ ulp = 0 }}\ninputs = {{ x = [1, 2, 3] }}\n"
+        )
+    };
+    let cases = ["whole", "column", "number"].map(case).concat();
+    let package = Package::new(&[("narrow.wesl", module), ("narrow.toml", &cases)])?;
+    for executor in ["eval", "spirv", "glsl", "glsl330", "essl300", "hlsl", "msl"] {
+        let run = package.run(&format!("check narrow.toml --executor {executor}"))?;
+        run.ends(0)?.says(&["3 of 3 pass"])?;
+    }
     Ok(())
 }

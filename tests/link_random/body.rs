@@ -251,37 +251,63 @@ impl<'d> Body<'d> {
                 let part = self.value(&part, depth);
                 format!("{name}({part})")
             }
-            (Scalar::Float, 1) => {
+            (Scalar::Float, choice) => self.float_vector((&name, size), one, choice, depth),
+            (_, choice) => self.integer_vector((&name, size, scalar), one, choice, depth),
+        }
+    }
+
+    fn float_vector(
+        &mut self,
+        (name, size): (&str, usize),
+        one: String,
+        choice: usize,
+        depth: usize,
+    ) -> String {
+        let ty = Type::Vector(size, Scalar::Float);
+        match choice {
+            1 => {
                 let columns = 2 + self.below(3);
                 let matrix = self.value(&Type::Matrix(columns, size), depth);
                 let vector = self.value(&Type::Vector(columns, Scalar::Float), depth - 1);
                 format!("(({matrix} * {vector}) * 0.25)")
             }
-            (Scalar::Float, 2) if self.has("mix") && self.has("clamp") => {
+            2 if self.has("mix") && self.has("clamp") => {
                 let other = self.value(&ty, depth);
                 format!("mix({one}, {other}, clamp({one}, {name}(0.0), {name}(1.0)))")
             }
-            (Scalar::Float, 3) if !self.glsl() && self.has("modf") => format!("modf({one}).fract"),
-            (Scalar::Float, 4) if self.draft.is_modern && !self.glsl() && self.has("frexp") => {
+            3 if !self.glsl() && self.has("modf") => format!("modf({one}).fract"),
+            4 if self.draft.is_modern && !self.glsl() && self.has("frexp") => {
                 format!("frexp({one}).fract")
             }
-            (Scalar::Float, _) => {
+            _ => {
                 let other = self.value(&ty, depth);
                 let operator = self.draft.random.pick(&["+", "-", "*"]);
                 format!("(({one} {operator} {other}) * 0.5)")
             }
-            (_, 1) => {
+        }
+    }
+
+    fn integer_vector(
+        &mut self,
+        (name, size, scalar): (&str, usize, Scalar),
+        one: String,
+        choice: usize,
+        depth: usize,
+    ) -> String {
+        let ty = Type::Vector(size, scalar);
+        match choice {
+            1 => {
                 let other = self.value(&Type::Vector(size, Scalar::Float), depth);
                 format!("{name}({other})")
             }
-            (_, 2 | 3) => {
+            2 | 3 => {
                 let other = self.value(&ty, depth);
-                let one_of = self.literal(&part);
+                let one_of = self.literal(&Type::Scalar(scalar));
                 let operator = self.draft.random.pick(&["/", "%"]);
                 format!("({one} {operator} ({other} | {name}({one_of})))")
             }
-            (Scalar::Int, 4) => format!("(-{one})"),
-            (Scalar::Int, 5) if self.has("abs") => format!("abs({one})"),
+            4 if scalar == Scalar::Int => format!("(-{one})"),
+            5 if scalar == Scalar::Int && self.has("abs") => format!("abs({one})"),
             _ => {
                 let other = self.value(&ty, depth);
                 let most = if scalar == Scalar::Uint { "31u" } else { "31" };

@@ -175,12 +175,8 @@ impl Case {
         for (index, entry) in places {
             let point = &points[index];
             let name = if language == Language::Glsl { "main" } else { &entry };
-            let keep = match language {
-                Language::Glsl => Keep::EntryPoints,
-                Language::Wesl => Keep::Items(vec![name.to_owned()]),
-            };
-            let options = Options { keep, ..Options::default() };
-            let composed = compose(&graph, &program.space.settings(point), &options);
+            let settings = program.space.settings(point);
+            let composed = compose(&graph, &settings, &keeping(language, name));
             let composed =
                 composed.map_err(|problems| Finding::new("compose", self.told(&problems)))?;
             let lean = lean(&composed);
@@ -202,6 +198,15 @@ impl Case {
         sound.outputs.iter().try_for_each(read_again)?;
         Ok(sound)
     }
+}
+
+/// Options with which a text has one entry point.
+fn keeping(language: Language, entry: &str) -> Options {
+    let keep = match language {
+        Language::Glsl => Keep::EntryPoints,
+        Language::Wesl => Keep::Items(vec![entry.to_owned()]),
+    };
+    Options { keep, ..Options::default() }
 }
 
 impl Sound {

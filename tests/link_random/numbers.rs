@@ -16,16 +16,8 @@ impl Body<'_> {
             3 if self.draft.is_modern && !glsl && self.has("frexp") => {
                 format!("f32(frexp({one}).exp)")
             }
-            4 => {
-                let ty = if self.below(2) == 0 { INT } else { UINT };
-                let number = self.value(&ty, depth);
-                format!("{}({number})", self.draft.spelling.scalar(Scalar::Float))
-            }
-            5 if self.has("dot") => {
-                let ty = Type::Vector(2 + self.below(3), Scalar::Float);
-                let (one, other) = (self.value(&ty, depth), self.value(&ty, depth));
-                format!("dot({one}, {other})")
-            }
+            4 => self.converted(depth),
+            5 if self.has("dot") => self.dot(depth),
             6 if self.has("length") => {
                 let one = self.value(&Type::Vector(3, Scalar::Float), depth);
                 format!("length({one})")
@@ -35,14 +27,7 @@ impl Body<'_> {
                 let matrix = self.value(&Type::Matrix(size, size), depth);
                 format!("determinant({matrix})")
             }
-            8 => {
-                let (other, condition) = (self.value(&FLOAT, depth), self.condition(depth));
-                match glsl {
-                    true => format!("({condition} ? {one} : {other})"),
-                    false if self.has("select") => format!("select({one}, {other}, {condition})"),
-                    false => one,
-                }
-            }
+            8 => self.selected(one, depth),
             9 if self.has("clamp") => format!("clamp({one}, -1.0, 1.5)"),
             10 if self.has("mix") => {
                 let other = self.value(&FLOAT, depth);
@@ -60,6 +45,28 @@ impl Body<'_> {
                 let operator = self.draft.random.pick(&["+", "-", "*"]);
                 format!("({one} {operator} {other})")
             }
+        }
+    }
+
+    fn converted(&mut self, depth: usize) -> String {
+        let ty = if self.below(2) == 0 { INT } else { UINT };
+        let number = self.value(&ty, depth);
+        format!("{}({number})", self.draft.spelling.scalar(Scalar::Float))
+    }
+
+    fn dot(&mut self, depth: usize) -> String {
+        let ty = Type::Vector(2 + self.below(3), Scalar::Float);
+        let (one, other) = (self.value(&ty, depth), self.value(&ty, depth));
+        format!("dot({one}, {other})")
+    }
+
+    /// A number or another, by a condition.
+    fn selected(&mut self, one: String, depth: usize) -> String {
+        let (other, condition) = (self.value(&FLOAT, depth), self.condition(depth));
+        match self.draft.spelling.is_glsl() {
+            true => format!("({condition} ? {one} : {other})"),
+            false if self.has("select") => format!("select({one}, {other}, {condition})"),
+            false => one,
         }
     }
 

@@ -244,35 +244,7 @@ impl Draft {
         // Its own name is not to be hidden: the text could be read as another.
         body.used.insert(name.to_owned());
         for parameter in parameters {
-            let name = body.name();
-            match parameter {
-                Parameter::Value(ty) => {
-                    let spelt = body.draft.spell(ty);
-                    list.push(body.draft.spelling.declared(&name, &spelt));
-                    body.locals.push(Local { name, ty: ty.clone(), is_mutable: glsl });
-                }
-                Parameter::Pointer(ty) => {
-                    let spelt = body.draft.spell(ty);
-                    let declared = body.draft.spelling.declared(&name, &spelt);
-                    list.push(match glsl {
-                        true => format!("inout {declared}"),
-                        false => format!("{name}: ptr<function, {spelt}>"),
-                    });
-                    let name = if glsl { name } else { format!("(*{name})") };
-                    body.locals.push(Local { name, ty: ty.clone(), is_mutable: true });
-                }
-                Parameter::Texture => {
-                    body.textures.push(Texture {
-                        name: name.clone(),
-                        sampler: String::new(),
-                        kind: TextureKind::Plain,
-                    });
-                    let sampler = body.name();
-                    list.push(format!("{name}: texture_2d<f32>, {sampler}: sampler"));
-                    body.textures.pop();
-                    body.textures.push(Texture { name, sampler, kind: TextureKind::Plain });
-                }
-            }
+            list.push(body.parameter(parameter));
         }
         body.seeded();
         body.statements(2);
@@ -287,6 +259,43 @@ impl Draft {
 }
 
 impl Body<'_> {
+    /// Spells a parameter, which the body knows from then on.
+    fn parameter(&mut self, parameter: &Parameter) -> String {
+        let glsl = self.draft.spelling.is_glsl();
+        let name = self.name();
+        match parameter {
+            Parameter::Value(ty) => {
+                let spelt = self.draft.spell(ty);
+                let declared = self.draft.spelling.declared(&name, &spelt);
+                self.locals.push(Local { name, ty: ty.clone(), is_mutable: glsl });
+                declared
+            }
+            Parameter::Pointer(ty) => {
+                let spelt = self.draft.spell(ty);
+                let declared = self.draft.spelling.declared(&name, &spelt);
+                let text = match glsl {
+                    true => format!("inout {declared}"),
+                    false => format!("{name}: ptr<function, {spelt}>"),
+                };
+                let name = if glsl { name } else { format!("(*{name})") };
+                self.locals.push(Local { name, ty: ty.clone(), is_mutable: true });
+                text
+            }
+            Parameter::Texture => {
+                self.textures.push(Texture {
+                    name: name.clone(),
+                    sampler: String::new(),
+                    kind: TextureKind::Plain,
+                });
+                let sampler = self.name();
+                let text = format!("{name}: texture_2d<f32>, {sampler}: sampler");
+                self.textures.pop();
+                self.textures.push(Texture { name, sampler, kind: TextureKind::Plain });
+                text
+            }
+        }
+    }
+
     /// Variables of each kind of number, so that not everything is known beforehand.
     pub fn seeded(&mut self) {
         for ty in [FLOAT, INT, UINT] {

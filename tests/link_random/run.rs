@@ -7,8 +7,9 @@
 //! it can work with. Vertex stages of the programs are not run: where their triangles would lie is
 //! as random as they are.
 
+mod evaluated;
+
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -16,7 +17,6 @@ use lamplight::bundle::{Kind, Language, Reflection, Stage, Target, Unit, Varying
 use lamplight::compose::Composed;
 use lamplight::diagnostic::{Diagnostic, codes};
 use lamplight::emit::reflect;
-use lamplight::eval::{Bounded, Function, Kind as Slot, Machine, Number, Program, Resources};
 use lamplight::execute::executors;
 use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh, State};
@@ -25,12 +25,12 @@ use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Pair, Session};
 use lamplight::picture::frame::{pack, probe};
 use lamplight::validate::{Validated, validate};
-use naga::Binding;
 
 use super::judge::Finding;
 use super::random::Random;
-use crate::fragments;
 use crate::frames::fixture;
+
+use evaluated::Evaluator;
 
 /// Pixels from left to right, and from top to bottom.
 const SIZE: [u32; 2] = [4, 4];
@@ -317,131 +317,6 @@ fn numbers(start: u64, path: &str) -> Vec<f64> {
         Random(random.next())
     });
     (0..16).map(|_| number(&mut random)).collect()
-}
-
-/// The evaluator of one stage: what was given the same is computed once.
-struct Evaluator<'p> {
-    machine: Box<Compute<'p>>,
-    known: BTreeMap<Vec<u32>, Wanted>,
-}
-
-/// Computes a quad from the words that its fragments are given.
-type Compute<'p> = dyn FnMut(&[Vec<u32>; 4]) -> Result<Wanted, String> + 'p;
-
-/// What it says of a quad.
-#[derive(Clone)]
-struct Wanted {
-    /// Of each fragment, by location and component.
-    results: [BTreeMap<(u32, usize), Bounded>; 4],
-    doubt: bool,
-}
-
-impl<'p> Evaluator<'p> {
-    fn new(ready: &'p Ready<'_>) -> Result<Self, String> {
-        let told = |error: lamplight::eval::Error| error.to_string();
-        let module = &ready.validated;
-        let program = Program::new(&module.module, &module.info).map_err(told)?;
-        let found = program.functions().filter(|(_, one)| one.name == ready.runnable.entry).last();
-        let (id, function) = found.map(|(id, one)| (id, one.clone())).ok_or("no entry point")?;
-        let resources =
-            fragments::resources(ready.buffers.clone(), &ready.fixtures, &BTreeMap::new());
-        let places = places(&function);
-        let machine =
-            move |given: &[Vec<u32>; 4]| quad(&program, id, &function, &places, &resources, given);
-        Ok(Self { machine: Box::new(machine), known: BTreeMap::new() })
-    }
-
-    fn frame(&mut self, drawn: &Drawn, tally: &mut Ran) -> Result<(), String> {
-        let [width, height] = SIZE;
-        for (y, x) in (0..height / 2).flat_map(|y| (0..width / 2).map(move |x| (2 * y, 2 * x))) {
-            let pixels =
-                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((y + j) * width + x + i) as usize);
-            let given = pixels.map(|pixel| {
-                drawn.inputs.iter().flat_map(|target| four(target, pixel)).collect::<Vec<u32>>()
-            });
-            let wanted = match self.known.entry(given.concat()) {
-                Entry::Occupied(known) => known.into_mut(),
-                Entry::Vacant(new) => new.insert((self.machine)(&given)?),
-            };
-            for (lane, pixel) in pixels.into_iter().enumerate() {
-                compare(drawn, pixel, &wanted.results[lane], wanted.doubt, tally)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-fn four(target: &[u32], pixel: usize) -> [u32; 4] {
-    std::array::from_fn(|word| target[4 * pixel + word])
-}
-
-/// The location and the component of each result; none for a depth.
-fn places(function: &Function) -> Vec<Option<(u32, usize)>> {
-    let mut places: Vec<Option<(u32, usize)>> = Vec::new();
-    for binding in &function.outputs {
-        places.push(match binding {
-            Some(Binding::Location { location, .. }) => {
-                let is_it = |place: &&Option<(u32, usize)>| {
-                    place.is_some_and(|(other, _)| other == *location)
-                };
-                Some((*location, places.iter().filter(is_it).count()))
-            }
-            _ => None,
-        });
-    }
-    places
-}
-
-fn quad(
-    program: &Program,
-    id: lamplight::eval::FunctionId,
-    function: &Function,
-    places: &[Option<(u32, usize)>],
-    resources: &Resources,
-    given: &[Vec<u32>; 4],
-) -> Result<Wanted, String> {
-    let told = |error: lamplight::eval::Error| error.to_string();
-    let mut machine = Machine::<Bounded>::new(program).map_err(told)?;
-    machine.bind(resources.clone()).map_err(told)?;
-    let slot = |(kind, word): (&Slot, &u32)| match kind {
-        Slot::Float => Bounded::from_f64(f64::from(f32::from_bits(*word))),
-        _ => Bounded::from_word(*word),
-    };
-    let arguments: [Vec<Bounded>; 4] =
-        std::array::from_fn(|lane| function.arguments.iter().zip(&given[lane]).map(slot).collect());
-    let results = machine.quad(id, arguments.each_ref().map(Vec::as_slice)).map_err(told)?;
-    let placed = |values: Vec<Bounded>| {
-        places.iter().zip(values).filter_map(|(place, value)| Some(((*place)?, value))).collect()
-    };
-    Ok(Wanted { results: results.map(placed), doubt: !machine.findings().is_empty() })
-}
-
-fn compare(
-    drawn: &Drawn,
-    pixel: usize,
-    wanted: &BTreeMap<(u32, usize), Bounded>,
-    doubt: bool,
-    tally: &mut Ran,
-) -> Result<(), String> {
-    for ((location, component), wanted) in wanted {
-        let target = drawn.outputs.get(*location as usize);
-        let target = target.ok_or_else(|| format!("there is no target {location}"))?;
-        let found = f64::from(f32::from_bits(four(target, pixel)[*component]));
-        let (value, error) = (wanted.value(), wanted.error());
-        tally.numbers += 1;
-        let is_known = value.is_finite() && error.is_finite() && value.abs() < f64::from(f32::MAX);
-        if found == value || is_known && (found - value).abs() <= error {
-            continue;
-        }
-        if !is_known || doubt {
-            tally.open += 1;
-            continue;
-        }
-        return Err(format!(
-            "pixel {pixel}, location {location}, component {component}: found {found}, wanted {value} within {error:e}"
-        ));
-    }
-    Ok(())
 }
 
 /// All stages of a batch in MSL, compiled at once.

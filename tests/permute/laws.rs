@@ -3,16 +3,16 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-use lamplight::bundle;
 use lamplight::permute::axis::ValueSet;
 use lamplight::permute::cover::{Pair, pairwise};
 use lamplight::permute::space::{Formula, Lists, Slice};
 use lamplight::permute::{
-    Key, Lock, Quoted, ReadTree, Setting, Settings, Space, key, lock, manifest, report,
+    Lock, Quoted, ReadTree, Setting, Settings, Space, key, lock, manifest, report,
 };
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
+use super::key_laws::{grown, keys_round_trip, keys_survive_growth, loader_and_tools_read_alike};
 use super::random::{
     NOWHERE, Random, axis, constraint, is_valid, is_wanted, ordinals, product, space,
 };
@@ -41,11 +41,11 @@ pub fn trials() -> Vec<Trial> {
     LAWS.iter().map(|(name, law)| Trial::test(format!("permute::laws::{name}"), law)).collect()
 }
 
-fn ensure(holds: bool, what: impl Into<String>) -> Result<(), Failed> {
+pub fn ensure(holds: bool, what: impl Into<String>) -> Result<(), Failed> {
     if holds { Ok(()) } else { Err(what.into().into()) }
 }
 
-fn random_spaces(count: u64) -> impl Iterator<Item = Space> {
+pub fn random_spaces(count: u64) -> impl Iterator<Item = Space> {
     (0..count).map(|seed| space(&mut Random(seed)))
 }
 
@@ -81,131 +81,10 @@ fn counts_without_an_axis() -> Result<(), Failed> {
     Ok(())
 }
 
-fn read(space: &Space, text: &str) -> Option<lamplight::permute::Assignment> {
+pub fn read(space: &Space, text: &str) -> Option<lamplight::permute::Assignment> {
     let mut sources = SourceSet::default();
     let id = sources.add("key", text);
     key::parse(space, &Quoted::whole(&sources, id)).ok()
-}
-
-fn keys_round_trip() -> Result<(), Failed> {
-    for space in random_spaces(50) {
-        let points = space.enumerate();
-        let keys: BTreeSet<Key> = points.iter().map(|point| space.key(point)).collect();
-        ensure(keys.len() == points.len(), "two points have one key")?;
-        for point in &points {
-            ensure(
-                read(&space, space.key(point).as_str()).as_ref() == Some(point),
-                format!("{}", space.key(point)),
-            )?;
-        }
-    }
-    Ok(())
-}
-
-/// What the loader and the tools make of the same keys: the same key, or an error from both.
-fn loader_and_tools_read_alike() -> Result<(), Failed> {
-    let mut sources = SourceSet::default();
-    let id = sources.add("lamplight.toml", MIXED_AXES);
-    let manifest = manifest::parse(&sources, id).map_err(|problems| format!("{problems:?}"))?;
-    let space = &manifest.programs[0].space;
-    let axes: Vec<bundle::Axis> = space.axes().iter().map(bundle_axis).collect();
-    let (mut random, mut fine, mut wrong) = (Random(7), 0, 0);
-    for _ in 0..20_000 {
-        let text = random_key(&mut random, &axes);
-        let loader = bundle::canonical(&axes, &text).ok();
-        let tools = read(space, &text).map(|point| space.key(&point).to_string());
-        ensure(loader == tools, format!("`{text}`: loader {loader:?}, tools {tools:?}"))?;
-        *(if loader.is_some() { &mut fine } else { &mut wrong }) += 1;
-    }
-    ensure(fine > 1000 && wrong > 1000, format!("{fine} keys are fine, {wrong} are not"))
-}
-
-/// Axes of every kind and mode.
-const MIXED_AXES: &str = "[program.p]
-wesl = \"p.wesl\"
-[program.p.axis]
-count = { values = [-1, 0, 1, 12], default = 1 }
-exposure = { values = [1, 2], mode = \"dynamic\" }
-lit = { values = [false, true], default = true }
-shadow = { values = [\"none\", \"hard\", \"pcf_3x3\"] }
-taps = { values = [5, 9], mode = \"spec\" }
-two_sided = { values = [false, true] }
-";
-
-fn bundle_axis(axis: &lamplight::permute::Axis) -> bundle::Axis {
-    bundle::Axis {
-        name: axis.name.clone(),
-        values: axis.value_names(),
-        default: axis.values[axis.default].to_string(),
-        mode: axis.mode.name().to_owned(),
-    }
-}
-
-/// A key with few parts, each perhaps with blanks, without its value, or misspelt.
-fn random_key(random: &mut Random, axes: &[bundle::Axis]) -> String {
-    const SPOILT: [&str; 12] = [
-        "",
-        "=",
-        "lit=",
-        "=hard",
-        "shadow==hard",
-        "default",
-        "taps=05",
-        "count=+1",
-        "shdow=hard",
-        "lit=True",
-        "count=\"1\"",
-        "two_sided=1",
-    ];
-    const BLANKS: [&str; 6] = ["", "", "", "", " ", "\t "];
-    let parts = (0..random.below(4)).map(|_| {
-        let axis = &axes[random.below(axes.len())];
-        let mut blank = || BLANKS[random.below(BLANKS.len())];
-        let [a, b, c, d] = [blank(), blank(), blank(), blank()];
-        let value = &axis.values[random.below(axis.values.len())];
-        match random.below(8) {
-            0 => SPOILT[random.below(SPOILT.len())].to_owned(),
-            1 => format!("{a}{}{b}", axis.name),
-            _ => format!("{a}{}{b}={c}{value}{d}", axis.name),
-        }
-    });
-    parts.collect::<Vec<_>>().join(",")
-}
-
-/// A space, and one with an axis and a value more.
-fn grown() -> Result<[Space; 2], Failed> {
-    let parsed = |axes: &str| -> Result<Space, Failed> {
-        let mut sources = SourceSet::default();
-        let id = sources.add(
-            "lamplight.toml",
-            format!("[program.p]\nwesl = \"p.wesl\"\n[program.p.axis]\n{axes}"),
-        );
-        let manifest = manifest::parse(&sources, id).map_err(|problems| format!("{problems:?}"))?;
-        Ok(manifest.programs[0].space.clone())
-    };
-    let small = parsed(
-        "max_lights = { values = [1, 4, 10], default = 4 }\nshadow = { values = [\"none\", \"hard\"] }",
-    )?;
-    let large = parsed(
-        "fog = { values = [\"none\", \"linear\"] }\nmax_lights = { values = [1, 2, 4, 10], default = 4 }\n\
-         shadow = { values = [\"vsm\", \"none\", \"hard\", \"evsm\"], default = \"none\" }\ntwo_sided = { values = [false, true] }",
-    )?;
-    Ok([small, large])
-}
-
-fn keys_survive_growth() -> Result<(), Failed> {
-    let [small, large] = grown()?;
-    for point in small.enumerate() {
-        let key = small.key(&point);
-        let later = read(&large, key.as_str()).ok_or("a key is lost")?;
-        ensure(large.key(&later) == key, format!("{key} became {}", large.key(&later)))?;
-        let (before, after) = (small.settings(&point).values, large.settings(&later).values);
-        ensure(
-            before.iter().all(|(name, value)| after.get(name) == Some(value)),
-            format!("{key} means something else"),
-        )?;
-    }
-    Ok(())
 }
 
 fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {

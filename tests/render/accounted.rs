@@ -48,7 +48,8 @@ fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, Str
     }
     let has_map = plan.passes.iter().any(|pass| ["depth", "moments"].contains(&&*pass.program));
     let is_of_spot = !preset.key.contains("shadow_light=");
-    let of_map = BIAS.iter().filter(|_| has_map && !preset.key.contains("shadow=vsm"));
+    let has_moments = plan.passes.iter().any(|pass| pass.program == "moments");
+    let of_map = BIAS.iter().filter(|_| has_map && !has_moments);
     let of_spot = FRUSTUM.iter().filter(|_| has_map && is_of_spot);
     found.extend(of_map.chain(of_spot).map(|field| ("depth_pass", (*field).to_owned())));
     Ok(found)

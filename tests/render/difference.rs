@@ -47,6 +47,12 @@ impl Difference {
         sorted[sorted.len() * 99 / 100]
     }
 
+    /// The share of the pixels that are farther apart than a distance.
+    pub fn share(&self, distance: f64) -> f64 {
+        let count = self.distances.iter().filter(|found| **found > distance).count();
+        count as f64 / self.distances.len() as f64
+    }
+
     pub fn is_visible(&self) -> bool {
         !(self.mean() <= MEAN && self.most() <= MOST)
     }
@@ -96,10 +102,24 @@ fn lab([r, g, b]: [f64; 3]) -> [f64; 3] {
     [116.0 * f(y) - 16.0, 500.0 * (f(x) - f(y)), 200.0 * (f(y) - f(z))]
 }
 
+/// Whether what is found is to be recorded.
+pub fn is_recorded() -> bool {
+    std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always")
+}
+
 /// A picture looks like the reviewed one of its name; where it does not, a picture of both and of
-/// their difference is left beside the test's other files.
+/// their difference is left beside the test's other files. `INSTA_UPDATE=always` takes Vulkan's as
+/// the reviewed one.
 pub fn reviewed(picture: &Picture, name: &str, backend: &str) -> Result<(), String> {
-    let wanted = read(&reviewed_path(name))?;
+    let known = read(&reviewed_path(name));
+    let is_known = known.as_ref().is_ok_and(|known| {
+        Difference::new(known, picture).is_ok_and(|difference| !difference.is_visible())
+    });
+    if is_recorded() && backend == "vulkan" && !is_known {
+        let written = lamplight::output::write(&reviewed_path(name), &picture.png()?);
+        return written.map_err(|error| error.to_string());
+    }
+    let wanted = known?;
     let difference = Difference::new(&wanted, picture)?;
     if !difference.is_visible() {
         return Ok(());

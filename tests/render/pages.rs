@@ -1,11 +1,13 @@
 //! The gallery's pages, and pictures without a driver.
 
+use std::path::Path;
+
 use lamplight::bundle::Language;
-use lamplight::picture::{Picture, gallery, render};
+use lamplight::picture::{Picture, gallery, is_own_png, render, strip};
 use lamplight::scene::Equirect;
 use libtest_mimic::{Failed, Trial};
 
-use super::difference::Difference;
+use super::difference::{Difference, is_recorded};
 use super::{library, on_device, plan, read, reviewed_path, said, shot, start};
 
 /// Presets that the evaluator draws too: shading at vertices and fragments, textures, cube maps, a
@@ -54,7 +56,16 @@ fn without_driver(name: &str) -> Result<(), Failed> {
     })
 }
 
-/// The committed pages say what the presets are and compose to now, and every picture is there.
+/// The large pictures that people look at.
+const GALLERY: &str = "docs/gallery";
+/// How often a reviewed picture goes into the smaller form of a large one.
+const TIMES: u32 = 3;
+/// A large picture has finer edges, and where its shadow map is finer, finer shadows.
+const FINER: (f64, f64) = (2.0, 14.0);
+
+/// The committed pages say what the presets are and compose to now. Every large picture was drawn
+/// from the settings and texts of now, and looks as the reviewed small one does.
+/// `INSTA_UPDATE=always` writes the pages, and no picture.
 fn gallery_is_current() -> Result<(), Failed> {
     let cards = library()
         .presets
@@ -62,27 +73,63 @@ fn gallery_is_current() -> Result<(), Failed> {
         .map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
     let cards: Vec<gallery::Card> = cards.collect::<Result<_, _>>().map_err(said)?;
     let cards: Vec<&gallery::Card> = cards.iter().collect();
-    let folder = reviewed_path("README").parent().ok_or("no folder")?.to_owned();
+    let strips = library().programs.with_texts(strip::library).map_err(said)?;
+    let strips = strips
+        .into_iter()
+        .map(|one| gallery::StripCard::new(&library().programs, one, Language::Wesl));
+    let strips: Vec<gallery::StripCard> = strips.collect::<Result<_, _>>().map_err(said)?;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(GALLERY);
     let mut files = gallery::composed(&cards);
-    files.push(("README.md".to_owned(), gallery::markdown(&cards)));
+    files.push(("README.md".to_owned(), gallery::markdown(&cards, &strips)));
+    files.push(("index.html".to_owned(), gallery::html(&cards, &strips)));
+    let mut stale = Vec::new();
     for (path, wanted) in files {
-        let found = std::fs::read_to_string(folder.join(&path))
-            .map_err(|error| format!("{path}: {error}"))?;
-        if found != wanted {
-            return Err(format!(
-                "{path} is not current: run `lamplight render --all --size 192x192 -o docs/gallery`"
-            )
-            .into());
+        let found = std::fs::read_to_string(folder.join(&path)).unwrap_or_default();
+        if found != wanted && is_recorded() {
+            lamplight::output::write(&folder.join(&path), wanted.as_bytes())?;
+        } else if found != wanted {
+            stale.push(format!("{path} has another text"));
         }
     }
     let adapters = std::fs::read_to_string(folder.join("adapters.txt"))?;
-    for preset in &library().presets {
-        read(&reviewed_path(&preset.name))?;
-        if !adapters.lines().any(|line| line.starts_with(&format!("{}.png ", preset.name))) {
-            return Err(format!("no adapter is named for {}", preset.name).into());
+    let shot = shot(gallery::SIZE, gallery::SAMPLES, Language::Wesl);
+    for card in cards {
+        let (name, current) = (&card.preset.name, card.current(&shot));
+        if !adapters.lines().any(|line| line.starts_with(&current)) {
+            stale.push(format!("{name}.png was drawn from other settings or texts"));
         }
+        stale.extend(changed(&folder, name)?);
     }
-    Ok(())
+    for card in &strips {
+        if !adapters.lines().any(|line| line.starts_with(&card.current(&shot))) {
+            stale.push(format!("{} was drawn from other settings or texts", card.comparison.name));
+        }
+        read(&folder.join(gallery::strip_file(&card.comparison.name)))?;
+    }
+    if stale.is_empty() {
+        return Ok(());
+    }
+    let command = "lamplight render --all --force -o docs/gallery";
+    Err(format!("the gallery is not current, run `{command}`:\n{}", stale.join("\n")).into())
+}
+
+/// How the large picture and its smaller form differ from the reviewed one.
+fn changed(folder: &Path, name: &str) -> Result<Option<String>, String> {
+    let [large, thumb] = gallery::files(name).map(|file| folder.join(file));
+    let head = std::fs::read(&large).map_err(|error| format!("{}: {error}", large.display()))?;
+    // Width and height are the first numbers of the header.
+    let number = |at: usize| head.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
+    let size = [16, 20].map(|at| number(at).map_or(0, u32::from_be_bytes));
+    if size != gallery::SIZE || !is_own_png(&head) {
+        return Ok(Some(format!("{name}.png has {size:?} pixels")));
+    }
+    let wanted = read(&reviewed_path(name))?;
+    let difference = Difference::new(&wanted, &read(&thumb)?.shrunk(TIMES))?;
+    let (mean, most) = (difference.mean(), difference.most());
+    let is_other = mean > FINER.0 || most > FINER.1;
+    Ok(is_other.then(|| {
+        format!("{name}.png looks different: {mean:.2} on average, {most:.1} for all but 1 %")
+    }))
 }
 
 fn png_round_trip() -> Result<(), Failed> {

@@ -1,15 +1,16 @@
 //! `cargo xtask gen`: the library's bundle, as `lamplight gen` makes it, once all targets are judged.
 //! `--unjudged` leaves the judges out: they take ten times as long as everything else.
 
+use std::collections::BTreeSet;
 use std::io::{IsTerminal, Write, stderr};
 use std::path::{Path, PathBuf};
 
-use lamplight::bundle::{self, Bundle, Contents, DirectoryWriter, blob_files};
+use lamplight::bundle::{self, BlobFile, Bundle, Contents, DirectoryWriter, blob_files};
 use lamplight::cache::{Cache, Folder};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{
-    Generated, Progress, Recorder, Request, Run, Summary, Told, Tools, Trace, generate,
+    Generated, Observer, Progress, Request, Run, Summary, Told, Tools, Trace, generate,
 };
 use lamplight::judge::{Made, blame};
 use lamplight::permute::Manifest;
@@ -33,14 +34,7 @@ pub fn root() -> PathBuf {
 /// Generates, judges what is new, writes the bundle and prints the summary. An output that is
 /// refused leaves the older bundle as it was.
 pub fn run(arguments: &[String]) -> Outcome {
-    let is_judged = match arguments {
-        [] => true,
-        [option] if option == "--unjudged" => false,
-        _ => {
-            let usage = "usage: cargo xtask gen [--unjudged] (for other manifests: lamplight gen)";
-            return Err(Failure::usage(usage));
-        }
-    };
+    let is_judged = is_judged(arguments)?;
     let start = std::time::Instant::now();
     let path = root().join("shaderlib").join(project::MANIFEST);
     let mut sources = SourceSet::default();
@@ -49,8 +43,8 @@ pub fn run(arguments: &[String]) -> Outcome {
     };
     let (manifest, packages) = project::declared(&path, &mut sources)
         .map_err(|diagnostics| input(&sources, diagnostics))?;
-    let (declared, recorder) = (sources.clone(), Recorder::default());
-    let (packages, out, request) = (recorder.observe(packages), bundle(), Request::default());
+    let (declared, observer) = (sources.clone(), Observer::default());
+    let (packages, out, request) = (observer.observe(packages), bundle(), Request::default());
     let folder = Folder::new(root().join("target/lamplight-cache"))
         .map_err(|foreign| Failure::input(foreign.to_string()))?;
     let cache = Cache::new(vec![Box::new(folder)]);
@@ -63,10 +57,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     };
     if let Some(Trace { summary, told, .. }) = Trace::find(&cache, as_run()) {
         eprint!("{}", told.text(Form::Human));
-        let judged = match is_judged {
-            true => judge(blob_files(&out).map_err(environment)?, Some(&cache))?,
-            false => Judged::nothing(),
-        };
+        let judged = judged(is_judged, || blob_files(&out), &cache)?;
         let summary =
             Summary { up_to_date: true, seconds: start.elapsed().as_secs_f64(), ..summary };
         let contents = || Bundle::open(&out).and_then(|bundle| bundle.contents());
@@ -78,16 +69,37 @@ pub fn run(arguments: &[String]) -> Outcome {
     let generated = generate(&mut sources, &packages, &manifest, &request, &tools);
     let Generated { contents, summary, warnings } =
         generated.map_err(|diagnostics| input(&sources, diagnostics))?;
-    let judged = match is_judged {
-        true => judge(writer.blob_files().map_err(environment)?, Some(&cache))?,
-        false => Judged::nothing(),
-    };
+    let judged = judged(is_judged, || writer.blob_files(), &cache)?;
     refuse(&mut sources, &packages, &manifest, &judged, &|| Ok(contents.clone()))?;
     writer.finish(&contents).map_err(environment)?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
-    let trace = Trace::new(&recorder, &out, summary.clone(), Told::new(&path, &sources, &warnings));
+    let trace = Trace::new(&observer, &out, summary.clone(), Told::new(&path, &sources, &warnings));
     trace.into_iter().for_each(|trace| trace.keep(&cache, as_run()));
     finish(&summary, &judged)
+}
+
+/// Whether the judges are asked.
+fn is_judged(arguments: &[String]) -> Result<bool, Failure> {
+    match arguments {
+        [] => Ok(true),
+        [option] if option == "--unjudged" => Ok(false),
+        _ => {
+            let usage = "usage: cargo xtask gen [--unjudged] (for other manifests: lamplight gen)";
+            Err(Failure::usage(usage))
+        }
+    }
+}
+
+/// What the judges say of the files, if they are asked.
+fn judged(
+    is_judged: bool,
+    files: impl FnOnce() -> Result<BTreeSet<BlobFile>, bundle::Error>,
+    cache: &Cache,
+) -> Result<Judged, Failure> {
+    match is_judged {
+        true => judge(files().map_err(environment)?, Some(cache)),
+        false => Ok(Judged::nothing()),
+    }
 }
 
 /// Fails with the author's places of what the judges refused.

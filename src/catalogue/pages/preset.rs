@@ -14,13 +14,7 @@ pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
         .to_owned();
     let mut work = "";
     for preset in presets {
-        let (here, place) = preset
-            .source
-            .split_once(", example")
-            .map_or((preset.source.as_str(), ""), |(here, _)| {
-                (here, &preset.source[here.len() + 2..])
-            });
-        let (here, place) = here.split_once(", chapter 4, ").unwrap_or((here, place));
+        let (here, place) = place(preset);
         if here != work {
             let _ = write!(
                 text,
@@ -38,6 +32,18 @@ pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
     light_probes(&mut text, probes);
     text.push_str("\n---\n[Catalogue](README.md)\n");
     text
+}
+
+/// The work, and the place in it.
+fn place(preset: &Preset) -> (&str, &str) {
+    let source = preset.source.as_str();
+    if !source.starts_with(preset.work()) {
+        return (preset.work(), source);
+    }
+    let (here, place) = source
+        .split_once(", example")
+        .map_or((source, ""), |(here, _)| (here, &source[here.len() + 2..]));
+    here.split_once(", chapter 4, ").unwrap_or((here, place))
 }
 
 fn row(text: &mut String, preset: &Preset, place: &str) {

@@ -4,61 +4,91 @@ use std::io::Write;
 use std::time::Instant;
 
 use super::super::terminal::stdout;
-use super::{Failure, input, library};
+use super::{Failure, comparisons, input, library};
+use crate::catalogue::preset::Preset;
 use crate::execute::Session;
 use crate::output::Folder;
 use crate::picture::frame::Programs;
-use crate::picture::gallery::{self, Card, Exhibit};
+use crate::picture::gallery::{self, Card, Exhibit, StripCard};
+use crate::picture::strip::{self, Comparison};
 use crate::picture::{Plan, Shot};
 
 /// Files that are not named after a preset.
 const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
 
-fn picture(preset: &str) -> String {
-    format!("{preset}.png")
-}
-
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
 pub fn run(
-    painter: &dyn Session,
+    painter: &mut dyn Session,
     programs: &Programs,
     shot: &Shot,
     mut folder: Folder,
 ) -> Result<(), Failure> {
     let start = Instant::now();
     let (presets, probes) = library(programs)?;
-    // What is not ours is found before hours of drawing, not after.
-    for name in PAGES {
-        folder.check(name, None)?;
-    }
-    for preset in &presets {
-        folder.check(&picture(&preset.name), None)?;
-    }
+    let compared = comparisons(programs)?;
+    check(&folder, &presets, &compared)?;
     let mut exhibits = Vec::new();
     for preset in &presets {
         let plan = Plan::of_preset(programs, preset, &probes)
             .map_err(|problems| input(programs, problems))?;
-        let exhibit = Exhibit::new(painter, programs, preset, &plan, shot)
+        let exhibit = Exhibit::new(&*painter, programs, preset, &plan, shot)
             .map_err(|problems| input(programs, problems))?;
-        let png = exhibit.picture.png().map_err(Failure::environment)?;
-        folder.write(&picture(&preset.name), &png)?;
+        let [picture, thumb] = gallery::files(&preset.name);
+        let small = exhibit.picture.shrunk(gallery::THUMB);
+        folder.write(&picture, &exhibit.picture.png().map_err(Failure::environment)?)?;
+        folder.write(&thumb, &small.png().map_err(Failure::environment)?)?;
         exhibits.push(exhibit);
     }
+    let mut lines = gallery::adapters(&exhibits, shot);
+    let (strips, drawn) = draw_strips(painter, programs, shot, &mut folder, compared)?;
+    lines += &drawn;
     let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
-    folder.write("README.md", gallery::markdown(&cards).as_bytes())?;
+    folder.write("README.md", gallery::markdown(&cards, &strips).as_bytes())?;
     for (path, text) in gallery::composed(&cards) {
         folder.write(&path, text.as_bytes())?;
     }
-    let html = gallery::html(&exhibits).map_err(Failure::environment)?;
-    folder.write("index.html", html.as_bytes())?;
-    folder.write("adapters.txt", gallery::adapters(&exhibits, shot).as_bytes())?;
+    folder.write("index.html", gallery::html(&cards, &strips).as_bytes())?;
+    folder.write("adapters.txt", lines.as_bytes())?;
     let shown = folder.path().display().to_string();
     folder.finish()?;
     let seconds = start.elapsed().as_secs_f64();
     Ok(writeln!(
         stdout(),
         "{shown}: {} pictures in {seconds:.1} s, {}",
-        exhibits.len(),
+        exhibits.len() + strips.len(),
         painter.adapter()
     )?)
+}
+
+/// What is not ours is found before minutes of drawing, not after.
+fn check(folder: &Folder, presets: &[Preset], compared: &[Comparison]) -> Result<(), Failure> {
+    let drawn = presets.iter().flat_map(|preset| gallery::files(&preset.name));
+    let strips = compared.iter().map(|comparison| gallery::strip_file(&comparison.name));
+    let pages = PAGES.iter().map(ToString::to_string);
+    for file in pages.chain(drawn).chain(strips) {
+        folder.check(&file, None)?;
+    }
+    Ok(())
+}
+
+/// Draws all comparisons into the folder; gives what the page says of them, and who drew them.
+fn draw_strips(
+    painter: &mut dyn Session,
+    programs: &Programs,
+    shot: &Shot,
+    folder: &mut Folder,
+    compared: Vec<Comparison>,
+) -> Result<(Vec<StripCard>, String), Failure> {
+    let (mut strips, mut lines) = (Vec::new(), String::new());
+    for comparison in compared {
+        let picture = strip::draw(painter, programs, &comparison, shot)
+            .map_err(|problems| input(programs, problems))?;
+        let file = gallery::strip_file(&comparison.name);
+        folder.write(&file, &picture.png().map_err(Failure::environment)?)?;
+        let card = StripCard::new(programs, comparison, shot.language)
+            .map_err(|problems| input(programs, problems))?;
+        lines += &format!("{}, {}\n", card.current(shot), painter.adapter());
+        strips.push(card);
+    }
+    Ok((strips, lines))
 }

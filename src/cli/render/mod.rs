@@ -25,13 +25,16 @@ use crate::output;
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, key};
 use crate::picture::frame::Programs;
-use crate::picture::{self, Plan, Shot, Surroundings, is_own_png};
+use crate::picture::gallery::SAMPLES;
+use crate::picture::strip::{self, Comparison};
+use crate::picture::{self, Picture, Plan, Shot, Surroundings, is_own_png};
 use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
 
 /// Draw a scene with one permutation.
 #[derive(Args)]
 pub struct Arguments {
-    /// A preset: one published example (`lamplight list presets`).
+    /// A preset: one published example (`lamplight list presets`); or a comparison, such as
+    /// `shadow_filters`.
     preset: Option<String>,
     /// Choose an axis's value, over those of the preset.
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
@@ -49,10 +52,10 @@ pub struct Arguments {
     /// folder [default: `gallery`].
     #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Pixels across and down.
-    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
-    size: [u32; 2],
-    /// Places in each pixel that are averaged [default: 4, or 1 on `eval`].
+    /// Pixels across and down [default: 512x512; 960x720 with `--all`].
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// Places in each pixel that are averaged [default: 4; 16 with `--all`; 1 on `eval`].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     samples: Option<u32>,
     /// Factor on all light, in powers of two.
@@ -105,18 +108,17 @@ fn draw(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.all {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
         let folder = output::Folder::open(&folder, arguments.overwrite.replace())?;
-        return gallery::run(executor::open(entry)?.as_ref(), &programs, &shot, folder);
+        return gallery::run(executor::open(entry)?.as_mut(), &programs, &shot, folder);
+    }
+    if let Some(comparison) = comparison(&programs, arguments)? {
+        return drawn(&programs, arguments, &comparison, &shot, entry);
     }
     let plan = plan(&programs, arguments)?;
     let painter = executor::open(entry)?;
     let start = Instant::now();
     let picture = picture::render(painter.as_ref(), &programs, &plan, &shot)
         .map_err(|problems| input(&programs, problems))?;
-    let name = arguments.preset.as_deref().unwrap_or("render");
-    let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
-    told_form(&path);
-    let png = picture.png().map_err(Failure::environment)?;
-    output::write_file(&path, &png, is_own_png, arguments.overwrite.replace())?;
+    let path = written(arguments, &picture)?;
     let last = plan.last().map_or("", |pass| pass.key.as_str());
     let [width, height] = shot.size;
     let (path, scene, adapter, seconds) =
@@ -125,6 +127,50 @@ fn draw(arguments: &Arguments) -> Result<(), Failure> {
         stdout(),
         "{path}: {width} x {height} of {scene}, `{last}`, in {seconds:.2} s, {adapter}"
     )?)
+}
+
+/// Writes the picture where it is asked for.
+fn written(arguments: &Arguments, picture: &Picture) -> Result<PathBuf, Failure> {
+    let name = arguments.preset.as_deref().unwrap_or("render");
+    let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
+    told_form(&path);
+    let png = picture.png().map_err(Failure::environment)?;
+    output::write_file(&path, &png, is_own_png, arguments.overwrite.replace())?;
+    Ok(path)
+}
+
+/// The comparison that is named, if it is one.
+fn comparison(programs: &Programs, arguments: &Arguments) -> Result<Option<Comparison>, Failure> {
+    let Some(name) = &arguments.preset else { return Ok(None) };
+    let found = comparisons(programs)?.into_iter().find(|comparison| comparison.name == *name);
+    let is_changed = !arguments.set.is_empty()
+        || arguments.program.is_some()
+        || arguments.scene.is_some()
+        || arguments.cascades > 1;
+    if found.is_some() && is_changed {
+        return Err(Failure::usage(format!(
+            "`{name}` is a comparison, whose panels have their own permutations and scene"
+        )));
+    }
+    Ok(found)
+}
+
+/// Draws a comparison.
+fn drawn(
+    programs: &Programs,
+    arguments: &Arguments,
+    comparison: &Comparison,
+    shot: &Shot,
+    entry: &Entry,
+) -> Result<(), Failure> {
+    let mut painter = executor::open(entry)?;
+    let start = Instant::now();
+    let picture = strip::draw(painter.as_mut(), programs, comparison, shot)
+        .map_err(|problems| input(programs, problems))?;
+    let path = written(arguments, &picture)?;
+    let (path, seconds) = (path.display(), start.elapsed().as_secs_f64());
+    let (count, adapter) = (comparison.panels.len(), painter.adapter());
+    Ok(writeln!(stdout(), "{path}: {count} panels in {seconds:.2} s, {adapter}")?)
 }
 
 fn input(programs: &Programs, problems: Diagnostics) -> Failure {
@@ -162,7 +208,10 @@ fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
 fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<Plan, Failure> {
     let (presets, probes) = library(programs)?;
     let Some(preset) = presets.iter().find(|preset| preset.name == name) else {
-        return Err(unknown("preset", name, presets.iter().map(|preset| preset.name.as_str())));
+        let comparisons = comparisons(programs)?;
+        let compared = comparisons.iter().map(|comparison| comparison.name.as_str());
+        let known = presets.iter().map(|preset| preset.name.as_str()).chain(compared);
+        return Err(unknown("preset", name, known));
     };
     let plan =
         Plan::of_preset(programs, preset, &probes).map_err(|problems| input(programs, problems))?;
@@ -187,6 +236,11 @@ pub fn library(programs: &Programs) -> Result<(Vec<Preset>, Vec<probe::Probe>), 
         Ok((preset::library(texts, programs.manifest(), &probes)?, probes))
     });
     read.map_err(|problems| input(programs, problems))
+}
+
+/// Comparisons of the library.
+pub fn comparisons(programs: &Programs) -> Result<Vec<Comparison>, Failure> {
+    programs.with_texts(strip::library).map_err(|problems| input(programs, problems))
 }
 
 fn program<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Failure> {
@@ -240,9 +294,14 @@ fn point(
 }
 
 fn shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
+    let (size, samples) = if arguments.all {
+        (picture::gallery::SIZE, executor.samples.map(|few| if few > 1 { SAMPLES } else { few }))
+    } else {
+        ([512; 2], executor.samples)
+    };
     Ok(Shot {
-        size: arguments.size,
-        samples: arguments.samples.or(executor.samples).unwrap_or(1),
+        size: arguments.size.unwrap_or(size),
+        samples: arguments.samples.or(samples).unwrap_or(1),
         cascades: arguments.cascades,
         exposure: arguments.exposure.clamp(-32.0, 32.0),
         language: Language::from(arguments.lang),

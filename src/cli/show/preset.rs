@@ -15,7 +15,8 @@ pub fn preset(preset: &Preset) -> Shown {
     facts.push(vec!["key".to_owned(), preset.key.replace(',', ", ")]);
     facts.push(vec!["scene".to_owned(), preset.scene.clone()]);
     facts.extend(preset.probe.iter().map(|probe| vec!["light probe".to_owned(), probe.clone()]));
-    let mut text = format!("{}\n\n{}\n{}", preset.name, wrapped(&preset.doc, 2), rows(&facts, 2));
+    let about = format!("{} {}", preset.doc, preset.look);
+    let mut text = format!("{}\n\n{}\n{}", preset.name, wrapped(&about, 2), rows(&facts, 2));
     let numbers: Vec<Vec<String>> = preset
         .numbers
         .iter()
@@ -44,6 +45,7 @@ pub fn preset_json(preset: &Preset) -> Value {
     json!({
         "preset": preset.name,
         "summary": preset.doc,
+        "look": preset.look,
         "source": preset.source,
         "program": preset.program,
         "key": preset.key,

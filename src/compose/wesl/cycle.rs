@@ -1,6 +1,6 @@
 //! Declarations that depend on themselves.
 
-use super::reach::{Dependency, Reached, Thing, name_of};
+use super::reached::{Dependency, Reached, Thing, name_of};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl::ItemKind;
 use crate::resolve::wesl::Graph;

@@ -7,6 +7,7 @@ mod evaluate;
 pub mod lint;
 mod naming;
 mod reach;
+mod reached;
 mod write;
 
 use std::collections::BTreeSet;

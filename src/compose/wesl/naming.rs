@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::reach::{Reached, Thing, name_of};
+use super::reached::{Reached, Thing, name_of};
 use crate::compose::{Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl::{ItemKind, Name};

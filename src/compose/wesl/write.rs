@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::evaluate::Evaluator;
 use super::naming::Renames;
-use super::reach::{Meaning, Reached, Thing};
+use super::reached::{Meaning, Reached, Thing};
 use crate::compose::{Part, PartKind, Segment, SourceMap};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::wesl::{Directive, Event, ItemKind, Module, Name};

@@ -17,7 +17,7 @@ use crate::emit::reflect::{inputs, kind};
 use crate::emit::{lists, rename};
 use crate::emit::slots::{Numbering, assign, native};
 use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judge, Source, clip, zeros};
+use crate::emit::{Emitted, Entry, Judge, Source, clip, setters, zeros};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -74,7 +74,8 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         .next()
         .ok_or("no entry point was written")?
         .map_err(|error| error.to_string())?;
-    let text = zeros::without_casts(&lists::with_plain_constants(&text.0));
+    let text = setters::by_reference(&lists::with_plain_constants(&text.0));
+    let text = zeros::without_casts(&text);
     Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &name, &options) })
 }
 

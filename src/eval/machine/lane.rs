@@ -58,14 +58,7 @@ pub(super) fn run<N: Number>(
 ) -> Result<Stop, Error> {
     loop {
         let at = lane.pc;
-        let Some(instruction) = env.program.code.get(at as usize) else {
-            return Err(lost(env.program, at));
-        };
-        lane.pc += 1;
-        lane.steps += instruction.steps();
-        if lane.steps > EVAL_STEPS {
-            return Err(overworked(env, at));
-        }
+        let instruction = lane.fetch(env)?;
         match *instruction {
             Instruction::Jump { to } => lane.pc = to,
             Instruction::JumpUnless { condition, to } if lane.word(condition) == 0 => lane.pc = to,
@@ -102,21 +95,40 @@ pub(super) fn run<N: Number>(
             Instruction::Image { access } => {
                 texture::single(env, access, &mut lane.memory, at, watch)?
             }
-            _ => {
-                let mut doubt = false;
-                compute(instruction, &mut lane.memory, &mut doubt);
-                if doubt {
-                    watch.note(Kind::Ambiguous, at);
-                }
-                if watch.sanitize {
-                    watch.inspect(instruction, &lane.memory, at);
-                }
-            }
+            _ => lane.compute(instruction, at, watch),
         }
     }
 }
 
 impl<N: Number> Lane<N> {
+    /// The next instruction, which counts as run.
+    #[inline(always)]
+    fn fetch<'e>(&mut self, env: Env<'e>) -> Result<&'e Instruction, Error> {
+        let at = self.pc;
+        let Some(instruction) = env.program.code.get(at as usize) else {
+            return Err(lost(env.program, at));
+        };
+        self.pc += 1;
+        self.steps += instruction.steps();
+        if self.steps > EVAL_STEPS {
+            return Err(overworked(env, at));
+        }
+        Ok(instruction)
+    }
+
+    /// Runs an instruction that only reads and writes memory.
+    #[inline(always)]
+    fn compute(&mut self, instruction: &Instruction, at: u32, watch: &mut Watch) {
+        let mut doubt = false;
+        compute(instruction, &mut self.memory, &mut doubt);
+        if doubt {
+            watch.note(Kind::Ambiguous, at);
+        }
+        if watch.sanitize {
+            watch.inspect(instruction, &self.memory, at);
+        }
+    }
+
     #[inline(always)]
     pub fn word(&self, slot: u32) -> u32 {
         self.memory[slot as usize].word()

@@ -151,33 +151,17 @@ fn sample<N: Number>(
     let sampler =
         if clamp_to_edge { Sampler { address: Default::default(), ..*sampler } } else { *sampler };
     let coordinate = values(m, access.coordinate, access.dimensions);
-    let errors: [f64; 3] = std::array::from_fn(|i| {
-        if i < usize::from(access.dimensions) {
-            m[access.coordinate as usize + i].error()
-        } else {
-            0.0
-        }
-    });
-    let layer = access.layer.map_or(0, |slot| (m[slot as usize].word() as i32).max(0) as u32);
-    let point = project(texture.shape, coordinate, errors, layer);
-    let shift: [i64; 3] = std::array::from_fn(|i| match offset {
-        Some(slot) if i < usize::from(access.dimensions) => {
-            i64::from(m[slot as usize + i].word() as i32)
-        }
-        _ => 0,
-    });
+    let footprint = Footprint {
+        texture,
+        sampler: &sampler,
+        level: 0,
+        filter: Filter::Linear,
+        point: point(access, texture, m, coordinate),
+        shift: shift(access, m, offset),
+        reference: reference.map(|slot| m[slot as usize]),
+    };
     let mut doubt = false;
-    let reference = reference.map(|slot| m[slot as usize]);
     let result = if let Some(component) = gather {
-        let footprint = Footprint {
-            texture,
-            sampler: &sampler,
-            level: 0,
-            filter: Filter::Linear,
-            point,
-            shift,
-            reference,
-        };
         gathered(&footprint, usize::from(component), &mut doubt)
     } else {
         let slopes = match level {
@@ -191,13 +175,36 @@ fn sample<N: Number>(
             Level::Bias(slot) => detail(texture, coordinate, slopes) + m[slot as usize].value(),
             Level::Auto | Level::Gradient(..) => detail(texture, coordinate, slopes),
         };
-        between_levels(&sampler, texture, point, shift, reference, level, &mut doubt)
+        between_levels(&footprint, level, &mut doubt)
     };
     if doubt {
         notes.1.note(Kind::Ambiguous, notes.0);
     }
     put(m, access, result);
     Ok(())
+}
+
+/// The place that the coordinate and the layer of an access name.
+fn point<N: Number>(access: &Access, texture: &Texture, m: &[N], coordinate: [f64; 3]) -> Point {
+    let errors: [f64; 3] = std::array::from_fn(|i| {
+        if i < usize::from(access.dimensions) {
+            m[access.coordinate as usize + i].error()
+        } else {
+            0.0
+        }
+    });
+    let layer = access.layer.map_or(0, |slot| (m[slot as usize].word() as i32).max(0) as u32);
+    project(texture.shape, coordinate, errors, layer)
+}
+
+/// The offset of an access, in texels.
+fn shift<N: Number>(access: &Access, m: &[N], offset: Option<u32>) -> [i64; 3] {
+    std::array::from_fn(|i| match offset {
+        Some(slot) if i < usize::from(access.dimensions) => {
+            i64::from(m[slot as usize + i].word() as i32)
+        }
+        _ => 0,
+    })
 }
 
 /// Level of detail: log2 of the longer step over texels; 0 without neighbours.
@@ -217,16 +224,14 @@ fn detail(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> 
     longest[0].max(longest[1]).log2()
 }
 
+/// What a footprint reads at a level that may lie between two of the texture's.
 fn between_levels<N: Number>(
-    sampler: &Sampler,
-    texture: &Texture,
-    point: Point,
-    shift: [i64; 3],
-    reference: Option<N>,
+    footprint: &Footprint<'_, N>,
     level: f64,
     doubt: &mut bool,
 ) -> [(f64, f64); 4] {
-    let last = (texture.levels.len() - 1) as f64;
+    let sampler = footprint.sampler;
+    let last = (footprint.texture.levels.len() - 1) as f64;
     let level = if level.is_nan() {
         0.0
     } else {
@@ -234,12 +239,8 @@ fn between_levels<N: Number>(
     };
     let filter = if level <= 0.0 { sampler.mag } else { sampler.min };
     let level = level.clamp(0.0, last);
-    let mut at = |level: f64| {
-        combine(
-            &Footprint { texture, sampler, level: level as usize, filter, point, shift, reference },
-            doubt,
-        )
-    };
+    let mut at =
+        |level: f64| combine(&Footprint { level: level as usize, filter, ..*footprint }, doubt);
     if sampler.mipmap == Filter::Nearest || level.fract() == 0.0 {
         let chosen = (level + 0.5).floor().min(last);
         let found = at(chosen);

@@ -1,6 +1,8 @@
 //! The fragment entry point around a function, in naga's representation: the same for modules
 //! that came from WESL and from GLSL.
 
+mod words;
+
 use naga::{
     AddressSpace, BinaryOperator as Op, Binding, BuiltIn, EntryPoint, Expression, Function,
     FunctionArgument, FunctionResult, GlobalVariable, Handle, ImageClass, ImageDimension, Literal,
@@ -259,93 +261,6 @@ impl Body<'_> {
         pointer
     }
 
-    /// A value of the type from words; `None` when the type is not made of words.
-    fn unflatten(
-        &mut self,
-        ty: Handle<Type>,
-        words: &mut dyn Iterator<Item = Value>,
-    ) -> Option<Value> {
-        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
-            TypeInner::Scalar(scalar) => {
-                return words.next().map(|word| self.word_as(word, scalar.kind));
-            }
-            TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
-            TypeInner::Matrix { columns, rows, scalar } => {
-                vec![self.vector(rows, scalar.kind); columns as usize]
-            }
-            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
-                vec![base; count.get() as usize]
-            }
-            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
-            _ => return None,
-        };
-        let components =
-            parts.into_iter().map(|part| self.unflatten(part, words)).collect::<Option<_>>()?;
-        Some(self.add(Expression::Compose { ty, components }))
-    }
-
-    fn word_as(&mut self, word: Value, kind: ScalarKind) -> Value {
-        match kind {
-            ScalarKind::Uint => word,
-            ScalarKind::Bool => {
-                let zero = self.literal(0);
-                self.binary(Op::NotEqual, word, zero)
-            }
-            _ => self.add(Expression::As { expr: word, kind, convert: None }),
-        }
-    }
-
-    /// Appends the words of a value.
-    fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
-        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
-            TypeInner::Scalar(scalar) => {
-                let word = self.as_word(value, scalar.kind);
-                return words.push(word);
-            }
-            TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
-            TypeInner::Matrix { columns, rows, scalar } => {
-                vec![self.vector(rows, scalar.kind); columns as usize]
-            }
-            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
-                vec![base; count.get() as usize]
-            }
-            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
-            _ => Vec::new(),
-        };
-        for (index, part) in parts.into_iter().enumerate() {
-            let component = self.component(value, index as u32);
-            self.flatten(component, part, words);
-        }
-    }
-
-    fn as_word(&mut self, value: Value, kind: ScalarKind) -> Value {
-        match kind {
-            ScalarKind::Uint => value,
-            ScalarKind::Bool => {
-                let (accept, reject) = (self.literal(1), self.literal(0));
-                self.add(Expression::Select { condition: value, accept, reject })
-            }
-            _ => self.add(Expression::As { expr: value, kind: ScalarKind::Uint, convert: None }),
-        }
-    }
-
-    /// The four words of this pixel: part 0, unless `part` says another.
-    fn choose(&mut self, words: &[Value], part: Value) -> Value {
-        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
-        let zero = self.literal(0);
-        let mut chosen = self.add(Expression::Compose {
-            ty,
-            components: padded(words.get(..4).unwrap_or(words), zero),
-        });
-        for (index, four) in words.chunks(4).enumerate().skip(1) {
-            let accept = self.add(Expression::Compose { ty, components: padded(four, zero) });
-            let index = self.literal(index as u32);
-            let condition = self.binary(Op::Equal, part, index);
-            chosen = self.add(Expression::Select { condition, accept, reject: chosen });
-        }
-        chosen
-    }
-
     /// The echo in the first and the last pixel, the value everywhere else.
     fn echo(&mut self, place: &Place, value: Value) -> Value {
         let magic = self.literal(ECHO);
@@ -408,8 +323,4 @@ impl Body<'_> {
     fn convert(&mut self, expr: Value, kind: ScalarKind) -> Value {
         self.add(Expression::As { expr, kind, convert: Some(4) })
     }
-}
-
-fn padded(words: &[Value], zero: Value) -> Vec<Value> {
-    words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
 }

@@ -1,7 +1,7 @@
 //! Reads a module just as far as its functions and the heads of its instructions.
 
 use super::capabilities::{self, SHADER, STORAGE_IMAGE_WRITE_WITHOUT_FORMAT, extensions};
-use super::operands::Place::{Body, Either, Global};
+use super::operands::Section::{Body, Either, Global};
 use super::operands::{Inst, op};
 use super::{HEADER, MEMORY_MODEL};
 use std::collections::{BTreeSet, HashSet};
@@ -97,7 +97,7 @@ impl<'a> Module<'a> {
     pub fn description(&self, id: u32) -> Vec<&Inst<'a>> {
         let defined = self.defined(id).and_then(|at| self.insts.get(at));
         let nameless =
-            defined.is_some_and(|inst| inst.place == Global && inst.op != op::TYPE_STRUCT);
+            defined.is_some_and(|inst| inst.section == Global && inst.op != op::TYPE_STRUCT);
         let is_told =
             |inst: &&Inst| !nameless || matches!(inst.op, op::DECORATE | op::MEMBER_DECORATE);
         let mut about: Vec<&Inst> = self.about(id).filter(is_told).collect();
@@ -147,7 +147,7 @@ impl<'a> Module<'a> {
                     start = None;
                 }
                 (op::FUNCTION, Some(_)) => return Err("a function has no end".into()),
-                (op, _) if inst.place != Either && start.is_some() != (inst.place == Body) => {
+                (op, _) if inst.section != Either && start.is_some() != (inst.section == Body) => {
                     return Err(format!("opcode {op} is out of place"));
                 }
                 _ => {}

@@ -24,9 +24,9 @@ pub mod op {
     pub const IMAGE_WRITE: u16 = 99;
 }
 
-/// Where an instruction may stand.
+/// Where an instruction may stand in a module.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Place {
+pub enum Section {
     /// Before the declarations: it says something about the module or about an id.
     Head,
     /// Among the declarations.
@@ -36,12 +36,12 @@ pub enum Place {
     /// Among the declarations or in a function.
     Either,
 }
-use Place::{Body, Either, Global, Head};
+use Section::{Body, Either, Global, Head};
 
-/// The place of an opcode and the layout of its operands: `i` an id, `r` the id that is defined, `l` a
+/// The section of an opcode and the layout of its operands: `i` an id, `r` the id that is defined, `l` a
 /// literal, `s` a string, `I` ids to the end, `L` literals to the end, `P` pairs of a literal and an id to
 /// the end, `m` image operands, and `a` a memory access.
-fn layout(op: u16) -> Option<(Place, &'static str)> {
+fn layout(op: u16) -> Option<(Section, &'static str)> {
     Some(match op {
         1 => (Either, "ir"),                   // Undef
         59 => (Either, "irlI"),                // Variable
@@ -122,7 +122,7 @@ fn layout(op: u16) -> Option<(Place, &'static str)> {
 /// An instruction with the layout of its operands.
 pub struct Inst<'a> {
     pub op: u16,
-    pub place: Place,
+    pub section: Section,
     pub words: &'a [u32],
     layout: &'static str,
 }
@@ -131,8 +131,8 @@ impl<'a> Inst<'a> {
     /// Looks the opcode up in the table: one that is not there could hide ids that would not be renumbered.
     pub fn new(words: &'a [u32]) -> Result<Self, String> {
         let op = *words.first().ok_or("an instruction has no words")? as u16;
-        let (place, layout) = layout(op).ok_or_else(|| format!("opcode {op} is not known"))?;
-        Ok(Self { op, place, words, layout })
+        let (section, layout) = layout(op).ok_or_else(|| format!("opcode {op} is not known"))?;
+        Ok(Self { op, section, words, layout })
     }
 
     /// A word by its place, the first holding the opcode.

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use super::formula::{FALSE, Id, Store};
+use super::formula::{Conditions, FALSE, Id};
 use super::{Assignment, TooComplex};
 use crate::permute::axis::ValueSet;
 
@@ -35,14 +35,14 @@ const NODES: usize = 1 << 18;
 impl Diagram {
     /// The points of the domains where the condition holds, asking the axes in that order.
     pub fn new(
-        store: &mut Store,
+        conditions: &mut Conditions,
         condition: Id,
         domains: &[ValueSet],
         order: Vec<usize>,
     ) -> Result<Self, TooComplex> {
         let end = Node { level: u8::MAX, children: Box::default() };
         let mut builder = Builder {
-            store,
+            conditions,
             domains,
             order: &order,
             nodes: vec![end.clone(), end],
@@ -201,7 +201,7 @@ fn sum(children: &[u32], counts: &[u128]) -> u128 {
 }
 
 struct Builder<'a> {
-    store: &'a mut Store,
+    conditions: &'a mut Conditions,
     domains: &'a [ValueSet],
     order: &'a [usize],
     nodes: Vec<Node>,
@@ -237,7 +237,7 @@ impl Builder<'_> {
         let count = domain.iter().last().map_or(0, |last| last + 1);
         let mut children = vec![DEAD; count];
         for ordinal in domain.iter() {
-            let rest = self.store.restrict(condition, axis, ValueSet::single(ordinal))?;
+            let rest = self.conditions.restrict(condition, axis, ValueSet::single(ordinal))?;
             children[ordinal] = self.node(level + 1, rest)?;
         }
         Ok(children.into())

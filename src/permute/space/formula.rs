@@ -82,7 +82,7 @@ impl Join {
 }
 
 /// Interned conditions over axes with the given domains.
-pub struct Store {
+pub struct Conditions {
     domains: Vec<ValueSet>,
     nodes: Vec<Node>,
     /// Axes mentioned by each node, one bit each.
@@ -92,7 +92,7 @@ pub struct Store {
     steps: usize,
 }
 
-impl Store {
+impl Conditions {
     /// With so many steps before its conditions are called too complex. Counting the points that
     /// satisfy arbitrary conditions is #P-hard, so hostile input must meet a bound; real manifests
     /// take some thousands of steps.

@@ -13,7 +13,7 @@ use super::{Setting, Settings};
 use crate::limits::SPACE_STEPS;
 use crate::source::Span;
 use diagram::Diagram;
-use formula::Store;
+use formula::Conditions;
 
 /// A condition that every permutation satisfies.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -203,11 +203,11 @@ impl Space {
         let domains = domains(&self.axes);
         // Each of the levels is made, whatever the condition is.
         *steps = steps.checked_sub(domains.len()).ok_or(TooComplex)?;
-        let mut store = Store::new(domains.clone(), *steps);
-        let condition = store.add(formula)?;
+        let mut conditions = Conditions::new(domains.clone(), *steps);
+        let condition = conditions.add(formula)?;
         let order = (0..self.axes.len()).collect();
-        let diagram = Diagram::new(&mut store, condition, &domains, order)?;
-        *steps = store.steps();
+        let diagram = Diagram::new(&mut conditions, condition, &domains, order)?;
+        *steps = conditions.steps();
         Ok(diagram.count())
     }
 
@@ -256,12 +256,12 @@ fn diagram(
     order: Vec<usize>,
 ) -> Result<Diagram, TooComplex> {
     let domains = domains(axes);
-    let mut store = Store::new(domains.clone(), SPACE_STEPS);
+    let mut conditions = Conditions::new(domains.clone(), SPACE_STEPS);
     let lists = lists.formula();
     let formulas = constraints.iter().map(|constraint| &constraint.formula).chain([&lists]);
-    let parts = formulas.map(|formula| store.add(formula)).collect::<Result<_, _>>()?;
-    let condition = store.all(parts)?;
-    Diagram::new(&mut store, condition, &domains, order)
+    let parts = formulas.map(|formula| conditions.add(formula)).collect::<Result<_, _>>()?;
+    let condition = conditions.all(parts)?;
+    Diagram::new(&mut conditions, condition, &domains, order)
 }
 
 fn domains(axes: &[Axis]) -> Vec<ValueSet> {

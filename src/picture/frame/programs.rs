@@ -1,10 +1,10 @@
 //! Programs of the library's manifest, composed into the stages of one permutation.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::bundle::{Language, Reflection};
-use crate::compose::{self, Options};
+use crate::compose::{self, Options, PartKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::reflect;
 use crate::permute::manifest::{File, Program};
@@ -43,6 +43,8 @@ pub struct Composed {
     pub reflection: Reflection,
     /// Of both stages in WESL.
     pub text: Arc<str>,
+    /// Functions of the library's modules that the text has: `lighting::spot::cone_hard`.
+    pub functions: Arc<[String]>,
 }
 
 impl Programs {
@@ -96,8 +98,7 @@ impl Programs {
             (Language::Glsl, _, Some(glsl)) => {
                 let vertex = glsl.vertex.as_ref().ok_or_else(|| absent(program, language))?;
                 let stage = |file: &File| {
-                    self.composed(file, settings, language)
-                        .and_then(|(text, module)| ready(module, "main", text))
+                    self.composed(file, settings, language).and_then(|text| ready(&text, "main"))
                 };
                 Ok(Stages {
                     vertex: stage(vertex)?,
@@ -109,11 +110,11 @@ impl Programs {
     }
 
     fn of_wesl(&self, file: &File, settings: &Settings) -> Result<Stages, Diagnostics> {
-        let (text, module) = self.composed(file, settings, Language::Wesl)?;
-        let has_fragment = module.module.entry_points.iter().any(|point| point.name == "fs_main");
-        let vertex = ready(module.clone(), "vs_main", text.clone())?;
-        let fragment = if has_fragment { Some(ready(module, "fs_main", text)?) } else { None };
-        Ok(Stages { vertex, fragment })
+        let text = self.composed(file, settings, Language::Wesl)?;
+        let mut points = text.validated.module.entry_points.iter();
+        let has_fragment = points.any(|point| point.name == "fs_main");
+        let fragment = if has_fragment { Some(ready(&text, "fs_main")?) } else { None };
+        Ok(Stages { vertex: ready(&text, "vs_main")?, fragment })
     }
 
     fn composed(
@@ -121,11 +122,12 @@ impl Programs {
         file: &File,
         settings: &Settings,
         language: Language,
-    ) -> Result<(Arc<str>, Arc<Validated>), Diagnostics> {
+    ) -> Result<Text, Diagnostics> {
         let composed =
             compose::compose(&*self.graph(file, language)?, settings, &Options::default())?;
-        let validated = validate(&composed)?;
-        Ok((composed.text.into(), Arc::new(validated)))
+        let validated = Arc::new(validate(&composed)?);
+        let functions = functions(&composed, &self.kept().texts);
+        Ok(Text { text: composed.text.into(), functions, validated })
     }
 
     fn graph(&self, file: &File, language: Language) -> Result<Arc<Graph>, Diagnostics> {
@@ -144,13 +146,35 @@ impl Programs {
     }
 }
 
-fn ready(
-    validated: Arc<Validated>,
-    entry: &'static str,
+/// A composed text, compiled.
+struct Text {
     text: Arc<str>,
-) -> Result<Composed, Diagnostics> {
-    let reflection = reflect(&validated, entry).map_err(|problem| vec![problem])?;
-    Ok(Composed { validated, entry, reflection, text })
+    functions: Arc<[String]>,
+    validated: Arc<Validated>,
+}
+
+/// The functions of a text that are in modules of the library, in the order of their paths.
+fn functions(composed: &compose::Composed, texts: &SourceSet) -> Arc<[String]> {
+    let functions = composed.parts.iter().filter(|part| part.kind == PartKind::Function);
+    let path = |part: &compose::Part| {
+        let file = &texts.get(composed.place_of(part)?.source).path;
+        let (module, _) = file.rsplit_once('.')?;
+        let is_module = !module.contains("programs/");
+        let name = part.names.first().filter(|_| is_module)?;
+        Some(format!("{}::{name}", module.trim_start_matches("lamplight/").replace('/', "::")))
+    };
+    functions.filter_map(path).collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+fn ready(text: &Text, entry: &'static str) -> Result<Composed, Diagnostics> {
+    let reflection = reflect(&text.validated, entry).map_err(|problem| vec![problem])?;
+    Ok(Composed {
+        validated: text.validated.clone(),
+        entry,
+        reflection,
+        text: text.text.clone(),
+        functions: text.functions.clone(),
+    })
 }
 
 fn absent(program: &Program, language: Language) -> Diagnostics {

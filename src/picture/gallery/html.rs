@@ -1,8 +1,8 @@
-//! The gallery as one HTML file that needs no other.
+//! The gallery as HTML, beside its pictures: light or dark as its reader likes it.
 
 use std::fmt::Write as _;
 
-use super::{Card, Exhibit, first_alike};
+use super::{Card, SIZE, StripCard, THUMB, files, first_alike, strip_file};
 
 const HEAD: &str = "<!doctype html>
 <html lang=\"en\">
@@ -11,127 +11,129 @@ const HEAD: &str = "<!doctype html>
 <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
 <title>Lamplight: gallery</title>
 <style>
-:root { color-scheme: light dark; --edge: #8884; }
-body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 68rem; padding: 0 1rem; }
+:root { color-scheme: light dark; --page: light-dark(#fbfaf8, #15171b); --ink: light-dark(#1d2026, #e4e6ea);
+  --quiet: light-dark(#5a616c, #9aa2ae); --edge: light-dark(#d9d6d0, #30343c); --link: light-dark(#1a5fb4, #7ab4ff); }
+body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 74rem; padding: 0 1rem;
+  background: var(--page); color: var(--ink); }
+a { color: var(--link); }
+nav { display: flex; flex-wrap: wrap; gap: .3rem .9rem; font-size: .9rem; }
+section { border-top: 1px solid var(--edge); padding: 1rem 0; }
 article { display: flex; gap: 1.5rem; flex-wrap: wrap; padding: 1.5rem 0; border-top: 1px solid var(--edge); }
 article > div { flex: 1 1 24rem; min-width: 0; }
-h2 { margin: 0 0 .3rem; font-size: 1.15rem; }
-img { border-radius: 6px; width: min(20rem, 100%); height: auto; align-self: flex-start; }
-ul { padding-left: 1.1rem; margin: .5rem 0; }
+article > a { flex: 0 1 480px; align-self: flex-start; }
+h3 { margin: 0 0 .3rem; font-size: 1.15rem; }
+img { border-radius: 6px; width: 100%; height: auto; display: block; }
+ul { padding-left: 1.1rem; margin: .5rem 0; color: var(--quiet); font-size: .92rem; }
 code { overflow-wrap: anywhere; }
-pre { overflow: auto; max-height: 30rem; padding: .8rem; border: 1px solid var(--edge); border-radius: 6px; font-size: 12px; }
-.quiet { opacity: .7; }
+pre { overflow: auto; padding: .6rem .8rem; border: 1px solid var(--edge); border-radius: 6px; font-size: 12.5px; }
+.look { border-left: 3px solid var(--link); padding-left: .7rem; }
 </style>
 </head>
 <body>
 <h1>Gallery</h1>
-<p>Every published example, drawn by <code>lamplight render --all</code>.</p>
+<p>Every published example, drawn by <code>lamplight render --all</code>. A picture leads to its large form.</p>
 ";
 
-/// The page, pictures inside.
-///
-/// # Errors
-/// In words: a picture that cannot be written.
-pub fn page(exhibits: &[Exhibit]) -> Result<String, String> {
+/// The page.
+pub fn page(cards: &[&Card], strips: &[StripCard]) -> String {
     let mut text = HEAD.to_owned();
-    let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
-    for (exhibit, first) in exhibits.iter().zip(first_alike(&cards)) {
-        article(&mut text, exhibit, cards[first])?;
+    text.push_str("<nav>\n");
+    let compared = strips.iter().map(|card| &card.comparison.name);
+    for name in compared.chain(cards.iter().map(|card| &card.preset.name)) {
+        let name = escaped(name);
+        let _ = writeln!(text, "<a href=\"#{name}\">{name}</a>");
+    }
+    text.push_str("</nav>\n");
+    text.push_str("<h2>Comparisons</h2>\n");
+    strips.iter().for_each(|card| strip(&mut text, card));
+    let firsts = first_alike(cards);
+    let mut here = "";
+    for (card, first) in cards.iter().zip(firsts) {
+        if card.preset.work() != here {
+            here = card.preset.work();
+            let _ = writeln!(text, "<h2>{}</h2>", escaped(here));
+        }
+        article(&mut text, card, cards[first]);
     }
     text.push_str("</body>\n</html>\n");
-    Ok(text)
+    text
 }
 
-fn article(text: &mut String, exhibit: &Exhibit, first: &Card) -> Result<(), String> {
-    let preset = &exhibit.card.preset;
-    let name = escaped(&preset.name);
-    let (width, height) = (exhibit.picture.width, exhibit.picture.height);
-    let picture = base64(&exhibit.picture.png()?);
-    let _ = write!(
+fn strip(text: &mut String, card: &StripCard) {
+    let (name, file) = (escaped(&card.comparison.name), strip_file(&card.comparison.name));
+    let _ = writeln!(
         text,
-        "<article id=\"{name}\">\n<img alt=\"{name}\" width=\"{width}\" height=\"{height}\" "
+        "<section id=\"{name}\">\n<h3>{name}</h3>\n<p>{}</p>\n<p class=\"look\">{}</p>\n\
+         <a href=\"{file}\"><img alt=\"{name}\" src=\"{file}\" loading=\"lazy\"></a>\n\
+         <pre>{}</pre>\n</section>",
+        prose(&card.comparison.doc),
+        prose(&card.comparison.look),
+        escaped(&card.command())
     );
-    let _ = write!(
+}
+
+fn article(text: &mut String, card: &Card, first: &Card) {
+    let preset = &card.preset;
+    let name = escaped(&preset.name);
+    let [picture, thumb] = files(&name);
+    let [width, height] = SIZE.map(|side| side / THUMB);
+    let _ = writeln!(
         text,
-        "src=\"data:image/png;base64,{picture}\">\n<div>\n<h2>{name}</h2>\n<p>{}</p>\n<ul>\n",
-        prose(&preset.doc)
+        "<article id=\"{name}\">\n<a href=\"{picture}\"><img alt=\"{name}\" src=\"{thumb}\" \
+         width=\"{width}\" height=\"{height}\" loading=\"lazy\"></a>\n<div>\n<h3>{name}</h3>\n\
+         <p>{}</p>\n<p class=\"look\">{}</p>\n<pre>{}</pre>\n<ul>",
+        prose(&preset.doc),
+        prose(&preset.look),
+        escaped(&card.command())
     );
     for deviation in &preset.deviations {
         let _ = writeln!(text, "<li>differs from the source: {}</li>", prose(deviation));
     }
     let _ = writeln!(text, "<li>{}</li>", escaped(&preset.source));
-    for pass in exhibit.card.passes() {
-        let _ = writeln!(text, "<li><code>{}</code></li>", escaped(&pass));
+    for (program, key) in card.passes() {
+        let page =
+            link(&format!("../catalogue/programs.md#{}", program.replace('_', "-")), program);
+        let _ = writeln!(text, "<li>{page}: <code>{}</code></li>", escaped(&key));
     }
+    let functions: Vec<String> = card.functions().map(|(name, page)| link(&page, name)).collect();
+    if !functions.is_empty() {
+        let _ = writeln!(text, "<li>functions: {}</li>", functions.join(", "));
+    }
+    facts(text, card);
+    for file in first.files() {
+        let _ = writeln!(text, "<li>composed text: {}</li>", link(&file, &file));
+    }
+    text.push_str("</ul>\n</div>\n</article>\n");
+}
+
+/// Scene, numbers, light probe.
+fn facts(text: &mut String, card: &Card) {
+    let preset = &card.preset;
     let _ = writeln!(text, "<li>scene: {}</li>", escaped(&preset.scene));
     for (group, fields) in &preset.numbers {
         for (field, value) in fields {
-            let _ = writeln!(
-                text,
-                "<li><code>{}.{} = {value}</code></li>",
-                escaped(group),
-                escaped(field)
-            );
+            let name = escaped(&format!("{group}.{field}"));
+            let _ = writeln!(text, "<li><code>{name} = {value}</code></li>");
         }
     }
     if let Some(probe) = &preset.probe {
         let _ = writeln!(text, "<li>light probe: {}</li>", escaped(probe));
     }
-    let _ = writeln!(text, "<li><code>{}</code></li>\n</ul>", escaped(&exhibit.card.command()));
-    composed(text, &exhibit.card, first);
-    let _ =
-        writeln!(text, "<p class=\"quiet\">{}</p>\n</div>\n</article>", escaped(&exhibit.adapter));
-    Ok(())
 }
 
-fn composed(text: &mut String, card: &Card, first: &Card) {
-    if first.preset.name != card.preset.name {
-        let name = escaped(&first.preset.name);
-        let _ =
-            writeln!(text, "<p>The composed text is that of <a href=\"#{name}\">{name}</a>.</p>");
-        return;
-    }
-    text.push_str("<details><summary>composed text</summary>\n");
-    for composed in &card.texts {
-        let _ = writeln!(text, "<pre>{}</pre>", escaped(composed));
-    }
-    text.push_str("</details>\n");
+fn link(page: &str, words: &str) -> String {
+    format!("<a href=\"{}\">{}</a>", escaped(page), escaped(words))
 }
 
 /// Text with its code marked as such.
 fn prose(text: &str) -> String {
-    let parts = text.split('`').enumerate();
-    parts
-        .map(
-            |(index, part)| {
-                if index % 2 == 1 {
-                    format!("<code>{}</code>", escaped(part))
-                } else {
-                    escaped(part)
-                }
-            },
-        )
-        .collect()
+    let part = |(index, part): (usize, &str)| match index % 2 {
+        1 => format!("<code>{}</code>", escaped(part)),
+        _ => escaped(part),
+    };
+    text.split('`').enumerate().map(part).collect()
 }
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// Bytes as data addresses have them (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let word = three
-            .iter()
-            .chain([0, 0].iter())
-            .take(3)
-            .fold(0u32, |word, byte| word << 8 | u32::from(*byte));
-        let digits = (0..4).map(|index| DIGITS[(word >> (18 - 6 * index)) as usize & 63]);
-        // A digit for each six bits that there are.
-        text.extend(digits.take(three.len() + 1).map(char::from));
-        text.extend(std::iter::repeat_n('=', 3 - three.len()));
-    }
-    text
 }

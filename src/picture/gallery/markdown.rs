@@ -2,33 +2,64 @@
 
 use std::fmt::Write as _;
 
-use super::{Card, first_alike};
+use super::{Card, StripCard, files, first_alike, strip_file};
 
 /// Pictures in one row of the overview.
-const COLUMNS: usize = 5;
+const COLUMNS: usize = 4;
 
-/// The page. Pictures are beside it, `NAME.png`.
-pub fn page(cards: &[&Card]) -> String {
-    let mut text = "# Gallery\n\nEvery published example, drawn by `lamplight render --all`. Which driver drew which picture is in\n\
-                    [adapters.txt](adapters.txt).\n\n"
+/// The page. Pictures and their smaller forms are beside it.
+pub fn page(cards: &[&Card], strips: &[StripCard]) -> String {
+    let mut text = "# Gallery\n\nEvery published example, drawn by `lamplight render --all`: a \
+                    picture shows its large form. Which driver drew\nwhich picture is in \
+                    [adapters.txt](adapters.txt).\n"
         .to_owned();
-    overview(&mut text, cards);
-    let mut work = "";
-    for (card, first) in cards.iter().zip(first_alike(cards)) {
-        let here = card.preset.source.split(", ").next().unwrap_or_default();
-        if here != work {
-            let _ = write!(text, "\n## {here}\n");
-            work = here;
+    text.push_str("\n## Comparisons\n");
+    strips.iter().for_each(|card| strip(&mut text, card));
+    let firsts = first_alike(cards);
+    let mut at = 0;
+    for group in cards.chunk_by(|a, b| a.preset.work() == b.preset.work()) {
+        let _ = write!(text, "\n## {}\n\n", group[0].preset.work());
+        overview(&mut text, group);
+        for card in group {
+            section(&mut text, card, cards[firsts[at]]);
+            at += 1;
         }
-        section(&mut text, card, cards[first]);
     }
     text
 }
 
+/// A comparison, and the permutations or expressions of its panels.
+fn strip(text: &mut String, card: &StripCard) {
+    let (name, file) = (&card.comparison.name, strip_file(&card.comparison.name));
+    let (doc, look) = (&card.comparison.doc, &card.comparison.look);
+    let _ = write!(
+        text,
+        "\n### {name}\n\n[![{name}]({file})]({file})\n\n{doc} **Look for:** {look}\n\n\
+         ```sh\n{}\n```\n\n",
+        card.command()
+    );
+    for panel in &card.comparison.panels {
+        let made = panel.value.as_ref().unwrap_or(&panel.key).replace(',', ", ");
+        let cascades = if panel.cascades > 1 { " with cascades" } else { "" };
+        let _ = write!(text, "- {}{cascades}: `{}`", panel.label, made.replace(",  ", ", "));
+        for (group, fields) in &panel.numbers {
+            for (field, value) in fields {
+                let _ = write!(text, ", `{group}.{field}` = {value}");
+            }
+        }
+        text.push('\n');
+    }
+}
+
 fn overview(text: &mut String, cards: &[&Card]) {
-    let _ = write!(text, "|{}\n|{}\n", " |".repeat(COLUMNS), "---|".repeat(COLUMNS));
-    for row in cards.chunks(COLUMNS) {
-        let cell = |card: &&Card| format!(" [![{0}]({0}.png)](#{0}) |", card.preset.name);
+    let columns = COLUMNS.min(cards.len());
+    let _ = write!(text, "|{}\n|{}\n", " |".repeat(columns), "---|".repeat(columns));
+    for row in cards.chunks(columns) {
+        let cell = |card: &&Card| {
+            let name = &card.preset.name;
+            let [_, thumb] = files(name);
+            format!(" [![{name}]({thumb})](#{name})<br>`{name}` |")
+        };
         let _ = writeln!(text, "|{}", row.iter().map(cell).collect::<String>());
     }
 }
@@ -36,13 +67,25 @@ fn overview(text: &mut String, cards: &[&Card]) {
 fn section(text: &mut String, card: &Card, first: &Card) {
     let preset = &card.preset;
     let name = &preset.name;
-    let _ = write!(text, "\n### {name}\n\n![{name}]({name}.png)\n\n{}\n\n", preset.doc);
+    let [picture, thumb] = files(name);
+    let _ = write!(
+        text,
+        "\n### {name}\n\n[![{name}]({thumb})]({picture})\n\n{} **Look for:** {}\n\n",
+        preset.doc, preset.look
+    );
+    let _ = write!(text, "```sh\n{}\n```\n\n", card.command());
     for deviation in &preset.deviations {
         let _ = writeln!(text, "- differs from the source: {deviation}");
     }
     let _ = writeln!(text, "- source: {}", preset.source);
-    for pass in card.passes() {
-        let _ = writeln!(text, "- `{pass}`");
+    for (program, key) in card.passes() {
+        let anchor = program.replace('_', "-");
+        let _ = writeln!(text, "- [{program}](../catalogue/programs.md#{anchor}): `{key}`");
+    }
+    let functions: Vec<String> =
+        card.functions().map(|(name, page)| format!("[{name}]({page})")).collect();
+    if !functions.is_empty() {
+        let _ = writeln!(text, "- functions: {}", functions.join(", "));
     }
     let _ = writeln!(text, "- scene: {}", preset.scene);
     for (group, fields) in &preset.numbers {

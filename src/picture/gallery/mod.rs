@@ -9,13 +9,20 @@ pub use markdown::page as markdown;
 use std::sync::Arc;
 
 use super::pixels::Picture;
-use super::plan::Plan;
+use super::plan::{Pass, Plan};
+use super::strip::{self, Comparison};
 use super::{Shot, prepare};
 use crate::bundle::Language;
 use crate::catalogue::preset::Preset;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
 use crate::picture::frame::{Programs, Stages};
+
+/// How the gallery is photographed: pixels, and samples of each.
+pub const SIZE: [u32; 2] = [960, 720];
+pub const SAMPLES: u32 = 16;
+/// Pictures on the pages are smaller by this factor.
+pub const THUMB: u32 = 2;
 
 /// One preset with its picture.
 pub struct Exhibit {
@@ -30,6 +37,10 @@ pub struct Card {
     pub preset: Preset,
     /// The composed texts of the last pass: one, or one for each stage.
     texts: Vec<Arc<str>>,
+    /// The library's functions in them, by path.
+    functions: Vec<String>,
+    /// Hash of what the picture is made from: settings, numbers and the texts of all passes.
+    fingerprint: String,
 }
 
 impl Exhibit {
@@ -44,9 +55,9 @@ impl Exhibit {
         plan: &Plan,
         shot: &Shot,
     ) -> Result<Self, Diagnostics> {
-        let prepared = prepare(painter, programs, plan, shot)?;
-        let picture = prepared.photograph(painter, shot)?.develop();
-        Ok(Self { card: Card::of(preset, &prepared.stages), picture, adapter: painter.adapter() })
+        let card = Card::new(programs, preset, shot.language)?;
+        let picture = prepare(painter, programs, plan, shot)?.photograph(painter, shot)?.develop();
+        Ok(Self { card, picture, adapter: painter.adapter() })
     }
 }
 
@@ -61,34 +72,24 @@ impl Card {
         language: Language,
     ) -> Result<Self, Diagnostics> {
         let plan = Plan::of_preset(programs, preset, &[])?;
-        let settings = plan.last().map(|pass| pass.settings.clone()).unwrap_or_default();
-        let unknown = || {
-            vec![Diagnostic::error(
-                codes::UNKNOWN_PROGRAM,
-                format!("there is no program `{}`", preset.program),
-            )]
-        };
-        let program = programs.manifest().program(&preset.program).ok_or_else(unknown)?;
-        Ok(Self::of(preset, &programs.stages(program, &settings, language)?))
-    }
-
-    fn of(preset: &Preset, stages: &Stages) -> Self {
-        let mut texts = vec![stages.vertex.text.clone()];
-        texts.extend(
-            stages
-                .fragment
-                .iter()
-                .map(|stage| stage.text.clone())
-                .filter(|text| *text != stages.vertex.text),
-        );
-        Self { preset: preset.clone(), texts }
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(settings(preset).as_bytes());
+        let all = composed_texts(programs, &plan, language)?;
+        for text in all.concat() {
+            hasher.update(text.as_bytes());
+        }
+        let own = all.into_iter().next_back().unwrap_or_default();
+        let last = plan.last().map(|pass| stages(programs, pass, language)).transpose()?;
+        let functions = last.map_or_else(Vec::new, |stages| named(&stages));
+        let fingerprint = hasher.finalize().to_hex()[..16].to_owned();
+        Ok(Self { preset: preset.clone(), texts: own, functions, fingerprint })
     }
 
     /// Programs and keys of all passes, in order.
-    fn passes(&self) -> Vec<String> {
+    fn passes(&self) -> Vec<(&str, String)> {
         let earlier = self.preset.passes.iter().map(|pass| (&pass.program, &pass.key));
         let all = earlier.chain([(&self.preset.program, &self.preset.key)]);
-        all.map(|(program, key)| format!("{program}: {}", key.replace(',', ", "))).collect()
+        all.map(|(program, key)| (program.as_str(), key.replace(',', ", "))).collect()
     }
 
     /// Paths of the composed texts beside the page: to read, not to compile, so `.txt`.
@@ -100,8 +101,119 @@ impl Card {
 
     /// The command that draws it.
     fn command(&self) -> String {
-        format!("lamplight render {}", self.preset.name)
+        command(&self.preset.name)
     }
+
+    /// Each function of the library in its text: the path, and its page beside the gallery.
+    fn functions(&self) -> impl Iterator<Item = (&str, String)> {
+        self.functions.iter().filter_map(|path| {
+            let (module, name) = path.rsplit_once("::")?;
+            Some((name, format!("../catalogue/{}.md#{name}", module.replace("::", "/"))))
+        })
+    }
+
+    /// What a line of [`adapters`] begins with, if the picture is of today.
+    pub fn current(&self, shot: &Shot) -> String {
+        current(&format!("{}.png", self.preset.name), shot, &self.fingerprint)
+    }
+}
+
+/// What is said of a comparison.
+pub struct StripCard {
+    pub comparison: Comparison,
+    fingerprint: String,
+}
+
+impl StripCard {
+    /// What is said of a comparison without its picture.
+    ///
+    /// # Errors
+    /// Those of the compositions.
+    pub fn new(
+        programs: &Programs,
+        comparison: Comparison,
+        language: Language,
+    ) -> Result<Self, Diagnostics> {
+        let mut hasher = blake3::Hasher::new();
+        let Comparison { scene, code, inset, panels, .. } = &comparison;
+        hasher.update(serde_json::json!([scene, code, inset, panels]).to_string().as_bytes());
+        for panel in panels.iter().filter(|panel| panel.value.is_none()) {
+            let plan = strip::plan(programs, &comparison, panel)?;
+            for text in composed_texts(programs, &plan, language)?.concat() {
+                hasher.update(text.as_bytes());
+            }
+        }
+        let fingerprint = hasher.finalize().to_hex()[..16].to_owned();
+        Ok(Self { comparison, fingerprint })
+    }
+
+    /// What a line of `adapters.txt` begins with, if the picture is of today.
+    pub fn current(&self, shot: &Shot) -> String {
+        current(&strip_file(&self.comparison.name), shot, &self.fingerprint)
+    }
+
+    /// The command that draws it.
+    fn command(&self) -> String {
+        command(&self.comparison.name)
+    }
+}
+
+/// The path of a comparison's picture beside the page.
+pub fn strip_file(name: &str) -> String {
+    format!("compared/{name}.png")
+}
+
+fn current(file: &str, shot: &Shot, fingerprint: &str) -> String {
+    let ([width, height], samples) = (shot.size, shot.samples);
+    format!("{file}  {width}x{height}, {samples} samples, of {fingerprint}")
+}
+
+fn command(name: &str) -> String {
+    let [width, height] = SIZE;
+    format!("lamplight render {name} --size {width}x{height} --samples {SAMPLES}")
+}
+
+/// The texts of every pass.
+fn composed_texts(
+    programs: &Programs,
+    plan: &Plan,
+    language: Language,
+) -> Result<Vec<Vec<Arc<str>>>, Diagnostics> {
+    let stages = |pass| Ok(texts(&stages(programs, pass, language)?));
+    plan.passes.iter().map(stages).collect()
+}
+
+fn stages(programs: &Programs, pass: &Pass, language: Language) -> Result<Stages, Diagnostics> {
+    let unknown = || {
+        let message = format!("there is no program `{}`", pass.program);
+        vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
+    };
+    let program = programs.manifest().program(&pass.program).ok_or_else(unknown)?;
+    programs.stages(program, &pass.settings, language)
+}
+
+/// All of a preset that its picture depends on, as one text.
+fn settings(preset: &Preset) -> String {
+    let Preset { program, key, scene, probe, passes, numbers, .. } = preset;
+    serde_json::json!([program, key, scene, probe, passes, numbers]).to_string()
+}
+
+fn texts(stages: &Stages) -> Vec<Arc<str>> {
+    let vertex = stages.vertex.text.clone();
+    let fragment = stages.fragment.iter().map(|stage| stage.text.clone());
+    let other: Vec<_> = fragment.filter(|text| *text != vertex).collect();
+    std::iter::once(vertex).chain(other).collect()
+}
+
+fn named(stages: &Stages) -> Vec<String> {
+    let all = [Some(&stages.vertex), stages.fragment.as_ref()];
+    let all = all.into_iter().flatten().flat_map(|stage| stage.functions.iter().cloned());
+    all.collect::<std::collections::BTreeSet<_>>().into_iter().collect()
+}
+
+/// The path of a picture beside the page, and that of the smaller one which the page shows.
+pub fn files(name: &str) -> [String; 2] {
+    [format!("{name}.png"), format!("thumbs/{name}.png")]
 }
 
 /// The composed texts by path beside the page, those of the first card that has them.
@@ -118,14 +230,8 @@ fn first_alike(cards: &[&Card]) -> Vec<usize> {
     cards.iter().map(first).collect()
 }
 
-/// Which driver drew which picture: a line each, for the eye and for tests.
+/// Which driver drew which picture of what: a line each, for the eye and for tests.
 pub fn adapters(exhibits: &[Exhibit], shot: &Shot) -> String {
-    let [width, height] = shot.size;
-    let line = |exhibit: &Exhibit| {
-        format!(
-            "{}.png  {width}x{height}, {} samples, {}\n",
-            exhibit.card.preset.name, shot.samples, exhibit.adapter
-        )
-    };
+    let line = |exhibit: &Exhibit| format!("{}, {}\n", exhibit.card.current(shot), exhibit.adapter);
     exhibits.iter().map(line).collect()
 }

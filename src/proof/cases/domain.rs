@@ -2,6 +2,7 @@
 
 use super::random::Random;
 use super::reader::{Node, Value};
+use super::values::{around, grid, related, special_values, specials, steps, units};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::execute::kernel::Shape;
 use crate::limits::CASE_ROWS;
@@ -346,99 +347,4 @@ pub fn word(value: f64, kind: ScalarKind) -> u32 {
         ScalarKind::Bool => u32::from(value != 0.0),
         _ => (value as f32).to_bits(),
     }
-}
-
-fn steps(count: u32, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    (0..count).map(|i| f(f64::from(i) / f64::from((count - 1).max(1)))).collect()
-}
-
-/// Every combination of the values in `size` components.
-fn grid(size: usize, values: &[f64]) -> Vec<Vec<f64>> {
-    (0..size).fold(vec![Vec::new()], |rows, _| {
-        rows.iter()
-            .flat_map(|row| values.iter().map(move |value| [row.as_slice(), &[*value]].concat()))
-            .collect()
-    })
-}
-
-/// The axes of both signs, then random directions.
-fn units(size: usize, count: u32, seed: u64) -> Vec<Vec<f64>> {
-    let axes = (0..2 * size).map(|i| {
-        (0..size).map(|c| if c == i / 2 { 1.0 - 2.0 * (i % 2) as f64 } else { 0.0 }).collect()
-    });
-    let mut random = Random::new(seed);
-    let rest = std::iter::from_fn(|| Some(random.unit(size)));
-    axes.chain(rest).take(count as usize).collect()
-}
-
-fn related(base: &[f64], kind: About, count: u32, seed: u64) -> Vec<Vec<f64>> {
-    let mut random = Random::new(seed);
-    (0..count)
-        .map(|i| match kind {
-            About::Same => base.to_vec(),
-            About::Hemisphere => hemisphere(base, &mut random),
-            About::Grazing => grazing(base, i, &mut random),
-        })
-        .collect()
-}
-
-fn hemisphere(base: &[f64], random: &mut Random) -> Vec<f64> {
-    let unit = random.unit(base.len());
-    let side = if dot(&unit, base) < 0.0 { -1.0 } else { 1.0 };
-    unit.iter().map(|x| x * side).collect()
-}
-
-/// A direction at right angles, tilted by 10^-1 to 10^-7 to either side.
-fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
-    let tilt =
-        10f64.powi(-1 - (index / 2 % 7) as i32) * if index.is_multiple_of(2) { 1.0 } else { -1.0 };
-    let unit = random.unit(base.len());
-    let along = dot(&unit, base) / dot(base, base).max(1e-300);
-    let tilted: Vec<f64> = unit.iter().zip(base).map(|(x, n)| x - along * n + tilt * n).collect();
-    let length = dot(&tilted, &tilted).sqrt().max(1e-300);
-    tilted.iter().map(|x| x / length).collect()
-}
-
-/// The value, and its neighbours in f32 on both sides, by component at once.
-fn around(value: &[f64], ulps: u32) -> Vec<Vec<f64>> {
-    let ulps = ulps as i32;
-    let shift = |x: f64, by: i32| {
-        let (x, mut at) = (x as f32, x as f32);
-        for _ in 0..by.abs() {
-            at = if (by > 0) == (x >= 0.0) { at.next_up() } else { at.next_down() };
-        }
-        f64::from(at)
-    };
-    (-ulps..=ulps).map(|by| value.iter().map(|x| shift(*x, by)).collect()).collect()
-}
-
-fn special_values(special: Special) -> Vec<f64> {
-    let one = f64::from(1f32.next_down());
-    let plain = [0.0, -0.0, 1.0, -1.0, one, f64::from(1f32.next_up()), 0.5, 2.0];
-    let small = [1e-45, -1e-45, 1e-39, f64::from(f32::MIN_POSITIVE), 1e-18, -1e-18];
-    let large = [1e18, -1e18];
-    let mut values = plain.to_vec();
-    if special != Special::Plain {
-        values.extend(small);
-    }
-    if special == Special::All {
-        values.extend(large);
-    }
-    values
-}
-
-fn specials(special: Special, size: usize) -> Vec<Vec<f64>> {
-    let values = special_values(special);
-    if size == 1 {
-        return values.iter().map(|value| vec![*value]).collect();
-    }
-    let splats = values.iter().map(|value| vec![*value; size]);
-    let singles = values.iter().flat_map(|value| {
-        (0..size).map(move |c| (0..size).map(|i| if i == c { *value } else { 0.0 }).collect())
-    });
-    splats.chain(singles).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

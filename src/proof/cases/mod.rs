@@ -52,6 +52,7 @@ mod law;
 mod random;
 mod reader;
 mod rows;
+mod values;
 
 pub use domain::{Domain, word};
 pub use rows::{Rows, numbers, rows};

@@ -30,12 +30,12 @@ pub struct Job<'a> {
     pub kernels: Vec<(Language, Kernel)>,
     pub rows: Rows,
     /// For each row; empty where the case has laws alone.
-    pub expected: Vec<Target>,
+    pub expected: Vec<Goal>,
     pub terms: Vec<Bound>,
     pub near: Option<(Formula, f64)>,
     pub filter: Option<Formula>,
     pub laws: Vec<BoundLaw<'a>>,
-    pub oracle: Judge,
+    pub oracle: BoundOracle,
     pub fixtures: Vec<Arc<Fixture>>,
 }
 
@@ -48,7 +48,7 @@ pub struct BoundLaw<'a> {
 
 /// Gives the expected value of a row. It must answer for rows that no case lists, since shrinking
 /// a failure tries those.
-pub enum Judge {
+pub enum BoundOracle {
     Reference(Reference),
     Formula(Formula),
     /// The first language's code, value plus error.
@@ -59,7 +59,7 @@ pub enum Judge {
 
 /// What a row should give.
 #[derive(Clone)]
-pub struct Target {
+pub struct Goal {
     pub expected: Expected,
     /// An error that is allowed for each word in addition to the terms of the case; empty for none.
     pub errors: Vec<f64>,
@@ -67,7 +67,7 @@ pub struct Target {
     pub doubtful: bool,
 }
 
-impl From<Expected> for Target {
+impl From<Expected> for Goal {
     fn from(expected: Expected) -> Self {
         Self { expected, errors: Vec::new(), doubtful: false }
     }
@@ -75,19 +75,21 @@ impl From<Expected> for Target {
 
 impl Job<'_> {
     /// The expected values of rows; `None` if the oracle knows the rows of the case alone.
-    pub fn targets(&self, rows: &Rows) -> Result<Option<Vec<Target>>, Diagnostic> {
-        let each = |expect: &(dyn Fn(&[f64]) -> Expected + Sync)| -> Vec<Target> {
+    pub fn goals(&self, rows: &Rows) -> Result<Option<Vec<Goal>>, Diagnostic> {
+        let each = |expect: &(dyn Fn(&[f64]) -> Expected + Sync)| -> Vec<Goal> {
             (0..rows.len()).into_par_iter().map(|index| expect(rows.row(index)).into()).collect()
         };
         match &self.oracle {
-            Judge::Reference(reference) => {
+            BoundOracle::Reference(reference) => {
                 Ok(Some(each(&|row| reference(&mut Arguments::new(row, &self.fixtures)))))
             }
-            Judge::Formula(formula) => Ok(Some(each(&|row| Expected::words(formula.eval(row))))),
-            Judge::Eval(interpreter) => {
+            BoundOracle::Formula(formula) => {
+                Ok(Some(each(&|row| Expected::words(formula.eval(row)))))
+            }
+            BoundOracle::Eval(interpreter) => {
                 bounded(interpreter, rows, &self.kernel().result_kinds()).map(Some)
             }
-            Judge::Fixed => Ok(None),
+            BoundOracle::Fixed => Ok(None),
         }
     }
 
@@ -245,16 +247,17 @@ fn judge(
     scope: &Scope<'_>,
     kernel: &Kernel,
     options: &Options<'_>,
-) -> Result<Judge, Diagnostic> {
+) -> Result<BoundOracle, Diagnostic> {
     let reference = || {
         references::find(module, &case.function)
             .filter(|_| options.references)
-            .map(Judge::Reference)
+            .map(BoundOracle::Reference)
     };
-    let eval = || Interpreter::new(kernel).map(|interpreter| Judge::Eval(Box::new(interpreter)));
+    let eval =
+        || Interpreter::new(kernel).map(|interpreter| BoundOracle::Eval(Box::new(interpreter)));
     match &case.oracle {
-        Oracle::Formula(text) => text.bind(scope).map(Judge::Formula),
-        Oracle::Table(_) | Oracle::None => Ok(Judge::Fixed),
+        Oracle::Formula(text) => text.bind(scope).map(BoundOracle::Formula),
+        Oracle::Table(_) | Oracle::None => Ok(BoundOracle::Fixed),
         Oracle::Eval => eval(),
         Oracle::Default => reference().map_or_else(eval, Ok),
         Oracle::Reference => reference().ok_or_else(|| {
@@ -266,17 +269,15 @@ fn judge(
     }
 }
 
-fn expected(job: &Job<'_>) -> Result<Vec<Target>, Diagnostic> {
-    let expected: Vec<Target> = match &job.case.oracle {
+fn expected(job: &Job<'_>) -> Result<Vec<Goal>, Diagnostic> {
+    let expected: Vec<Goal> = match &job.case.oracle {
         Oracle::Table(table) => {
             table.iter().map(|row| Expected::words(row.expect.iter().copied()).into()).collect()
         }
-        _ => {
-            job.targets(&job.rows).map_err(|error| placed_at(error, job.case))?.unwrap_or_default()
-        }
+        _ => job.goals(&job.rows).map_err(|error| placed_at(error, job.case))?.unwrap_or_default(),
     };
     let words = job.kernel().results.iter().map(Shape::words).sum::<u32>() as usize;
-    match expected.iter().find(|target| target.expected.value.len() != words) {
+    match expected.iter().find(|goal| goal.expected.value.len() != words) {
         Some(wrong) => {
             let message = format!(
                 "`{}` returns {words} values, {} are expected of it",
@@ -298,8 +299,8 @@ pub fn bounded(
     interpreter: &Interpreter,
     rows: &Rows,
     kinds: &[ScalarKind],
-) -> Result<Vec<Target>, Diagnostic> {
-    let chunks: Vec<Vec<Target>> = rows
+) -> Result<Vec<Goal>, Diagnostic> {
+    let chunks: Vec<Vec<Goal>> = rows
         .words
         .par_chunks(CHUNK * rows.stride)
         .map(|words| {
@@ -317,7 +318,7 @@ fn bounded_row(
     calls: &mut Calls<'_, Bounded>,
     row: &[u32],
     kinds: &[ScalarKind],
-) -> Result<Target, Diagnostic> {
+) -> Result<Goal, Diagnostic> {
     calls.machine.forget();
     let found = calls.call(row)?;
     let expected = Expected::words(found.iter().zip(kinds).map(|(slot, kind)| value(*slot, *kind)));
@@ -328,5 +329,5 @@ fn bounded_row(
         .collect();
     let doubtful =
         calls.machine.findings().iter().any(|finding| finding.kind == FindingKind::Ambiguous);
-    Ok(Target { expected, errors, doubtful })
+    Ok(Goal { expected, errors, doubtful })
 }

@@ -1,6 +1,6 @@
 //! Compares what an executor returned with what was expected.
 
-use super::job::{Job, Target};
+use super::job::{Goal, Job};
 use super::law::LawVerdict;
 use super::profile::Profile;
 use crate::execute::kernel::number;
@@ -81,19 +81,19 @@ impl Worst {
 }
 
 /// Judges every row.
-pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Target], results: &[u32]) -> Verdict {
+pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]) -> Verdict {
     let kinds = job.kernel().result_kinds();
     let mut verdict = Verdict { inputs: rows.len(), ..Verdict::default() };
-    for (index, (target, found)) in
+    for (index, (goal, found)) in
         expected.iter().zip(results.chunks(kinds.len().max(1))).enumerate()
     {
         let row = rows.row(index);
-        if is_indeterminate(target) {
+        if is_indeterminate(goal) {
             verdict.indeterminate += 1;
             continue;
         }
-        let Some(worst) = compare(job, row, target, found, &kinds, index) else { continue };
-        let is_ambiguous = target.doubtful || is_ambiguous(job, row);
+        let Some(worst) = compare(job, row, goal, found, &kinds, index) else { continue };
+        let is_ambiguous = goal.doubtful || is_ambiguous(job, row);
         if worst.share() <= 1.0 || !is_ambiguous {
             verdict.largest = verdict.largest.max(worst.error);
         }
@@ -118,14 +118,13 @@ pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Target], results: &[u32]) -
 pub fn compare(
     job: &Job<'_>,
     row: &[f64],
-    target: &Target,
+    goal: &Goal,
     found: &[u32],
     kinds: &[ScalarKind],
     index: usize,
 ) -> Option<Worst> {
-    let values = std::iter::once(&target.expected.value).chain(&target.expected.alternatives);
-    let one =
-        |value: &Vec<f64>| compare_one(job, row, (value, &target.errors), found, kinds, index);
+    let values = std::iter::once(&goal.expected.value).chain(&goal.expected.alternatives);
+    let one = |value: &Vec<f64>| compare_one(job, row, (value, &goal.errors), found, kinds, index);
     values.filter_map(one).min_by(|a, b| a.share().total_cmp(&b.share()))
 }
 
@@ -174,9 +173,9 @@ pub fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
 }
 
 /// Whether anything is right.
-pub fn is_indeterminate(target: &Target) -> bool {
+pub fn is_indeterminate(goal: &Goal) -> bool {
     let held = |value: &f64| value.is_finite() && value.abs() <= f64::from(f32::MAX);
-    !target.expected.value.iter().all(held) || !target.errors.iter().all(|error| error.is_finite())
+    !goal.expected.value.iter().all(held) || !goal.errors.iter().all(|error| error.is_finite())
 }
 
 /// Whether rounding may decide a comparison that the case names in `near`.

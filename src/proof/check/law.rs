@@ -1,6 +1,6 @@
 //! Judges the laws of a case.
 
-use super::job::{Job, Target};
+use super::job::{Goal, Job};
 use super::{judge, profile};
 use crate::execute::kernel::number;
 use crate::proof::cases::Rows;
@@ -26,7 +26,7 @@ pub struct LawVerdict {
 pub struct Given<'a> {
     pub rows: &'a Rows,
     /// What each should give; none where that is not known.
-    pub expected: &'a [Target],
+    pub expected: &'a [Goal],
     pub results: &'a [u32],
     /// The rows that a law compares these with, and what they gave.
     pub transformed: Option<(&'a Rows, &'a [u32])>,
@@ -57,8 +57,8 @@ fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> La
         let outside = other_row
             .zip(job.filter.as_ref())
             .is_some_and(|(other, filter)| filter.scalar(other) != 1.0);
-        let target = given.expected.get(index);
-        if outside || target.is_some_and(judge::is_indeterminate) || judge::is_ambiguous(job, row) {
+        let goal = given.expected.get(index);
+        if outside || goal.is_some_and(judge::is_indeterminate) || judge::is_ambiguous(job, row) {
             continue;
         }
         let values = tolerance::values(&job.terms, row);
@@ -69,7 +69,7 @@ fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> La
             let value = number(given.results[at], *kind);
             let other = given.transformed.map(|(_, words)| number(words[at], *kind));
             let allowed = if other.is_some() {
-                let own = target.and_then(|target| target.errors.get(word)).copied().unwrap_or(0.0);
+                let own = goal.and_then(|goal| goal.errors.get(word)).copied().unwrap_or(0.0);
                 2.0 * (tolerance::allowed(&job.terms, &values, word, value) + own)
                     + f64::from(f32::MIN_POSITIVE)
             } else {

@@ -1,6 +1,6 @@
 //! How the error of a case runs over its inputs: what the plots of a report show.
 
-use super::job::{Job, Target};
+use super::job::{Goal, Job};
 use super::judge::{self, Worst};
 use crate::execute::kernel::Shape;
 
@@ -121,9 +121,9 @@ pub fn profile(job: &Job<'_>, results: &[u32]) -> Profile {
         .iter()
         .zip(results.chunks(kinds.len().max(1)))
         .enumerate()
-        .filter(|(_, (target, _))| !judge::is_indeterminate(target))
-        .filter_map(|(index, (target, found)): (usize, (&Target, &[u32]))| {
-            judge::compare(job, job.rows.row(index), target, found, &kinds, index)
+        .filter(|(_, (goal, _))| !judge::is_indeterminate(goal))
+        .filter_map(|(index, (goal, found)): (usize, (&Goal, &[u32]))| {
+            judge::compare(job, job.rows.row(index), goal, found, &kinds, index)
         })
         .collect();
     let is_doubtful =

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::job::{self, Job, Judge, Target};
+use super::job::{self, BoundOracle, Goal, Job};
 use super::{judge, profile};
 use crate::diagnostic::Diagnostic;
 use crate::execute::interpreter::Interpreter;
@@ -105,7 +105,7 @@ pub fn prove(jobs: &[Job<'_>]) -> Vec<Proof> {
 fn one(job: &Job<'_>) -> Proof {
     let text = |error: Diagnostic| error.message;
     let kinds = job.kernel().result_kinds();
-    let bounded: Vec<Result<Vec<Target>, String>> = job
+    let bounded: Vec<Result<Vec<Goal>, String>> = job
         .kernels
         .iter()
         .map(|(_, kernel)| {
@@ -143,16 +143,16 @@ fn one(job: &Job<'_>) -> Proof {
     }
 }
 
-fn spec(job: &Job<'_>, bounds: &[Target], kinds: &[ScalarKind]) -> Spec {
+fn spec(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
     let mut spec = Spec::default();
-    for (index, (bound, target)) in bounds.iter().zip(&job.expected).enumerate() {
-        if bound.doubtful || judge::is_indeterminate(bound) || judge::is_indeterminate(target) {
+    for (index, (bound, goal)) in bounds.iter().zip(&job.expected).enumerate() {
+        if bound.doubtful || judge::is_indeterminate(bound) || judge::is_indeterminate(goal) {
             continue;
         }
         spec.rows += 1;
         let values = tolerance::values(&job.terms, job.rows.row(index));
         let mut stricter = false;
-        for (word, expected) in target
+        for (word, expected) in goal
             .expected
             .value
             .iter()
@@ -160,7 +160,7 @@ fn spec(job: &Job<'_>, bounds: &[Target], kinds: &[ScalarKind]) -> Spec {
             .filter(|(word, _)| kinds[*word] == ScalarKind::Float)
         {
             let stated = tolerance::allowed(&job.terms, &values, word, *expected)
-                + target.errors.get(word).copied().unwrap_or(0.0);
+                + goal.errors.get(word).copied().unwrap_or(0.0);
             let allowed = bound.errors[word];
             if allowed <= f64::from(f32::MIN_POSITIVE) {
                 continue;
@@ -182,19 +182,19 @@ fn spec(job: &Job<'_>, bounds: &[Target], kinds: &[ScalarKind]) -> Spec {
     spec
 }
 
-fn value(job: &Job<'_>, found: &[Target]) -> Option<Value> {
-    if matches!(job.oracle, Judge::Eval(_)) || job.expected.is_empty() {
+fn value(job: &Job<'_>, found: &[Goal]) -> Option<Value> {
+    if matches!(job.oracle, BoundOracle::Eval(_)) || job.expected.is_empty() {
         return None;
     }
     let limit = if matches!(job.case.oracle, Oracle::Table(_)) { VALUE_OF_TABLE } else { VALUE };
     let mut value = Value::default();
-    for (row, (found, target)) in found.iter().zip(&job.expected).enumerate() {
+    for (row, (found, goal)) in found.iter().zip(&job.expected).enumerate() {
         let inputs = job.rows.row(row);
-        if found.doubtful || judge::is_indeterminate(target) || judge::is_ambiguous(job, inputs) {
+        if found.doubtful || judge::is_indeterminate(goal) || judge::is_ambiguous(job, inputs) {
             continue;
         }
         value.rows += 1;
-        let share = share(job, inputs, found, target);
+        let share = share(job, inputs, found, goal);
         value.off += usize::from(share > limit);
         if share > value.share {
             value = Value { share, row, ..value };
@@ -205,7 +205,7 @@ fn value(job: &Job<'_>, found: &[Target]) -> Option<Value> {
 
 /// Distance over what the case allows, of the component where that is largest, in the alternative
 /// that fits best.
-fn share(job: &Job<'_>, inputs: &[f64], found: &Target, target: &Target) -> f64 {
+fn share(job: &Job<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> f64 {
     let values = tolerance::values(&job.terms, inputs);
     let of = |expected: &Vec<f64>| {
         let component = |(word, (found, expected)): (usize, (&f64, &f64))| {
@@ -218,13 +218,13 @@ fn share(job: &Job<'_>, inputs: &[f64], found: &Target, target: &Target) -> f64 
         };
         found.expected.value.iter().zip(expected).enumerate().map(component).fold(0.0, f64::max)
     };
-    std::iter::once(&target.expected.value)
-        .chain(&target.expected.alternatives)
+    std::iter::once(&goal.expected.value)
+        .chain(&goal.expected.alternatives)
         .map(of)
         .fold(f64::INFINITY, f64::min)
 }
 
-fn apart(first: &[Target], second: &[Target], kinds: &[ScalarKind]) -> Parity {
+fn apart(first: &[Goal], second: &[Goal], kinds: &[ScalarKind]) -> Parity {
     let mut parity = Parity::default();
     for (row, (a, b)) in first.iter().zip(second).enumerate() {
         if a.doubtful || b.doubtful || judge::is_indeterminate(a) || judge::is_indeterminate(b) {

@@ -1,6 +1,6 @@
 //! Makes a failing input small: towards 0, 1 and few mantissa bits, a batch of candidates a draw.
 
-use super::job::{Job, Target};
+use super::job::{Goal, Job};
 use super::judge;
 use super::law::{self, Given};
 use crate::diagnostic::Diagnostic;
@@ -24,18 +24,18 @@ pub fn shrink(
     failing: usize,
 ) -> Result<String, Diagnostic> {
     let best = smallest(job, failing, &mut |rows| {
-        let Some(expected) = job.targets(rows)? else { return Ok(None) };
+        let Some(expected) = job.goals(rows)? else { return Ok(None) };
         let results = session.run(kernel, &rows.words)?;
         Ok(judge::judge(job, rows, &expected, &results).failing.first().copied())
     })?;
     let found = session.run(kernel, &best)?;
-    let target = if best == job.rows.row_words(failing) {
+    let goal = if best == job.rows.row_words(failing) {
         None
     } else {
-        job.targets(&job.rows.with_words(best.clone()))?
+        job.goals(&job.rows.with_words(best.clone()))?
     };
-    match target.as_ref().and_then(|targets| targets.first()).or(job.expected.get(failing)) {
-        Some(target) => Ok(describe(job, &best, target, &found)),
+    match goal.as_ref().and_then(|goals| goals.first()).or(job.expected.get(failing)) {
+        Some(goal) => Ok(describe(job, &best, goal, &found)),
         None => Ok(String::new()),
     }
 }
@@ -51,7 +51,7 @@ pub fn shrink_law(
     let scope = Scope(job.kernel().words().collect());
     let best = smallest(job, failing, &mut |rows| {
         let others = laws::transformed(law, rows, &scope)?;
-        let expected = job.targets(rows)?.unwrap_or_default();
+        let expected = job.goals(rows)?.unwrap_or_default();
         let results = session.run(kernel, &rows.words)?;
         let transformed =
             others.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
@@ -203,18 +203,14 @@ impl Input {
 }
 
 /// The input in decimal and hex, then a case to paste that fails alike.
-fn describe(job: &Job<'_>, words: &[u32], target: &Target, found: &[u32]) -> String {
+fn describe(job: &Job<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> String {
     let input = Input::new(job, words);
-    let worst = judge::judge(
-        job,
-        &job.rows.with_words(words.to_vec()),
-        std::slice::from_ref(target),
-        found,
-    )
-    .worst;
+    let worst =
+        judge::judge(job, &job.rows.with_words(words.to_vec()), std::slice::from_ref(goal), found)
+            .worst;
     let allowed = worst.map_or(0.0, |worst| worst.allowed);
     let (found, expected) =
-        (values(found, &job.kernel().result_kinds()), list(&target.expected.value));
+        (values(found, &job.kernel().result_kinds()), list(&goal.expected.value));
     let said =
         format!("  found {found}\n  expected {expected}\n  allowed {}\n\n", law::amount(allowed));
     input.text.clone() + &said + &pasted(job, &input, &expected, allowed)

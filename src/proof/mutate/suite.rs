@@ -18,7 +18,7 @@ use crate::eval::Machine;
 use crate::execute::interpreter::{Calls, Interpreter, value};
 use crate::proof::cases::{File, Rows};
 use crate::proof::check::Options;
-use crate::proof::check::job::{self, Job, Judge, Target};
+use crate::proof::check::job::{self, BoundOracle, Goal, Job};
 use crate::proof::check::judge;
 use crate::proof::check::law::{self, Given};
 use crate::proof::library::Library;
@@ -64,7 +64,7 @@ pub struct Ready<'f> {
 /// Rows with what they should give.
 struct Batch {
     rows: Rows,
-    expected: Vec<Target>,
+    expected: Vec<Goal>,
     /// The allowed error of each word in f64: twice the error of the code without a mistake, which
     /// comes from its constants in f32. It is infinite where the oracle is the code itself, or
     /// accepts every value.
@@ -181,19 +181,20 @@ fn ready(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
 fn slack(
     job: &Job<'_>,
     rows: &Rows,
-    expected: &[Target],
+    expected: &[Goal],
     calls: &mut Calls<'_, f64>,
 ) -> Result<Vec<f64>, Diagnostic> {
     let kinds = job.kernel().result_kinds();
     let mut slack = Vec::new();
-    for (index, target) in expected.iter().enumerate() {
+    for (index, goal) in expected.iter().enumerate() {
         let found = exact(calls, rows.row_words(index), &kinds)?;
         let values = tolerance::values(&job.terms, rows.row(index));
-        let is_known = !matches!(job.oracle, Judge::Eval(_)) && !judge::is_indeterminate(target);
+        let is_known =
+            !matches!(job.oracle, BoundOracle::Eval(_)) && !judge::is_indeterminate(goal);
         slack.extend((0..kinds.len()).map(|word| {
-            let value = target.expected.value[word];
+            let value = goal.expected.value[word];
             let stated = tolerance::allowed(&job.terms, &values, word, value);
-            let off = nearest(target, &found, word);
+            let off = nearest(goal, &found, word);
             let own = 2.0 * off + RELATIVE * value.abs() + OF_STATED * stated;
             if is_known && off <= stated { own } else { f64::INFINITY }
         }));
@@ -211,8 +212,8 @@ fn exact(
 }
 
 /// Distance of a word from what is right of it.
-fn nearest(target: &Target, found: &[f64], word: usize) -> f64 {
-    let all = std::iter::once(&target.expected.value).chain(&target.expected.alternatives);
+fn nearest(goal: &Goal, found: &[f64], word: usize) -> f64 {
+    let all = std::iter::once(&goal.expected.value).chain(&goal.expected.alternatives);
     all.map(
         |value| if found[word] == value[word] { 0.0 } else { (found[word] - value[word]).abs() },
     )
@@ -323,11 +324,11 @@ impl Ready<'_> {
         let mut calls = interpreter.calls::<f64>()?;
         calls.machine.loop_limit = TRIPS;
         for batch in &self.batches {
-            for (index, target) in batch.expected.iter().enumerate() {
+            for (index, goal) in batch.expected.iter().enumerate() {
                 let found = exact(&mut calls, batch.rows.row_words(index), &kinds)?;
                 let slack = &batch.slack[index * kinds.len()..];
                 // NaN is infinitely far from every value, unless the oracle accepts all.
-                if (0..kinds.len()).any(|word| nearest(target, &found, word) > slack[word]) {
+                if (0..kinds.len()).any(|word| nearest(goal, &found, word) > slack[word]) {
                     return Ok(true);
                 }
             }

@@ -3,11 +3,13 @@
 use glam::{DMat4, DVec3};
 
 use super::palette;
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, maps};
 use crate::scene::shape::Shape;
 
 /// Along each side, scene units.
 const SIDE: f64 = 16.0;
+/// Quads along each side.
+const CELLS: u32 = 120;
 
 /// Hills of several sizes around a valley, in scene units.
 pub fn height(x: f64, z: f64) -> f64 {
@@ -32,16 +34,11 @@ pub fn scene() -> Scene {
         near: 0.5,
         far: 60.0,
     };
-    field(120, eye)
-}
-
-/// The field with a number of cells along each side.
-pub fn field(cells: u32, eye: Eye) -> Scene {
     let at = |u: f64, v: f64| {
         let (x, z) = (SIDE * (u - 0.5), SIDE * (0.5 - v));
         DVec3::new(x, height(x, z), z)
     };
-    let land = Shape::surface(cells, cells, at).map(|vertex| {
+    let land = Shape::surface(CELLS, CELLS, at).map(|vertex| {
         let (grass, rock, snow) =
             (DVec3::new(0.2, 0.32, 0.1), DVec3::new(0.36, 0.31, 0.26), DVec3::new(0.8, 0.82, 0.86));
         let steep = ((0.93 - vertex.normal.y) * 6.0).clamp(0.0, 1.0);
@@ -61,6 +58,7 @@ pub fn field(cells: u32, eye: Eye) -> Scene {
         kind: LampKind::Directional,
     };
     let mut scene = base(objects, eye, palette::lamps(key, 6.0, 4.0, 0.4));
-    scene.haze_range = (6.0, 36.0);
+    scene.haze_range = (6.0, 30.0);
+    scene.maps = maps::meadow;
     scene
 }

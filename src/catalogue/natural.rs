@@ -1,0 +1,20 @@
+//! The order in which people number things: `7_2` before `7_10`.
+
+use std::cmp::Ordering;
+
+/// Compares names part by part, numbers by their value.
+pub fn order(a: &str, b: &str) -> Ordering {
+    parts(a).cmp(&parts(b)).then_with(|| a.cmp(b))
+}
+
+/// A part of a name: numbers come before words.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Part<'t> {
+    Number(u64),
+    Word(&'t str),
+}
+
+fn parts(text: &str) -> Vec<Part<'_>> {
+    let pieces = text.split(['_', '-', '.']).filter(|piece| !piece.is_empty());
+    pieces.map(|piece| piece.parse().map_or(Part::Word(piece), Part::Number)).collect()
+}

@@ -1,0 +1,101 @@
+//! Which branch of a conditional is read.
+
+use std::ops::Range;
+
+use super::super::always;
+use super::super::condition::evaluate;
+use super::super::expand::{Fatal, Input};
+use super::State;
+use crate::compose::Decision;
+use crate::diagnostic::Diagnostics;
+use crate::parse::glsl::{Directive, Part};
+use crate::source::Span;
+
+impl State<'_, '_> {
+    /// Goes on in the first branch whose condition holds. If a condition has an error, no branch is
+    /// taken: errors in the others would only follow from it.
+    pub(super) fn choose(&mut self, module: usize, mut index: usize) -> Result<(), Fatal> {
+        while let Some(Part::Directive(directive, span)) =
+            self.graph.modules[module].parts.get(index)
+        {
+            self.warnings.extend(always::warning(
+                &self.expander,
+                &self.graph.modules[module],
+                index,
+            ));
+            let (holds, next) = match directive {
+                Directive::If { condition, next } => {
+                    (self.decide(module, condition.clone(), *span, false)?, *next)
+                }
+                Directive::Elif { condition, next, .. } => {
+                    (self.decide(module, condition.clone(), *span, true)?, *next)
+                }
+                Directive::Ifdef { name: Ok(name), negated, next } => {
+                    (Ok(self.expander.table.has(*name) != *negated), *next)
+                }
+                Directive::Ifdef { name: Err(error), next, .. } => {
+                    (Err(vec![(**error).clone()]), *next)
+                }
+                _ => break,
+            };
+            match holds {
+                Ok(true) => break,
+                Ok(false) => index = next,
+                Err(errors) => {
+                    self.expander.errors.extend(errors);
+                    self.skip_all(next);
+                    return Ok(());
+                }
+            }
+        }
+        self.jump(index + 1);
+        Ok(())
+    }
+
+    fn decide(
+        &mut self,
+        module: usize,
+        condition: Range<u32>,
+        span: Span,
+        later: bool,
+    ) -> Result<Result<bool, Diagnostics>, Fatal> {
+        let before = self.expander.reads.count;
+        let outcome = self.evaluate(module, condition, span)?;
+        if let (Ok(holds), true) = (&outcome, self.expander.reads.count > before) {
+            self.decisions.push(Decision { span, holds: *holds, later });
+        }
+        Ok(outcome)
+    }
+
+    fn evaluate(
+        &mut self,
+        module: usize,
+        condition: Range<u32>,
+        span: Span,
+    ) -> Result<Result<bool, Diagnostics>, Fatal> {
+        let mut tokens = Vec::new();
+        let before = self.expander.errors.len();
+        self.expander.in_condition = true;
+        self.expander.run(
+            Input::Source { module: module as u32, at: condition.start, end: condition.end },
+            &mut tokens,
+        )?;
+        self.expander.in_condition = false;
+        if self.expander.errors.len() > before {
+            return Ok(Err(self.expander.errors.split_off(before)));
+        }
+        Ok(evaluate(&mut self.expander, &tokens, span).map_err(|error| vec![error]))
+    }
+
+    /// Goes on at the `#endif` of a conditional, one of whose later branches is `next`.
+    fn skip_all(&mut self, mut next: usize) {
+        let module = self.open.last().map_or(0, |open| open.module);
+        let branch = self.graph.modules[module].parts.get(next);
+        if let Some(Part::Directive(Directive::Elif { end, .. } | Directive::Else { end }, _)) =
+            branch
+        {
+            next = *end;
+        }
+        self.jump(next);
+    }
+}

@@ -1,0 +1,93 @@
+//! What a permutation keeps, and what its references mean.
+
+use crate::parse::wesl::Name;
+use crate::resolve::wesl::Graph;
+use crate::source::Span;
+
+/// An item, or a number of the virtual module `constants`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Thing {
+    Item { node: u32, item: u32 },
+    Constant(u32),
+}
+
+/// What a reference means under the settings.
+#[derive(Debug, Clone, Copy)]
+pub enum Meaning {
+    Unknown,
+    /// Something predeclared, or an error that has been reported.
+    Free,
+    Thing(Thing),
+}
+
+/// A live use of something by a declaration that is not a function.
+#[derive(Debug, Clone, Copy)]
+pub struct Dependency {
+    pub user: Thing,
+    pub used: Thing,
+    pub span: Span,
+}
+
+/// What is kept.
+pub struct Reached {
+    /// By item over all nodes, then by constant.
+    pub(super) things: Vec<bool>,
+    /// Those that a local of the same name would hide at a place of use.
+    pub(super) hidden: Vec<bool>,
+    pub(super) nodes: Vec<bool>,
+    /// By binding over all nodes.
+    pub(super) meanings: Vec<Meaning>,
+    pub(super) order: Vec<u32>,
+    pub(super) items: u32,
+    pub(super) bases: Vec<u32>,
+    /// By constant: its value as text.
+    pub constants: Vec<Option<(&'static str, String)>>,
+    pub dependencies: Vec<Dependency>,
+    /// Predeclared names that are used although the module has a disabled item of that name.
+    pub free: Vec<Name>,
+}
+
+impl Reached {
+    /// Where a thing is in tables over all things.
+    pub fn index(&self, thing: Thing) -> usize {
+        match thing {
+            Thing::Item { node, item } => (self.bases[node as usize] + item) as usize,
+            Thing::Constant(index) => (self.items + index) as usize,
+        }
+    }
+
+    pub fn has(&self, thing: Thing) -> bool {
+        self.things[self.index(thing)]
+    }
+
+    pub fn is_hidden(&self, thing: Thing) -> bool {
+        self.hidden[self.index(thing)]
+    }
+
+    pub fn len(&self) -> usize {
+        self.things.len()
+    }
+
+    /// The nodes with something kept, in the order of the output.
+    pub fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.order.iter().copied().filter(|node| self.nodes[*node as usize])
+    }
+
+    /// The kept items of a node, in source order.
+    pub fn items(&self, node: u32, count: usize) -> impl Iterator<Item = u32> {
+        (0..count as u32).filter(move |item| self.has(Thing::Item { node, item: *item }))
+    }
+
+    /// What a reference of a node means.
+    pub fn meaning(&self, graph: &Graph, node: u32, reference: u32) -> Meaning {
+        self.meanings[(graph.nodes[node as usize].bases.bindings + reference) as usize]
+    }
+}
+
+/// The declared name of a thing.
+pub fn name_of(graph: &Graph, thing: Thing) -> Name {
+    match thing {
+        Thing::Item { node, item } => graph.nodes[node as usize].module.items[item as usize].name,
+        Thing::Constant(index) => graph.constants[index as usize].name,
+    }
+}

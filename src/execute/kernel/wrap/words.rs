@@ -1,0 +1,98 @@
+//! Values as words, and back.
+
+use naga::{BinaryOperator as Op, Expression, Handle, ScalarKind, Type, TypeInner, VectorSize};
+
+use super::{Body, Value};
+
+impl Body<'_> {
+    /// A value of the type from words; `None` when the type is not made of words.
+    pub(super) fn unflatten(
+        &mut self,
+        ty: Handle<Type>,
+        words: &mut dyn Iterator<Item = Value>,
+    ) -> Option<Value> {
+        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
+            TypeInner::Scalar(scalar) => {
+                return words.next().map(|word| self.word_as(word, scalar.kind));
+            }
+            TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
+            TypeInner::Matrix { columns, rows, scalar } => {
+                vec![self.vector(rows, scalar.kind); columns as usize]
+            }
+            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
+                vec![base; count.get() as usize]
+            }
+            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
+            _ => return None,
+        };
+        let components =
+            parts.into_iter().map(|part| self.unflatten(part, words)).collect::<Option<_>>()?;
+        Some(self.add(Expression::Compose { ty, components }))
+    }
+
+    fn word_as(&mut self, word: Value, kind: ScalarKind) -> Value {
+        match kind {
+            ScalarKind::Uint => word,
+            ScalarKind::Bool => {
+                let zero = self.literal(0);
+                self.binary(Op::NotEqual, word, zero)
+            }
+            _ => self.add(Expression::As { expr: word, kind, convert: None }),
+        }
+    }
+
+    /// Appends the words of a value.
+    pub(super) fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
+        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
+            TypeInner::Scalar(scalar) => {
+                let word = self.as_word(value, scalar.kind);
+                return words.push(word);
+            }
+            TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
+            TypeInner::Matrix { columns, rows, scalar } => {
+                vec![self.vector(rows, scalar.kind); columns as usize]
+            }
+            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
+                vec![base; count.get() as usize]
+            }
+            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
+            _ => Vec::new(),
+        };
+        for (index, part) in parts.into_iter().enumerate() {
+            let component = self.component(value, index as u32);
+            self.flatten(component, part, words);
+        }
+    }
+
+    fn as_word(&mut self, value: Value, kind: ScalarKind) -> Value {
+        match kind {
+            ScalarKind::Uint => value,
+            ScalarKind::Bool => {
+                let (accept, reject) = (self.literal(1), self.literal(0));
+                self.add(Expression::Select { condition: value, accept, reject })
+            }
+            _ => self.add(Expression::As { expr: value, kind: ScalarKind::Uint, convert: None }),
+        }
+    }
+
+    /// The four words of this pixel: part 0, unless `part` says another.
+    pub(super) fn choose(&mut self, words: &[Value], part: Value) -> Value {
+        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let zero = self.literal(0);
+        let mut chosen = self.add(Expression::Compose {
+            ty,
+            components: padded(words.get(..4).unwrap_or(words), zero),
+        });
+        for (index, four) in words.chunks(4).enumerate().skip(1) {
+            let accept = self.add(Expression::Compose { ty, components: padded(four, zero) });
+            let index = self.literal(index as u32);
+            let condition = self.binary(Op::Equal, part, index);
+            chosen = self.add(Expression::Select { condition, accept, reject: chosen });
+        }
+        chosen
+    }
+}
+
+fn padded(words: &[Value], zero: Value) -> Vec<Value> {
+    words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
+}

@@ -1,0 +1,94 @@
+//! Comparisons as `comparisons.toml` of the library has them, which explains its own form.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use crate::catalogue::preset::Number;
+use crate::catalogue::reader;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::scene::sets;
+use crate::source::{self, Embedded, Package, SourceSet, Span};
+
+/// Path below the library.
+const PATH: &str = "comparisons.toml";
+
+/// One thing, drawn in several ways.
+#[derive(Debug, Clone, Serialize)]
+pub struct Comparison {
+    pub name: String,
+    pub doc: String,
+    /// What to look for.
+    pub look: String,
+    /// What is drawn, by panels with a key.
+    pub scene: String,
+    /// WGSL before the values of panels without a key.
+    pub code: String,
+    /// Upper left corner of the part that is enlarged, in shares of a panel.
+    pub inset: [f64; 2],
+    /// Least share of the pixels that differ visibly between neighbours.
+    pub differs: f64,
+    pub panels: Vec<Panel>,
+}
+
+/// One way.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Panel {
+    pub label: String,
+    /// A permutation of `forward`.
+    #[serde(default)]
+    pub key: String,
+    #[serde(default = "one")]
+    pub cascades: u32,
+    /// Over those of the scene, by group and field, as in a preset.
+    #[serde(default)]
+    pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
+    /// Instead of a key, a WGSL expression: the colour at `at`, from (-4/3, -1) to (4/3, 1).
+    pub value: Option<String>,
+}
+
+fn one() -> u32 {
+    1
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    doc: String,
+    look: String,
+    #[serde(default)]
+    scene: Option<Spanned<String>>,
+    #[serde(default)]
+    code: String,
+    inset: [f64; 2],
+    differs: f64,
+    panels: Vec<Panel>,
+}
+
+/// The library's comparisons, by name.
+///
+/// # Errors
+/// Those of the file.
+pub fn library(sources: &mut SourceSet) -> Result<Vec<Comparison>, Diagnostics> {
+    let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
+    let id = source::read(sources, &package, PATH).map_err(|error| vec![error.into()])?;
+    let missing = || vec![Diagnostic::error(codes::UNREADABLE, format!("there is no `{PATH}`"))];
+    let id = id.ok_or_else(missing)?;
+    let entries: BTreeMap<String, Entry> = reader::data(sources, id)?;
+    let mut problems = Vec::new();
+    let comparison = |(name, entry): (String, Entry)| {
+        if let Some(scene) = &entry.scene
+            && !sets::ALL.iter().any(|set| set.name == scene.get_ref())
+        {
+            let message = format!("there is no scene `{}`", scene.get_ref());
+            problems.push(reader::invalid(Span::new(id, scene.span()), message));
+        }
+        let Entry { doc, look, scene, code, inset, differs, panels } = entry;
+        let scene = scene.map_or_else(String::new, Spanned::into_inner);
+        Comparison { name, doc, look, scene, code, inset, differs, panels }
+    };
+    let comparisons = entries.into_iter().map(comparison).collect();
+    if problems.is_empty() { Ok(comparisons) } else { Err(problems) }
+}

@@ -1,0 +1,95 @@
+//! Comparisons: one thing drawn in several ways, side by side with a part enlarged.
+//!
+//! `comparisons.toml -> panels -> one picture`
+
+mod entry;
+mod label;
+mod painted;
+
+pub use entry::{Comparison, Panel, library};
+pub use painted::painted;
+
+use super::pixels::Picture;
+use super::plan::Plan;
+use super::{Shot, prepare};
+use crate::diagnostic::Diagnostics;
+use crate::execute::Session;
+use crate::picture::frame::Programs;
+
+/// How often a panel is larger than it is shown; its inset is shown as large as it was drawn.
+pub const ZOOM: u32 = 3;
+/// Pixels between panels, and the height of a label.
+const GAP: u32 = 6;
+const LABEL: u32 = 28;
+/// Behind everything.
+const GROUND: [u8; 3] = [24, 26, 30];
+/// Around the part that is enlarged.
+const FRAME: [u8; 3] = [255, 208, 64];
+
+/// One panel, large.
+///
+/// # Errors
+/// Those of compositions and of the painter.
+pub fn panel(
+    painter: &mut dyn Session,
+    programs: &Programs,
+    comparison: &Comparison,
+    panel: &Panel,
+    shot: &Shot,
+) -> Result<Picture, Diagnostics> {
+    if let Some(value) = &panel.value {
+        return Ok(painted(painter, &comparison.code, value, shot)?.develop());
+    }
+    let plan = plan(programs, comparison, panel)?;
+    let shot = Shot { cascades: panel.cascades, ..shot.clone() };
+    Ok(prepare(painter, programs, &plan, &shot)?.photograph(painter, &shot)?.develop())
+}
+
+/// The passes and numbers of a panel that is drawn with a permutation.
+///
+/// # Errors
+/// A key that the program does not have.
+pub fn plan(
+    programs: &Programs,
+    comparison: &Comparison,
+    panel: &Panel,
+) -> Result<Plan, Diagnostics> {
+    let plan = Plan::of_key(programs, "forward", &panel.key)?;
+    Ok(Plan { scene: comparison.scene.clone(), numbers: panel.numbers.clone(), ..plan })
+}
+
+/// All panels from left to right, each with its label above and a part of it enlarged below.
+///
+/// # Errors
+/// Those of its panels.
+pub fn draw(
+    painter: &mut dyn Session,
+    programs: &Programs,
+    comparison: &Comparison,
+    shot: &Shot,
+) -> Result<Picture, Diagnostics> {
+    let panels = comparison.panels.iter();
+    let large: Vec<Picture> = panels
+        .map(|one| panel(painter, programs, comparison, one, shot))
+        .collect::<Result<_, _>>()?;
+    let [width, height] = shot.size.map(|side| side / ZOOM);
+    let count = large.len() as u32;
+    let mut strip = Picture::filled(
+        count * width + count.saturating_sub(1) * GAP,
+        LABEL + 2 * height + GAP,
+        GROUND,
+    );
+    let inset = [0, 1].map(|axis| {
+        let free = shot.size[axis] - shot.size[axis] / ZOOM;
+        ((comparison.inset[axis] * f64::from(shot.size[axis])) as u32).min(free)
+    });
+    for (index, (picture, panel)) in large.iter().zip(&comparison.panels).enumerate() {
+        let left = index as u32 * (width + GAP);
+        let mut small = picture.shrunk(ZOOM);
+        small.outline(inset.map(|at| at / ZOOM), [width / ZOOM, height / ZOOM], FRAME);
+        label::write(&mut strip, &panel.label, [left, 4], width);
+        strip.place(&small, [left, LABEL]);
+        strip.place(&picture.part(inset, [width, height]), [left, LABEL + height + GAP]);
+    }
+    Ok(strip)
+}

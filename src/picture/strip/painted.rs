@@ -1,0 +1,72 @@
+//! Pictures made by functions of the library themselves: a colour for each place.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use glam::DVec3;
+
+use crate::bundle::Language;
+use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::execute::{Session, kernel};
+use crate::picture::Shot;
+use crate::picture::pixels::Linear;
+use crate::picture::prepared::shift;
+use crate::proof::library::Library;
+use crate::source::SourceSet;
+
+/// Name of the function around an expression.
+const FUNCTION: &str = "lamplight_picture";
+/// Places that are computed at once.
+const AT_ONCE: usize = 1 << 16;
+
+/// The picture of an expression over `at: vec2f`, with y upwards from -1 to 1 and x as far as the
+/// picture is wider than high; `code` has the imports and functions that it needs.
+///
+/// # Errors
+/// Those of the expression and of the executor.
+pub fn painted(
+    painter: &mut dyn Session,
+    code: &str,
+    value: &str,
+    shot: &Shot,
+) -> Result<Linear, Diagnostics> {
+    let text = format!(
+        "{code}\n\nfn {FUNCTION}(x: f32, y: f32) -> vec3f {{\n    let at = vec2f(x, y);\n    return {value};\n}}\n"
+    );
+    let sources = Mutex::new(SourceSet::default());
+    let library = Library::embedded();
+    let module =
+        library.importing(&sources, ("picture.wesl", &text), Language::Wesl, FUNCTION)?.module;
+    let kernel = kernel::build(&module, FUNCTION, &BTreeMap::new()).map_err(|error| vec![error])?;
+    if kernel.input_words() != 2 || kernel.result_words() != 3 {
+        let message = format!("`{value}` is not a colour at a place");
+        return Err(vec![Diagnostic::error(codes::UNTESTABLE_FUNCTION, message)]);
+    }
+    let mut picture = Linear::new(shot.size);
+    for index in 0..shot.samples.max(1) {
+        let places = places(shot.size, shift(index, shot.samples));
+        let mut colours = Vec::with_capacity(places.len() / 2);
+        for some in places.chunks(2 * AT_ONCE) {
+            let words = painter.run(&kernel, some).map_err(|error| vec![error])?;
+            colours.extend(words.chunks_exact(3).map(colour));
+        }
+        picture.add_all(colours.into_iter(), shot.exposure);
+    }
+    Ok(picture)
+}
+
+fn colour(words: &[u32]) -> DVec3 {
+    let number = |index: usize| f64::from(f32::from_bits(words[index]));
+    DVec3::new(number(0), number(1), number(2))
+}
+
+/// The middle of every pixel, moved by parts of it, as words.
+fn places([width, height]: [u32; 2], shift: [f64; 2]) -> Vec<u32> {
+    let (w, h) = (f64::from(width), f64::from(height));
+    let place = |x: u32, y: u32| {
+        let across = (2.0 * (f64::from(x) + 0.5 + shift[0]) - w) / h;
+        let up = 1.0 - 2.0 * (f64::from(y) + 0.5 + shift[1]) / h;
+        [(across as f32).to_bits(), (up as f32).to_bits()]
+    };
+    (0..height).flat_map(|y| (0..width).flat_map(move |x| place(x, y))).collect()
+}

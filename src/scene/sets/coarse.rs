@@ -1,0 +1,39 @@
+//! Coarse shapes close to the viewer: where light is computed can be seen.
+
+use glam::{DMat4, DVec3};
+
+use super::palette::{self, AMBER, TEAL};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use crate::scene::shape::Shape;
+
+/// The scene, for the table of all.
+pub const SET: Set = Set {
+    name: "coarse",
+    about: "a ball and a ring of few triangles, close to the viewer and to a lamp",
+    make: scene,
+};
+
+/// The scene itself.
+pub fn scene() -> Scene {
+    let glossy = Material::default().glossy(0.7).shiny(48.0);
+    let ring = placed(2.0, -0.5, 0.3, -0.5) * DMat4::from_rotation_x(0.9);
+    let objects = vec![
+        Object::new(Shape::sphere(1.6, (12, 7)), placed(-1.1, 0.1, 0.0, 0.2), TEAL).of(glossy, 9),
+        Object::new(Shape::torus(0.95, 0.36, (13, 8)), ring, AMBER).of(glossy, 1),
+    ];
+    let eye = Eye {
+        position: DVec3::new(0.25, 1.0, 8.3),
+        target: DVec3::new(0.3, -0.05, 0.0),
+        fov_y: 0.56,
+        near: 0.5,
+        far: 40.0,
+    };
+    let key = Lamp {
+        color: DVec3::splat(1.0),
+        position: DVec3::new(-1.3, 2.5, 4.2),
+        target: DVec3::new(0.0, 0.0, 0.4),
+        half_angle: 0.6,
+        kind: LampKind::Point,
+    };
+    base(objects, eye, palette::lamps(key, 5.0, 4.0, 0.22))
+}

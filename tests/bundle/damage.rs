@@ -1,0 +1,97 @@
+//! Bundles that are damaged, cut or of another version.
+
+use lamplight::bundle::{Bundle, Error, Target, pack, write_directory};
+
+use super::{Outcome, check, small};
+
+/// A generator good enough to choose positions: xorshift.
+fn random(state: &mut u64, below: usize) -> usize {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state % below as u64) as usize
+}
+
+pub fn flips() -> Outcome {
+    let packed = pack(&small())?;
+    let mut state = 0x1234_5678_9abc_def1;
+    for round in 0..2_000 {
+        // The header by every byte, the rest at random.
+        let at = if round < 300 { round } else { random(&mut state, packed.len()) };
+        let mut damaged = packed.clone();
+        damaged[at] ^= 1 << random(&mut state, 8);
+        use_all(damaged, &format!("byte {at}"))?;
+    }
+    Ok(())
+}
+
+/// Loading must not panic, whatever it gives; verifying must notice.
+fn use_all(bytes: Vec<u8>, what: &str) -> Outcome {
+    let Ok(bundle) = Bundle::from_bytes(bytes) else { return Ok(()) };
+    if let Ok(shader) = bundle.program("forward").and_then(|program| program.shader("fs_main")) {
+        let _ = shader.get("shadow=hard", Target::WGSL);
+        let _ = shader.get("taps=16", Target::WGSL);
+    }
+    let _ = bundle.contents();
+    check(bundle.verify().is_err(), &format!("damage was not noticed: {what}"))
+}
+
+pub fn truncations() -> Outcome {
+    let packed = pack(&small())?;
+    let mut state = 0xdead_beef_0bad_cafe;
+    for round in 0..500 {
+        let length = if round < 300 { round } else { random(&mut state, packed.len()) };
+        use_all(packed[..length].to_vec(), &format!("cut to {length}"))?;
+    }
+    use_all([packed.as_slice(), b"x"].concat(), "one byte more")?;
+    let folder = tempfile::tempdir()?;
+    let empty = folder.path().join("empty");
+    std::fs::write(&empty, b"")?;
+    check(matches!(Bundle::open(empty), Err(Error::Corrupt { .. })), "an empty file was opened")
+}
+
+pub fn damaged_directories() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    write_directory(&small(), folder.path())?;
+    let manifest = std::fs::read(folder.path().join("manifest.json"))?;
+    let mut state = 0x0123_4567_89ab_cdef;
+    for round in 0..500 {
+        let mut damaged = manifest.clone();
+        if round % 5 == 0 {
+            damaged.truncate(random(&mut state, manifest.len()));
+        } else {
+            damaged[random(&mut state, manifest.len())] ^= 1 << random(&mut state, 8);
+        }
+        std::fs::write(folder.path().join("manifest.json"), &damaged)?;
+        check(Bundle::open(folder.path()).is_err(), "damage of the manifest was not noticed")?;
+    }
+    std::fs::write(folder.path().join("manifest.json"), &manifest)?;
+    let bundle = Bundle::open(folder.path())?;
+    bundle.verify()?;
+    let blob = std::fs::read_dir(folder.path().join("blobs"))?.next().ok_or("no blob")??.path();
+    let good = std::fs::read(&blob)?;
+    let mut bad = good.clone();
+    bad[0] ^= 1;
+    std::fs::write(&blob, &bad)?;
+    check(matches!(bundle.verify(), Err(Error::Corrupt { .. })), "a damaged blob was not noticed")?;
+    std::fs::remove_file(&blob)?;
+    check(bundle.verify().is_err(), "a missing blob was not noticed")
+}
+
+pub fn versions() -> Outcome {
+    let mut packed = pack(&small())?;
+    packed[8] = 9;
+    check(
+        matches!(Bundle::from_bytes(packed), Err(Error::Version { found: 9, known: 1 })),
+        "a file of version 9 was read",
+    )?;
+    let folder = tempfile::tempdir()?;
+    std::fs::write(
+        folder.path().join("manifest.json"),
+        "{\"version\": 9, \"something\": \"else\"}",
+    )?;
+    check(
+        matches!(Bundle::open(folder.path()), Err(Error::Version { found: 9, known: 1 })),
+        "a manifest of version 9 was read",
+    )
+}

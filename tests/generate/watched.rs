@@ -1,0 +1,41 @@
+//! Edits of a manifest are followed.
+
+use std::fs;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::{Outcome, Package, TINT, ensure, equal};
+
+pub fn watch() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&[])?;
+    let arguments = ["watch", "--cache", "cache", "--program", "small", "--key", "tint=green"];
+    let mut child =
+        package.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
+    let outcome = followed(&package);
+    child.kill()?;
+    child.wait()?;
+    outcome?;
+    equal(&package.generate(&[])?["up_to_date"], &Value::Bool(true))
+}
+
+fn followed(package: &Package) -> Outcome {
+    let manifest = || fs::read(package.path().join("bundle/manifest.json"));
+    for text in ["0.0, 0.5, 0.0", "nonsense", "0.0, 0.25, 0.0"] {
+        let before = manifest()?;
+        package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", text))?;
+        if text == "nonsense" {
+            // It goes on watching.
+            std::thread::sleep(Duration::from_millis(300));
+            continue;
+        }
+        let start = Instant::now();
+        while manifest()? == before || package.generate(&["--check"]).is_err() {
+            ensure(start.elapsed() < Duration::from_secs(20), "the bundle did not change")?;
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+    Ok(())
+}

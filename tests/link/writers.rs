@@ -1,0 +1,123 @@
+//! What naga's writers do to names and functions, and the judges say of it.
+
+use lamplight::bundle::write_directory;
+use lamplight::generate::Generated;
+use libtest_mimic::Failed;
+
+use super::{Outcome, judge_all, made, package, units};
+
+/// Makes a program of one file in some targets, and has every output judged.
+fn judged(text: &str, targets: &str) -> Result<Generated, Failed> {
+    let folder = tempfile::tempdir()?;
+    let manifest = format!("[program.one]\nwesl = \"one.wesl\"\n{targets}\n");
+    let (mut sources, packages, manifest) = package(folder.path(), "one", &manifest, text)?;
+    let mut made = made(&mut sources, &packages, &manifest, None)?;
+    let contents = std::mem::take(&mut made.contents);
+    let out = folder.path().join("out");
+    write_directory(&contents, &out)?;
+    judge_all(&out)?;
+    made.contents = contents;
+    Ok(made)
+}
+
+/// naga adds to an entry point that ends with a digit, and the manifest says what it is called; a
+/// variable and a parameter that become the same are told apart.
+pub fn entry_points() -> Outcome {
+    let text = "
+@group(0) @binding(0) var<uniform> metal_2: vec4f;
+fn read() -> vec4f { return metal_2; }
+@fragment fn metal_2_(@location(0) metal_2: vec2f) -> @location(0) vec4f { return read() + metal_2.xyxy; }
+@vertex fn main_1() -> @builtin(position) vec4f { return vec4f(); }
+";
+    let made = judged(text, "")?;
+    for ((entry, _), unit) in units(&made) {
+        let wgsl = &unit.targets["wgsl"];
+        let (text, name) = (String::from_utf8_lossy(&wgsl.bytes), &wgsl.native.entry_name);
+        let declared = format!("fn {name}(");
+        if text.matches(&declared).count() != 1 || text.contains("var<uniform> metal_2_:") {
+            return Err(format!("{entry} is told as `{name}`:\n{text}").into());
+        }
+        lamplight::validate::validate(&lamplight::compose::Composed::of_text(
+            lamplight::bundle::Language::Wesl,
+            None,
+            text.clone().into_owned(),
+        ))
+        .map_err(|problems| format!("{problems:?}\n{text}"))?;
+    }
+    Ok(())
+}
+
+/// Names of an author's that naga's helpers have, or that its lists of words lack.
+pub fn kept_names() -> Outcome {
+    let text = "
+struct Pair { sampler2D: f32, turn: mat2x2f, kind: vec3f }
+struct int64_t { f32vec2: vec4f, gl: f32 }
+// Underscores that naga leaves out.
+struct Kept { sampler2D_: f32, int64__t: f32, sampler2D__: f32 }
+const TABLE = array<vec2f, 2>(vec2f(0.5), vec2f(0.25));
+const PAIRS = array<Pair, 2>(
+    Pair(0.5, mat2x2f(vec2f(1.0), vec2f(2.0)), vec3f(1.0)),
+    Pair(0.25, mat2x2f(vec2f(3.0), vec2f(4.0)), vec3f(2.0)),
+);
+const ONE = Pair(1.0, mat2x2f(vec2f(1.0), vec2f(2.0)), vec3f(0.0));
+var<private> list: array<i32, 3> = array<i32, 3>(1, 2, 3);
+fn gl(x: f32) -> int64_t { return int64_t(vec4f(x), x); }
+fn gl_1(x: f32) -> f32 { let gl = x; return gl; }
+@fragment fn ZeroValue(@location(0) at: vec2f, @location(1) @interpolate(flat) i: u32) -> @location(0) vec4f {
+    let ConstructPair = at.x;
+    let Constructarray2_float2_ = array<vec2f, 2>(at, TABLE[i & 1u]);
+    let pair = Pair(ConstructPair, mat2x2f(at, at), vec3f(f32(list[i & 1u])));
+    let found = gl(gl_1(pair.sampler2D + PAIRS[i & 1u].turn[1].x + ONE.kind.y));
+    let kept = Kept(at.x, at.y, found.gl);
+    let more = vec4f(kept.sampler2D_, kept.int64__t, kept.sampler2D__, 0.0);
+    return more + found.f32vec2 + Constructarray2_float2_[i & 1u].xyxy;
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    judged(text, "").map(|_| ())
+}
+
+/// HLSL has a structure for such a matrix in another structure, whose name stands at its end.
+pub fn matrices_of_two_rows() -> Outcome {
+    let text = "
+struct Turns { all: array<mat3x2f, 4>, one: mat4x2f }
+var<private> turns: Turns;
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    turns.one = mat4x2f(at, at, at, at);
+    return vec4f(turns.one * at.xyxy, at);
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    let made = judged(text, "")?;
+    let whole = units(&made).into_values().filter_map(|unit| unit.targets.get("hlsl"));
+    let texts: Vec<String> =
+        whole.map(|artifact| String::from_utf8_lossy(&artifact.bytes).into_owned()).collect();
+    match texts.iter().any(|text| text.contains("} __mat3x2_f32;")) {
+        true => Ok(()),
+        false => Err(format!("the structure lacks its name: {texts:?}").into()),
+    }
+}
+
+/// A function that GLSL 3.30 lacks is refused in its line, for those targets alone.
+pub fn lacking() -> Outcome {
+    let text = "
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    return vec4f(ldexp(at.x, 2), f32(countOneBits(u32(at.y))), 0.0, 0.0);
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    judged(text, r#"targets = ["spirv", "glsl450", "hlsl", "msl", "wgsl"]"#)?;
+    for target in ["glsl330", "essl300"] {
+        let targets = format!("targets = [\"{target}\"]");
+        let Err(refused) = judged(text, &targets) else {
+            return Err(format!("{target} has neither `ldexp` nor `bitCount`").into());
+        };
+        let words = refused.message().unwrap_or_default().to_owned();
+        for word in ["`ldexp`", "`bitCount`", "one.wesl:3:"] {
+            if !words.contains(word) {
+                return Err(format!("{target}: no {word} in:\n{words}").into());
+            }
+        }
+    }
+    Ok(())
+}

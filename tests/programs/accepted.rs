@@ -1,0 +1,135 @@
+//! Validators of others accept what programs are composed of and written as.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use lamplight::bundle::{Language, Target};
+use lamplight::compose::Composed;
+use lamplight::emit::emit;
+use lamplight::permute::manifest::Program;
+use lamplight::permute::{Assignment, cover};
+use lamplight::validate::on_large_stack;
+use libtest_mimic::Failed;
+use rayon::prelude::*;
+
+use super::{Sources, alone, report, texts};
+
+/// Files in one call of glslangValidator.
+const BATCH: usize = 64;
+
+/// Targets that external validators read.
+const GLSL_TARGETS: [Target; 3] = [Target::GLSL450, Target::GLSL330, Target::ESSL300];
+
+/// glslangValidator compiles the GLSL of every permutation that ships, as composed, for Vulkan.
+pub fn glslang_takes_sources(
+    program: &Program,
+    stage: &(&'static str, &'static str, &'static str),
+) -> Result<(), Failed> {
+    let sources = Sources::new(program, stage)?;
+    let folder = tempfile::tempdir()?;
+    let [_, (_, compose)] = sources.languages();
+    let texts = texts(program, &sources.texts, &program.space.enumerate(), &*compose)?;
+    let mut files = Vec::new();
+    for (index, (composed, point)) in texts.composed.iter().enumerate() {
+        let path =
+            folder.path().join(format!("{index}.{}", stage.2)).to_string_lossy().into_owned();
+        std::fs::write(&path, &composed.text)?;
+        files.push((path, point));
+    }
+    let refused = |batch: &[(String, &Assignment)]| -> Vec<(Assignment, String)> {
+        // Files of one call are linked with each other, which fails with status 3 where all compile.
+        let paths = batch.iter().map(|(path, _)| path);
+        let status = Command::new("glslangValidator")
+            // It writes what it compiled into the folder it is in.
+            .current_dir(folder.path())
+            .args(["--client", "vulkan100"])
+            .args(paths)
+            .stdout(Stdio::null())
+            .status();
+        if batch.len() > 1 && status.is_ok_and(|status| status.code() == Some(3)) {
+            return Vec::new();
+        }
+        let alone = |(path, point): &(String, &Assignment)| {
+            Some(((*point).clone(), run("glslangValidator", &[VULKAN, &[path]].concat()).err()?))
+        };
+        batch.iter().filter_map(alone).collect()
+    };
+    let failures: Vec<_> = files.par_chunks(BATCH).flat_map_iter(refused).collect();
+    report(program, failures.iter().map(|(point, what)| (point, what.clone())).collect())
+}
+
+/// Options of glslangValidator for GLSL with Vulkan's semantics.
+const VULKAN: &[&str] = &["-V", "-o", "/dev/null"];
+
+/// Runs the outputs of the covering set through spirv-val and glslangValidator, and the GLSL that
+/// they were made from.
+pub fn validators(
+    program: &Program,
+    stage: &(&'static str, &'static str, &'static str),
+) -> Result<(), Failed> {
+    let sources = Sources::new(program, stage)?;
+    let folder = tempfile::tempdir()?;
+    for (entry, compose) in sources.languages() {
+        let texts =
+            texts(program, &sources.texts, &cover::pairwise(&program.space).points, &*compose)?;
+        let refused = |(index, (composed, point)): (usize, &'_ (Composed, Assignment))| {
+            let prefix = folder.path().join(format!("{entry}{index}"));
+            Some((point.clone(), accepted(composed, entry, stage.2, &prefix).err()?))
+        };
+        let failures: Vec<_> =
+            on_large_stack(|| texts.composed.par_iter().enumerate().filter_map(refused).collect());
+        report(program, failures.iter().map(|(point, what)| (point, what.clone())).collect())?;
+    }
+    Ok(())
+}
+
+fn accepted(
+    composed: &Composed,
+    entry: &str,
+    extension: &str,
+    prefix: &Path,
+) -> Result<(), String> {
+    let alone = alone(composed, entry).map_err(|problems| problems[0].message.clone())?;
+    let write = |target: Target, extension: &str| -> Result<String, String> {
+        let path = prefix.with_extension(format!("{target}.{extension}"));
+        let emitted = emit(&alone, entry, target).map_err(|problem| problem.message)?;
+        std::fs::write(&path, emitted.bytes).map_err(|error| error.to_string())?;
+        Ok(path.to_string_lossy().into_owned())
+    };
+    run("spirv-val", &["--target-env", "vulkan1.1", &write(Target::SPIRV, "spv")?])?;
+    for target in GLSL_TARGETS {
+        run("glslangValidator", &["-S", extension, &write(target, extension)?])?;
+    }
+    // What is written for ES 3.00 is for every later ES: one that only 3.00 takes would be a trap.
+    let es_300 = std::fs::read_to_string(write(Target::ESSL300, extension)?)
+        .map_err(|error| error.to_string())?;
+    let es_310 = es_300.replacen("#version 300 es", "#version 310 es", 1);
+    run("glslangValidator", &[&save(&es_310, prefix, "es310", extension)?])?;
+    if composed.language == Language::Glsl {
+        run(
+            "glslangValidator",
+            &[VULKAN, &[&save(&composed.text, prefix, "source", extension)?]].concat(),
+        )?;
+    }
+    Ok(())
+}
+
+fn save(text: &str, prefix: &Path, name: &str, extension: &str) -> Result<String, String> {
+    let path = prefix.with_extension(format!("{name}.{extension}"));
+    std::fs::write(&path, text).map_err(|error| error.to_string())?;
+    Ok(path.to_string_lossy().into_owned())
+}
+
+fn run(tool: &str, arguments: &[&str]) -> Result<(), String> {
+    let output = Command::new(tool)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| format!("{tool}: {error}"))?;
+    let said = [output.stdout, output.stderr].concat();
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(format!("{tool}: {}", String::from_utf8_lossy(&said)))
+    }
+}

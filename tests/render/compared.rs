@@ -1,0 +1,41 @@
+//! Comparisons show differences: neighbours differ in as many pixels as they say.
+
+use lamplight::bundle::Language;
+use lamplight::picture::strip::{self, Comparison};
+use libtest_mimic::Trial;
+
+use super::difference::Difference;
+use super::{library, on_device, said, shot};
+
+/// Of a panel.
+const SIZE: [u32; 2] = [320, 240];
+/// Twice what is just noticeable.
+const VISIBLE: f64 = 4.0;
+
+pub fn trials() -> Vec<Trial> {
+    let comparisons = library().programs.with_texts(strip::library).unwrap();
+    let trial = |comparison: Comparison| {
+        Trial::test(format!("render/compared/{}", comparison.name), move || {
+            on_device("vulkan", |_| neighbours_differ(&comparison))
+        })
+    };
+    comparisons.into_iter().map(trial).collect()
+}
+
+fn neighbours_differ(comparison: &Comparison) -> Result<(), String> {
+    let mut painter = super::start("vulkan")?;
+    let shot = shot(SIZE, 1, Language::Wesl);
+    let draw = |panel| {
+        strip::panel(painter.as_mut(), &library().programs, comparison, panel, &shot).map_err(said)
+    };
+    let pictures = comparison.panels.iter().map(draw).collect::<Result<Vec<_>, _>>()?;
+    let mut alike = Vec::new();
+    for (pair, panels) in pictures.windows(2).zip(comparison.panels.windows(2)) {
+        let share = Difference::new(&pair[0], &pair[1])?.share(VISIBLE);
+        println!("{} and {}: {:.3}", panels[0].label, panels[1].label, share);
+        if share < comparison.differs {
+            alike.push(format!("{} and {}: {share:.4}", panels[0].label, panels[1].label));
+        }
+    }
+    if alike.is_empty() { Ok(()) } else { Err(format!("alike: {}", alike.join(", "))) }
+}
