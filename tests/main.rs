@@ -54,6 +54,7 @@ mod scale;
 mod scene;
 mod shaderlib;
 mod shadow;
+mod site;
 mod snapshot;
 mod specialise;
 mod tables;
@@ -108,6 +109,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     scene::trials,
     shaderlib::trials,
     shadow::trials,
+    site::trials,
     specialise::trials,
     tables::trials,
     toolchain::trials,

@@ -1,4 +1,4 @@
-//! `cargo xtask site`: the toolchain as WebAssembly, as an npm package.
+//! `cargo xtask site`: the toolchain as WebAssembly, and the site that it runs in.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -36,17 +36,33 @@ impl Build {
     }
 }
 
-/// Makes the npm package in `target/toolchain/`.
+/// Makes the npm package in `target/toolchain/`, then the site in `target/site/`.
 pub fn run(arguments: &[String]) -> Outcome {
-    let mut build = Build::Small;
+    let (mut build, mut only) = (Build::Small, false);
     for argument in arguments {
         match argument.as_str() {
             "--quick" => build = Build::Quick,
-            "--toolchain" => {}
+            "--toolchain" => only = true,
             _ => return Err(Failure::usage("usage: cargo xtask site [--toolchain] [--quick]")),
         }
     }
-    toolchain(build).map(drop)
+    toolchain(build)?;
+    if only { Ok(()) } else { pages() }
+}
+
+/// The site in `target/site/`, around the npm package that is there.
+pub fn pages() -> Outcome {
+    let folder = Path::new(ROOT).join("site");
+    if !machine::program("npm") {
+        machine::install(&["npm"])?;
+    }
+    let npm = |arguments: &[&str]| {
+        let mut command = Command::new("npm");
+        command.args(arguments).current_dir(&folder).stdout(Stdio::null());
+        finish(&mut command, &format!("npm {}", arguments.join(" ")))
+    };
+    npm(&["install", "--no-save", "--no-audit", "--no-fund", "--loglevel=error"])?;
+    npm(&["run", "build"])
 }
 
 /// The npm package `@lamplight/toolchain`, in `target/toolchain/`.

@@ -6,8 +6,9 @@ use std::process::Command;
 /// Prepares the machine, then runs every test; arguments go to the test binary.
 pub fn run(arguments: &[String]) -> Outcome {
     machine::prepare()?;
-    // The trials `toolchain::` run it in Node.
+    // The trials `toolchain::` run it in Node, those of `site::` in a browser.
     site::toolchain(site::Build::Quick)?;
+    site::pages()?;
     // With every feature: shared stores are tested against a server.
     let test = |what: &[&str], rest| {
         cargo(&[&["test", "--package", "lamplight", "--features", "store"], what].concat(), rest)

@@ -64,11 +64,15 @@ pub fn evaluate(request: Ts<EvalRequest>) -> Answer<EvalResult> {
     })
 }
 
+/// What the package is called in expressions, which are a package of their own: `package::` there
+/// means this one, as on the command line.
+const OWN: &str = "lamplight_own";
+
 fn library(files: Option<Files>) -> Library {
     match files {
         None => Library::embedded(),
         Some(files) => Library::new(
-            "package",
+            OWN,
             Arc::new(Memory(files)),
             vec![(LIBRARY.to_owned(), Arc::new(Embedded))],
         ),

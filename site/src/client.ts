@@ -1,0 +1,90 @@
+// Calls of the toolchain: each has a limit, after which the worker is replaced.
+import type { Toolchain } from "@lamplight/toolchain";
+
+type Answer = { id?: number; value?: unknown; error?: string; milliseconds?: number; ready?: boolean; failed?: string };
+type Waiting = { resolve: (value: unknown) => void; reject: (error: Error) => void; start: () => void };
+
+/** What typed text may take before the toolchain is begun anew. */
+export const TYPED = 1000;
+/** What the library's own programs may take: nobody typed them. */
+export const OWN = 20000;
+
+/** What the first answer may take: the browser compiles the toolchain while it runs. */
+const COLD = 10000;
+
+export class TooLong extends Error {}
+
+export class Client {
+    /** Milliseconds that the last answer took in the worker. */
+    milliseconds = 0;
+    /** How often the worker was replaced. */
+    replaced = 0;
+    #worker!: Worker;
+    #ready = false;
+    #warm = false;
+    #next = 0;
+    #waiting = new Map<number, Waiting>();
+
+    constructor() {
+        this.#begin();
+    }
+
+    #begin() {
+        this.#ready = false;
+        this.#warm = false;
+        this.#worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+        this.#worker.onmessage = ({ data }: MessageEvent<Answer>) => this.#told(data);
+        this.#worker.onerror = (event) => this.#drop(new Error(event.message || "the toolchain could not be loaded"));
+    }
+
+    #told(answer: Answer) {
+        if (answer.ready) {
+            this.#ready = true;
+            for (const waiting of this.#waiting.values()) waiting.start();
+        } else if (answer.failed !== undefined) {
+            this.#drop(new Error(answer.failed));
+        } else if (answer.id !== undefined) {
+            const waiting = this.#waiting.get(answer.id);
+            this.#waiting.delete(answer.id);
+            this.#warm = true;
+            this.milliseconds = answer.milliseconds ?? 0;
+            if (answer.error === undefined) waiting?.resolve(answer.value);
+            else waiting?.reject(new Error(answer.error));
+        }
+    }
+
+    #drop(error: Error) {
+        const waiting = [...this.#waiting.values()];
+        this.#waiting.clear();
+        for (const one of waiting) one.reject(error);
+    }
+
+    call<N extends keyof Toolchain>(
+        limit: number, name: N, ...inputs: Parameters<Toolchain[N]>
+    ): Promise<ReturnType<Toolchain[N]>> {
+        const id = this.#next++;
+        return new Promise((resolve, reject) => {
+            let timer = 0;
+            const done = <T>(then: (value: T) => void) => (value: T) => {
+                clearTimeout(timer);
+                then(value);
+            };
+            // Time runs once the toolchain is loaded.
+            const start = () => {
+                timer = window.setTimeout(() => {
+                    this.#worker.terminate();
+                    this.replaced++;
+                    this.#drop(new TooLong(`no answer within ${limit / 1000} s: the toolchain was begun anew`));
+                    this.#begin();
+                }, this.#warm ? limit : Math.max(limit, COLD));
+            };
+            this.#waiting.set(id, {
+                resolve: done(resolve as (value: unknown) => void), reject: done(reject), start,
+            });
+            if (this.#ready) start();
+            this.#worker.postMessage({ id, name, inputs });
+        });
+    }
+}
+
+export const toolchain = new Client();

@@ -1,0 +1,53 @@
+// Elements, and the state in the address.
+type Child = Node | string | undefined;
+type Given = Record<string, unknown>;
+
+/** An element with attributes, listeners (`onclick`) and children. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+    tag: K, given: Given = {}, ...children: Child[]
+): HTMLElementTagNameMap[K] {
+    const made = document.createElement(tag);
+    for (const [name, value] of Object.entries(given)) {
+        if (value === undefined || value === false) continue;
+        if (name.startsWith("on")) made.addEventListener(name.slice(2), value as EventListener);
+        else made.setAttribute(name, value === true ? "" : String(value));
+    }
+    made.append(...children.filter((child) => child !== undefined));
+    return made;
+}
+
+/** A text with a button that copies it. */
+export function code(text: string, label: string): HTMLElement {
+    const button = h("button", {
+        class: "copy", "aria-label": `Copy ${label}`,
+        onclick: async () => {
+            await navigator.clipboard?.writeText(text);
+            button.textContent = "Copied";
+        },
+    }, "Copy");
+    return h("div", { class: "code" }, button, h("pre", { tabindex: "0", "aria-label": label }, h("code", {}, text)));
+}
+
+export function choose(
+    label: string, values: string[], value: string, change: (value: string) => void,
+): HTMLLabelElement {
+    const select = h("select", { onchange: () => change(select.value) },
+        ...values.map((one) => h("option", { value: one, selected: one === value }, one || "as published")));
+    return h("label", {}, h("span", {}, label), select);
+}
+
+/** What follows `#/page/` in the address. */
+export type Route = { page: string; path: string; query: URLSearchParams };
+
+export function route(): Route {
+    const [way, query] = location.hash.replace(/^#\/?/, "").split("?");
+    const [page, ...path] = way.split("/");
+    return { page: page || "catalogue", path: decodeURIComponent(path.join("/")), query: new URLSearchParams(query) };
+}
+
+/** Puts the state of a page into the address without a step of its own in the history. */
+export function remember(page: string, path: string, query: Record<string, string | undefined>) {
+    const given = Object.entries(query).filter((pair): pair is [string, string] => !!pair[1]);
+    const text = new URLSearchParams(given).toString();
+    history.replaceState(null, "", `${location.search}#/${page}${path && `/${path}`}${text && `?${text}`}`);
+}

@@ -1,0 +1,39 @@
+import type { Drawing } from "@lamplight/toolchain";
+
+/** What a device drew: the words of each view's targets, and each view's depths. */
+export type Frames = { words: Uint32Array; depths: Float32Array };
+
+/** A device that draws what the toolchain asks for. */
+export interface Device {
+    name: string;
+    /** The language of its shaders. */
+    target: "wgsl" | "essl300";
+    draw(drawing: Drawing): Promise<Frames>;
+}
+
+/** What pixels hold that nothing covers. */
+export const SENTINEL = 0xdeadbeef;
+
+/** The buffer of a binding: the view's, the mesh's, or that of all. */
+export function buffers(drawing: Drawing, view: number, mesh: number): Map<string, Uint8Array> {
+    const all = [...drawing.buffers, ...drawing.meshes[mesh].buffers, ...drawing.views[view]];
+    return new Map(all.map((one) => [`${one.group},${one.binding}`, one.bytes]));
+}
+
+export const floats = (bytes: Uint8Array) => new Float32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
+
+/** A number as a half float: what is too large for one becomes infinite. */
+export function half(value: number): number {
+    const view = new DataView(new ArrayBuffer(4));
+    view.setFloat32(0, value);
+    const bits = view.getUint32(0);
+    const sign = (bits >>> 16) & 0x8000;
+    const exponent = ((bits >>> 23) & 0xff) - 112;
+    const fraction = bits & 0x7fffff;
+    if (exponent >= 31) return sign | 0x7c00;
+    if (exponent <= 0) {
+        if (exponent < -10) return sign;
+        return sign | (((fraction | 0x800000) >>> (14 - exponent)) + 0);
+    }
+    return (sign | (exponent << 10) | (fraction >>> 13)) + ((fraction >>> 12) & 1);
+}

@@ -1,0 +1,110 @@
+import type { ItemInfo, LibraryInfo } from "@lamplight/toolchain";
+import { OWN, toolchain } from "../client";
+import { code, h, remember, route } from "../dom";
+import { plot } from "../plot";
+
+let library: Promise<LibraryInfo> | undefined;
+
+export async function page(into: HTMLElement) {
+    library ??= toolchain.call(OWN, "library");
+    const { modules } = await library;
+    const items = new Map(modules.flatMap((module) => module.items.map((item) => [item.path, item])));
+    const { path, query } = route();
+    const list = h("nav", { class: "list", "aria-label": "Functions" });
+    const place = h("article", { class: "entry" });
+    const search = h("input", {
+        type: "search", placeholder: "word, formula, author, technique", "aria-label": "Search the library",
+        value: query.get("q") ?? "", oninput: () => filter(),
+    });
+    const link = (item: ItemInfo) => h("a", {
+        href: `#/catalogue/${item.path}`, title: item.summary,
+        onclick: (event: Event) => { event.preventDefault(); open(item.path); place.scrollIntoView({ block: "nearest" }); },
+    }, item.name);
+    let asked = 0;
+    async function filter() {
+        const now = ++asked;
+        const text = search.value.trim();
+        remember("catalogue", place.dataset.path ?? "", { q: text });
+        if (!text) {
+            list.replaceChildren(...modules.filter((module) => module.items.length).map((module) =>
+                h("details", { open: module.items.some((item) => item.path === place.dataset.path) },
+                    h("summary", {}, module.path), ...module.items.map(link))));
+            return;
+        }
+        const { hits } = await toolchain.call(OWN, "search", text);
+        if (now !== asked) return;
+        const found = hits.map((hit) => items.get(hit.path)!);
+        list.replaceChildren(h("p", { role: "status" }, `${found.length} found`), ...found.map(link));
+    }
+    async function open(path: string) {
+        const item = items.get(path);
+        if (!item) return place.replaceChildren(h("p", {}, `The library has no ${path}.`));
+        place.dataset.path = path;
+        remember("catalogue", path, { q: search.value.trim() });
+        await entry(place, item);
+    }
+    into.replaceChildren(h("div", { class: "columns" }, h("aside", {}, search, list), place));
+    const first = path || "brdf::microfacet::d_ggx";
+    place.dataset.path = first;
+    await filter();
+    await open(items.has(first) ? first : path || [...items.keys()][0]);
+}
+
+async function entry(place: HTMLElement, item: ItemInfo) {
+    const written = await toolchain.call(OWN, "written", item.path);
+    const section = (title: string, text: string | undefined) =>
+        text ? h("p", {}, h("strong", {}, `${title}: `), text) : undefined;
+    const users = written.usedBy.map((path) => path.replace(/\.wesl$/, "").replaceAll("/", "::"));
+    const live = h("section", { class: "live", "aria-label": "Live plot" });
+    place.replaceChildren(
+        h("h1", {}, item.name), h("p", { class: "path" }, item.path),
+        ...item.doc.map((text) => h("p", {}, text)),
+        live,
+        h("h2", {}, "Use it"),
+        code(item.import, "import in WESL"), code(item.include, "include in GLSL"),
+        item.members.length ? h("dl", {}, ...item.members.flatMap((member) => [
+            h("dt", {}, h("code", {}, `${member.name}: ${member.type}`)), h("dd", {}, member.doc),
+        ])) : undefined!,
+        ...[section("Source", item.source), section("Edges", item.edges), section("Error model", item.errorModel),
+            section("Used by", users.join(", "))].filter((one) => one !== undefined),
+        h("h2", {}, "WESL"), code(written.wesl, "WESL source"),
+        ...(written.glsl ? [h("h2", {}, "GLSL"), code(written.glsl, "GLSL source")] : []),
+    );
+    if (item.plot) await curves(live, item);
+}
+
+/** The plot with its parameters as sliders, and the value at one place in f32 and in f64. */
+async function curves(live: HTMLElement, item: ItemInfo) {
+    const info = item.plot!;
+    const [shown, numbers] = [h("div", { class: "plot" }), h("p", { class: "numbers", "aria-live": "polite" })];
+    const slider = (name: string, from: number, to: number, value: number) => h("input", {
+        type: "range", min: from, max: to, step: (to - from) / 320, value, "aria-label": name, oninput: () => draw(),
+    });
+    const span = info.values.length ? Math.max(...info.values) - Math.min(...info.values) || 1 : 1;
+    const x = slider(info.label, info.from, info.to, info.from + 0.4 * (info.to - info.from));
+    const own = info.parameter && info.values.length
+        ? slider(info.parameter, Math.min(...info.values), Math.max(...info.values, Math.min(...info.values) + span), info.values[Math.floor(info.values.length / 2)])
+        : undefined;
+    async function draw() {
+        const values = own ? [Number(own.value), ...info.values] : info.values;
+        const found = await toolchain.call(OWN, "curves", {
+            path: item.path, value: info.value, parameter: info.parameter, values, from: info.from, to: info.to, samples: 321,
+        });
+        if (!found.curves.length) return numbers.replaceChildren(found.diagnostics[0]?.message ?? "");
+        const at = Number(x.value);
+        shown.replaceChildren(plot(info, found, at));
+        const index = Math.round(((at - info.from) / (info.to - info.from)) * 320);
+        const curve = found.curves[0];
+        const error = curve.error[index];
+        numbers.textContent = `at ${Number(at.toPrecision(4))}${own ? `, ${info.parameter} ${Number(own.value).toPrecision(3)}` : ""}: `
+            + `f32 ${Math.fround(curve.single[index])}, f64 ${curve.double[index]}, `
+            + `WGSL allows ±${Number.isFinite(error) ? error.toExponential(2) : "∞"}`;
+        live.dataset.drawn = String(Number(live.dataset.drawn ?? 0) + 1);
+    }
+    live.replaceChildren(
+        shown, h("label", {}, h("span", {}, info.label), x),
+        ...(own ? [h("label", {}, h("span", {}, info.parameter!), own)] : []),
+        numbers, ...(info.note ? [h("p", { class: "note" }, info.note)] : []),
+    );
+    await draw();
+}

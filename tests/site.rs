@@ -1,0 +1,295 @@
+//! The site in a browser: its pages open, its pictures are those of `lamplight render`, its controls
+//! change them, mistakes are underlined where they are, and links keep what is chosen.
+//! `cargo xtask test` builds it first.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use lamplight::browser::serve::{Files, Server};
+use lamplight::browser::{Browser, Page, Shot};
+use lamplight::catalogue;
+use libtest_mimic::{Failed, Trial};
+use serde_json::{Value, json};
+
+type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
+
+/// Software draws, and other trials run beside: what a page shows may come late.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [Case; 5] = [
+        ("catalogue", catalogue),
+        ("pictures", pictures),
+        ("programs", programs),
+        ("playground", playground),
+        ("seen", seen),
+    ];
+    cases.into_iter().map(|(name, case)| Trial::test(format!("site::{name}"), case)).collect()
+}
+
+fn site() -> Result<PathBuf, Failed> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/site");
+    match folder.join("index.html").is_file() {
+        true => Ok(folder),
+        false => Err("there is no site: run `cargo xtask site --quick`".into()),
+    }
+}
+
+/// The site with a browser.
+struct Opened {
+    server: Server,
+    browser: Arc<Browser>,
+}
+
+impl Opened {
+    fn new() -> Result<Self, Failed> {
+        let server = Server::start(Files::Folder(site()?))?;
+        Ok(Self { server, browser: Browser::shared()? })
+    }
+
+    /// A page at the address, once it shows something.
+    fn page(&self, address: &str) -> Result<Page, Failed> {
+        let page = self.browser.open(&self.server.address(address))?;
+        page.until("document.body?.dataset.ready !== undefined", PATIENCE)?;
+        Ok(page)
+    }
+}
+
+fn text(page: &Page, expression: &str) -> Result<String, Failed> {
+    let found = page.evaluate(expression, PATIENCE)?;
+    Ok(found.as_str().map_or_else(|| found.to_string(), str::to_owned))
+}
+
+fn without_errors(page: &mut Page) -> Outcome {
+    match page.errors() {
+        [] => Ok(()),
+        errors => Err(errors.join("\n").into()),
+    }
+}
+
+/// Every entry opens, shows its source, and where it has a plot a plot; the search finds.
+fn catalogue() -> Outcome {
+    let opened = Opened::new()?;
+    let mut page = opened.page("#/catalogue")?;
+    let modules = catalogue::library();
+    let items = modules.iter().flat_map(|module| &module.items);
+    let paths: Vec<Value> = items.map(|item| json!([item.path(), item.name])).collect();
+    let script = format!(
+        "(async () => {{
+            const wrong = [];
+            for (const [path, name] of {}) {{
+                location.hash = `#/catalogue/${{path}}`;
+                const end = performance.now() + 60000;
+                const there = () => document.querySelector('article h1')?.textContent === name
+                    && document.querySelector('article .path')?.textContent === path
+                    && document.querySelector('pre[aria-label=\"WESL source\"]')?.textContent.includes(name)
+                    && document.body.dataset.ready === 'catalogue';
+                while (!there() && performance.now() < end) await new Promise((next) => setTimeout(next, 5));
+                if (!there()) wrong.push(path);
+            }}
+            return wrong;
+        }})()",
+        Value::from(paths)
+    );
+    assert_eq!(page.evaluate(&script, PATIENCE)?, json!([]));
+    page.evaluate("location.hash = '#/catalogue/brdf::specular::blinn_phong'", PATIENCE)?;
+    page.until("document.querySelectorAll('.live .curve').length > 0", PATIENCE)?;
+    let curve = "document.querySelector('.live .curve').getAttribute('points')";
+    let before = text(&page, curve)?;
+    page.evaluate(
+        "(() => { const it = document.querySelectorAll('.live input')[1]; it.value = it.min;
+            it.dispatchEvent(new Event('input')); })()",
+        PATIENCE,
+    )?;
+    page.until(&format!("{curve} !== {}", Value::from(before)), PATIENCE)?;
+    page.evaluate(
+        "(() => { const it = document.querySelector('input[type=search]'); it.value = 'schlick fresnel';
+            it.dispatchEvent(new Event('input')); })()",
+        PATIENCE,
+    )?;
+    page.until(
+        "[...document.querySelectorAll('.list a')].some((it) => it.textContent === 'f_schlick')",
+        PATIENCE,
+    )?;
+    without_errors(&mut page)
+}
+
+/// Presets of several kinds: no shadow, a map, moments that are blurred, a cube map.
+const PRESETS: [&str; 4] = ["oglpg_7_4", "hpg_5_shadow", "hpg_7_vsm", "oglpg_7_13"];
+
+/// Of all channels of all pixels: the mean distance, and the share that is farther than eight steps.
+/// Edges are drawn by other rules on every device, a step of rounding is what the gallery has too.
+const TOLERANCE: (f64, f64) = (1.0, 0.02);
+
+/// What the page draws is the reviewed picture, on WebGPU and on WebGL2; without both it says so.
+fn pictures() -> Outcome {
+    let opened = Opened::new()?;
+    for (address, device) in [("#/gallery", "WebGPU"), ("?device=webgl2#/gallery", "WebGL2")] {
+        let mut page = opened.page(address)?;
+        for preset in PRESETS {
+            let canvas = format!("document.querySelector('canvas[data-preset={preset}]')");
+            page.evaluate(&format!("{canvas}.scrollIntoView()"), PATIENCE)?;
+            page.until(&format!("{canvas}?.dataset.drawn === '1'"), PATIENCE)?;
+            let pixels = text(&page, &format!("{canvas}.toDataURL('image/png')"))?;
+            let name = format!("{preset} at {address}");
+            compare(&name, &pixels, preset)?;
+        }
+        assert_eq!(text(&page, "document.body.dataset.device")?, device);
+        without_errors(&mut page)?;
+    }
+    let mut page = opened.page("?device=none#/programs")?;
+    let said = "document.querySelector('[role=status].status').textContent";
+    page.until(&format!("{said}.includes('neither WebGPU nor WebGL2')"), PATIENCE)?;
+    without_errors(&mut page)
+}
+
+fn compare(name: &str, data: &str, preset: &str) -> Outcome {
+    let data = data.strip_prefix("data:image/png;base64,").ok_or("no picture")?;
+    let bytes = base64(data);
+    let found = image::load_from_memory(&bytes)?.into_rgb8();
+    let reviewed = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/gallery/{preset}.png"));
+    let wanted = image::load_from_memory(&std::fs::read(reviewed)?)?.into_rgb8();
+    assert_eq!(found.dimensions(), wanted.dimensions(), "{name}");
+    let distances: Vec<u8> =
+        found.as_raw().iter().zip(wanted.as_raw()).map(|(a, b)| a.abs_diff(*b)).collect();
+    let count = distances.len() as f64;
+    let mean = distances.iter().map(|one| f64::from(*one)).sum::<f64>() / count;
+    let far = distances.iter().filter(|one| **one > 8).count() as f64 / count;
+    println!("{name}: mean distance {mean:.3} steps, {:.2} % farther than 8", 100.0 * far);
+    if mean > TOLERANCE.0 || far > TOLERANCE.1 {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tmp/site");
+        std::fs::create_dir_all(&folder)?;
+        found.save(folder.join(format!("wrong-{preset}.png")))?;
+        return Err(format!("{name}: mean {mean:.3}, {:.2} % far", 100.0 * far).into());
+    }
+    Ok(())
+}
+
+fn base64(text: &str) -> Vec<u8> {
+    let value = |letter: u8| match letter {
+        b'A'..=b'Z' => u32::from(letter - b'A'),
+        b'a'..=b'z' => u32::from(letter - b'a') + 26,
+        b'0'..=b'9' => u32::from(letter - b'0') + 52,
+        b'+' => 62,
+        _ => 63,
+    };
+    let letters: Vec<u8> = text.bytes().filter(|letter| *letter != b'=').collect();
+    let mut bytes = Vec::new();
+    for four in letters.chunks(4) {
+        let word = four.iter().fold(0, |word, letter| word << 6 | value(*letter))
+            << (6 * (4 - four.len()));
+        bytes.extend(&word.to_be_bytes()[1..four.len()]);
+    }
+    bytes
+}
+
+/// A switched axis changes the picture and the outputs; what is impossible says why; the link holds
+/// the choice, and another page that is opened with it shows the same.
+fn programs() -> Outcome {
+    let opened = Opened::new()?;
+    let mut page = opened.page("#/programs/forward?scene=casters")?;
+    page.until("document.querySelector('canvas').dataset.drawn !== undefined", PATIENCE)?;
+    let picture = "document.querySelector('canvas').toDataURL()";
+    let before = text(&page, picture)?;
+    let greyed = "[...document.querySelectorAll('[data-axis=shadow_light] option, [data-axis=frequency] option, [data-axis=lights] option')]
+        .filter((it) => it.disabled && it.title.endsWith('.')).length";
+    let choose = |axis: &str, value: &str| {
+        format!(
+            "(() => {{ const it = document.querySelector('[data-axis={axis}]');
+                it.value = [...it.options].find((one) => one.textContent === '{value}').value;
+                it.dispatchEvent(new Event('change')); }})()"
+        )
+    };
+    page.evaluate(&choose("shadow", "hard"), PATIENCE)?;
+    page.until("document.querySelector('canvas').dataset.key?.includes('shadow=hard')", PATIENCE)?;
+    assert_ne!(before, text(&page, picture)?, "a shadow changes the picture");
+    assert!(page.evaluate(greyed, PATIENCE)?.as_u64() > Some(0), "nothing is impossible");
+    page.until(
+        "document.querySelector('.texts pre')?.textContent.includes('fn vs_main')",
+        PATIENCE,
+    )?;
+    let shadowed = text(&page, picture)?;
+    page.evaluate(
+        "document.querySelector('canvas').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' }))",
+        PATIENCE,
+    )?;
+    page.until(&format!("{picture} !== {}", Value::from(shadowed)), PATIENCE)?;
+    let moved = text(&page, picture)?;
+    let link = text(&page, "location.hash")?;
+    without_errors(&mut page)?;
+    let again = opened.page(&link)?;
+    again.until(&format!("{picture} === {}", Value::from(moved)), PATIENCE)?;
+    Ok(())
+}
+
+/// Typing: outputs, a value, and a mistake underlined at its column.
+fn playground() -> Outcome {
+    let opened = Opened::new()?;
+    let mut page = opened.page("#/playground")?;
+    page.until(
+        "document.querySelector('.texts pre')?.textContent.includes('fn lambert')",
+        PATIENCE,
+    )?;
+    page.until("document.querySelector('.eval output').textContent === '0.25'", PATIENCE)?;
+    // Another function is called from the end of the line that `let n` is in.
+    let typed = |text: &str| {
+        format!(
+            "(() => {{ const it = document.querySelector('.cm-content'); it.focus();
+                const lines = [...document.querySelectorAll('.cm-line')];
+                const line = lines.find((one) => one.textContent.includes('let n ='));
+                const range = document.createRange(); range.selectNodeContents(line); range.collapse(false);
+                getSelection().removeAllRanges(); getSelection().addRange(range);
+                document.execCommand('insertText', false, {}); }})()",
+            Value::from(text)
+        )
+    };
+    page.evaluate(&typed(" let m = nowhere(n);"), PATIENCE)?;
+    let mark = "document.querySelector('.cm-lintRange-error')?.textContent";
+    page.until(&format!("{mark} === 'nowhere'"), PATIENCE)?;
+    let problem = text(&page, "document.querySelector('.problems').textContent")?;
+    assert!(problem.contains("lit.wesl:7:40: "), "{problem}");
+    without_errors(&mut page)
+}
+
+/// The main pages at the widths of a phone and of a desk, as pictures in `target/tmp/site/`: nothing
+/// is wider than the screen, everything that can be used has a name.
+fn seen() -> Outcome {
+    let opened = Opened::new()?;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tmp/site");
+    std::fs::create_dir_all(&folder)?;
+    let pages = [
+        (
+            "catalogue",
+            "#/catalogue/brdf::specular::blinn_phong",
+            "document.querySelector('.live svg')",
+        ),
+        (
+            "programs",
+            "#/programs/forward?key=shadow=pcf_3x3",
+            "document.querySelector('canvas').dataset.drawn",
+        ),
+        ("playground", "#/playground", "document.querySelector('.texts pre')"),
+        ("gallery", "#/gallery", "document.querySelector('canvas').dataset.drawn"),
+    ];
+    for (name, address, there) in pages {
+        let mut page = opened.page(address)?;
+        page.until(&format!("!!{there}"), PATIENCE)?;
+        let nameless = "[...document.querySelectorAll('input, select, button, a, canvas')].filter((it) =>
+            !(it.getAttribute('aria-label') || it.labels?.length || it.textContent.trim())).map((it) => it.outerHTML)";
+        assert_eq!(page.evaluate(nameless, PATIENCE)?, json!([]), "{name}");
+        for width in [360, 1280] {
+            let bytes = page.screenshot(Shot { width, height: 900, whole: false })?;
+            std::fs::write(folder.join(format!("{name}-{width}.png")), bytes)?;
+        }
+        page.screenshot(Shot { width: 360, height: 900, whole: false })?;
+        let wide = "document.documentElement.scrollWidth";
+        assert!(
+            page.evaluate(wide, PATIENCE)?.as_u64() <= Some(360),
+            "{name} is wider than a phone"
+        );
+        without_errors(&mut page)?;
+    }
+    Ok(())
+}
