@@ -55,6 +55,8 @@ export function remember(page: string, path: string, query: Record<string, strin
     if (location.hash !== known) return;
     const given = Object.entries(query).filter((pair): pair is [string, string] => !!pair[1]);
     const text = new URLSearchParams(given).toString();
-    history.replaceState(null, "", `${location.search}#/${page}${path && `/${path}`}${text && `?${text}`}`);
+    const hash = `#/${page}${path && `/${path}`}${text && `?${text}`}`;
+    if (hash === location.hash) return;
+    history.replaceState(null, "", `${location.search}${hash}`);
     known = location.hash;
 }
