@@ -115,7 +115,7 @@ struct Tally {
     /// Compiled as a whole, by reason and target: how many, and the seed of the first.
     whole: BTreeMap<String, (usize, u64)>,
     /// Stages that were run.
-    ran: BTreeMap<Target, Ran>,
+    ran: BTreeMap<&'static str, Ran>,
     /// Programs of which nothing was run, since they have no fragment stage.
     vertex_alone: usize,
     /// By kind: how many, and the first.
@@ -141,7 +141,7 @@ impl std::fmt::Display for Tally {
         write!(f, "{programs} programs, {outputs} outputs, {judged} judged by others")?;
         let refused: usize = self.refused.values().sum();
         write!(f, "; {refused} refused; as a whole: {:?}", self.whole)?;
-        self.ran.iter().try_for_each(|(target, ran)| write!(f, "\n  {target}: {ran}"))?;
+        self.ran.iter().try_for_each(|(name, ran)| write!(f, "\n  {name}: {ran}"))?;
         if self.vertex_alone > 0 {
             write!(f, "\n  {} not run: vertex stages alone", self.vertex_alone)?;
         }

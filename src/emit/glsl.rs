@@ -79,7 +79,9 @@ fn is_taken(name: &str) -> bool {
     let number = ["uint", "int", "float"].iter().find_map(behind);
     let is_number = number.is_some_and(|bits| matches!(bits, "8_t" | "16_t" | "32_t" | "64_t"));
     // A second one of that name would be `gl_1`.
-    is_sized || is_number || WORDS.contains(&name) || name.trim_end_matches('_') == "gl"
+    // naga has such names itself, and would put `gen_` before this one.
+    let is_nagas = name.starts_with("_group");
+    is_sized || is_number || is_nagas || WORDS.contains(&name) || name.trim_end_matches('_') == "gl"
 }
 
 fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Result<Options, String> {
@@ -105,17 +107,26 @@ fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Resul
     Ok(options)
 }
 
+/// What stands between the name of a block's type and its place.
+pub const BLOCK: &str = "_block_";
+
+/// The name of a block's type as the block's own name begins: browsers refuse two underscores in a
+/// row in GLSL ES, and naga ends names with one.
+pub fn before_block(ty: &str) -> &str {
+    ty.trim_end_matches('_')
+}
+
 /// naga numbers blocks in the order of the text; group and binding are the block's own, whatever
 /// else a permutation has.
 fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo) {
     for (handle, name) in &mut info.uniforms {
-        let numbered = name.rsplit_once("_block_").map(|(ty, number)| {
+        let numbered = name.rsplit_once(BLOCK).map(|(ty, number)| {
             (ty, number.trim_start_matches(|digit: char| digit.is_ascii_digit()))
         });
         if let (Some((ty, stage)), Some([group, binding])) =
             (numbered, place(source.module, *handle))
         {
-            let own = format!("{ty}_block_{group}_{binding}{stage}");
+            let own = format!("{}{BLOCK}{group}_{binding}{stage}", before_block(ty));
             *text = text.replacen(&format!(" {name} {{"), &format!(" {own} {{"), 1);
             *name = own;
         }

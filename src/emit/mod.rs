@@ -11,7 +11,7 @@
 //! - `msl`, `hlsl`, `wgsl`: the same conventions are native.
 
 pub mod clip;
-mod glsl;
+pub(crate) mod glsl;
 mod header;
 mod isolate;
 mod lacks;

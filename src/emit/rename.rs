@@ -13,8 +13,8 @@ pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Modul
     let mut module = module.clone();
     let change = |name: &mut String| {
         if is_taken(name) {
-            // As naga does where it knows better.
-            name.insert_str(0, "gen_");
+            // As naga does where it knows better, but for two underscores in a row.
+            name.insert_str(0, if name.starts_with('_') { "gen" } else { "gen_" });
         }
     };
     let new = |name: &mut Option<String>| name.iter_mut().for_each(change);

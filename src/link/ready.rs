@@ -8,6 +8,7 @@ use super::cut::Fragment;
 use super::names::{Chosen, Names, Renames};
 use super::reason::Reason;
 use super::words::words;
+use crate::emit::glsl;
 
 /// A text whose references have their usual names.
 pub struct Template {
@@ -36,7 +37,9 @@ impl Template {
             text.push_str(&fragment.text[at..reference.at]);
             at = reference.at;
             let start = text.len();
-            text.push_str(names.usual_of(reference));
+            let usual = names.usual_of(reference);
+            let is_block = fragment.text[at..].starts_with(glsl::BLOCK);
+            text.push_str(if is_block { glsl::before_block(usual) } else { usual });
             if !reference.small {
                 let name = names.number(&reference.name)?;
                 spots.push(Spot { start, end: text.len(), name });

@@ -68,7 +68,7 @@ impl std::fmt::Display for Ran {
 
 /// What runs the outputs.
 pub struct Runner {
-    sessions: Vec<(Target, Box<dyn Session>)>,
+    sessions: Vec<(Target, &'static str, Box<dyn Session>)>,
 }
 
 /// A stage with everything that it is drawn with.
@@ -93,6 +93,8 @@ struct Stages {
 /// The targets of both draws.
 struct Drawn {
     target: Target,
+    /// The executor's.
+    name: &'static str,
     outputs: Targets,
     inputs: Targets,
 }
@@ -101,50 +103,53 @@ struct Drawn {
 type Targets = Vec<Vec<u32>>;
 
 impl Runner {
-    /// Opens what runs each target.
+    /// Opens everything that runs each target: one driver, or one and a browser.
     ///
     /// # Errors
     /// What is missing.
     pub fn open() -> Result<Self, String> {
-        let session = |target: &Target| {
-            let found = executors::shipping(*target).next();
-            let (entry, shipping) = found.ok_or_else(|| format!("nothing runs {target}"))?;
+        let session = |(target, (entry, shipping)): (
+            Target,
+            (&'static executors::Entry, &executors::Shipping),
+        )| {
             let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
-            Ok((*target, session))
+            Ok((target, entry.name, session))
         };
-        Ok(Self { sessions: Target::ALL.iter().map(session).collect::<Result<_, String>>()? })
+        let all =
+            Target::ALL.iter().flat_map(|one| executors::shipping(*one).map(|ran| (*one, ran)));
+        Ok(Self { sessions: all.map(session).collect::<Result<_, String>>()? })
     }
 
     /// Runs stages; findings have the place of their stage.
     pub fn run(
         &self,
         runnables: &[Runnable],
-        ran: &mut BTreeMap<Target, Ran>,
+        ran: &mut BTreeMap<&'static str, Ran>,
     ) -> Result<Vec<(usize, Finding)>, String> {
         let ready = runnables.iter().map(Ready::new).collect::<Result<Vec<_>, _>>()?;
         let metal = Metal::new(&ready)?;
         let mut findings = Vec::new();
         for (index, ready) in ready.iter().enumerate() {
             let mut frames = Vec::new();
-            for (target, session) in &self.sessions {
+            for (target, name, session) in &self.sessions {
                 let Some(stages) = ready.stages.get(target) else { continue };
                 let drawn = match (stages, *target == Target::MSL) {
                     (Err(error), _) => Err(error.clone()),
                     (Ok(_), true) => metal.draw(index, ready),
                     (Ok(stages), false) => ready.draw(stages, session.as_ref()),
                 };
-                let tally = ran.entry(*target).or_default();
+                let tally = ran.entry(name).or_default();
                 match drawn {
                     Ok((outputs, inputs)) => {
                         tally.stages += 1;
-                        frames.push(Drawn { target: *target, outputs, inputs });
+                        frames.push(Drawn { target: *target, name, outputs, inputs });
                     }
                     Err(error) if error.code.name == codes::EXECUTOR_LACKS.name => {
                         *tally.lacks.entry(error.message).or_default() += 1;
                     }
                     Err(error) => {
                         let first = error.message.lines().next().unwrap_or_default().to_owned();
-                        let kind = format!("{target} does not run: {first}");
+                        let kind = format!("{target} does not run on {name}: {first}");
                         findings.push((index, ready.finding(kind, *target, &error.message)));
                     }
                 }
@@ -242,16 +247,16 @@ impl<'r> Ready<'r> {
     }
 
     /// What each target computes otherwise than the evaluator.
-    fn compare(&self, frames: &[Drawn], ran: &mut BTreeMap<Target, Ran>) -> Vec<Finding> {
+    fn compare(&self, frames: &[Drawn], ran: &mut BTreeMap<&'static str, Ran>) -> Vec<Finding> {
         let mut evaluator = match Evaluator::new(self) {
             Ok(evaluator) => evaluator,
             Err(error) => return vec![Finding::new(format!("evaluator: {error}"), error)],
         };
         let mut findings = Vec::new();
         for frame in frames {
-            let tally = ran.entry(frame.target).or_default();
+            let tally = ran.entry(frame.name).or_default();
             if let Err(error) = evaluator.frame(frame, tally) {
-                let kind = format!("{} computes something else", frame.target);
+                let kind = format!("{} computes something else on {}", frame.target, frame.name);
                 findings.push(self.finding(kind, frame.target, &error));
             }
         }
