@@ -39,7 +39,11 @@ export function choose(
 /** What follows `#/page/` in the address. */
 export type Route = { page: string; path: string; query: URLSearchParams };
 
+/** The address as this page read or wrote it last. */
+let known = "";
+
 export function route(): Route {
+    known = location.hash;
     const [way, query] = location.hash.replace(/^#\/?/, "").split("?");
     const [page, ...path] = way.split("/");
     return { page: page || "catalogue", path: decodeURIComponent(path.join("/")), query: new URLSearchParams(query) };
@@ -47,7 +51,12 @@ export function route(): Route {
 
 /** Puts the state of a page into the address without a step of its own in the history. */
 export function remember(page: string, path: string, query: Record<string, string | undefined>) {
+    // Who has gone on meanwhile is not called back.
+    if (location.hash !== known) return;
     const given = Object.entries(query).filter((pair): pair is [string, string] => !!pair[1]);
     const text = new URLSearchParams(given).toString();
-    history.replaceState(null, "", `${location.search}#/${page}${path && `/${path}`}${text && `?${text}`}`);
+    const hash = `#/${page}${path && `/${path}`}${text && `?${text}`}`;
+    if (hash === location.hash) return;
+    history.replaceState(null, "", `${location.search}${hash}`);
+    known = location.hash;
 }
