@@ -1,20 +1,24 @@
-//! naga's HLSL stores to a matrix of two rows within a structure by a function of its own, which
-//! takes the structure by value: the store is lost. Here the structure is passed to be changed.
+//! naga's HLSL stores to a matrix of two rows within a structure or an array by a function of its
+//! own, which takes what it changes by value: the store is lost. Here that is passed to be changed.
 
-/// How these functions begin: no name of an author's does in HLSL.
-const START: &str = "void SetMat";
-/// The structure, in the list of parameters.
-const OBJECT: &str = " obj, ";
+/// How these functions begin, as no name of an author's does in HLSL, and what is changed in the
+/// list of parameters.
+const SETTERS: [(&str, &str); 3] = [
+    ("void SetMat", " obj, "),
+    ("void __set_col_of_mat", " mat, "),
+    ("void __set_el_of_mat", " mat, "),
+];
 
-/// The text with structures passed by reference to the functions that change them.
+/// The text with what is changed passed by reference to the functions that change it.
 pub fn by_reference(text: &str) -> String {
-    if !text.contains(START) {
+    if !SETTERS.iter().any(|(start, _)| text.contains(start)) {
         return text.to_owned();
     }
     let mut changed = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
-        match line.split_once('(').filter(|(name, _)| name.starts_with(START)) {
-            Some((name, rest)) if rest.contains(OBJECT) => {
+        let setter = SETTERS.iter().find(|(start, _)| line.starts_with(start));
+        match setter.and_then(|(_, object)| Some((line.split_once('(')?, object))) {
+            Some(((name, rest), object)) if rest.contains(object) => {
                 changed.push_str(name);
                 changed.push_str("(inout ");
                 changed.push_str(rest);
