@@ -1,6 +1,6 @@
-//! `constants::NAME` with a value from outside, where no axis has the name.
+//! Values from outside for `constants::NAME`, where no axis has that name.
 
-/// Digits of a number that a person gives.
+/// The most digits of a number.
 const LONGEST: usize = 64;
 
 /// The text of a literal of WGSL, whose suffix is its type: `true`, `4`, `4u`, `-4i`, `0.5f`.

@@ -1,5 +1,5 @@
-//! Packages that npm or Cargo installed. Nothing is run for it: their own files say where a package
-//! lies, and no program of a strange folder is started.
+//! Packages that npm or Cargo installed. Their own files tell where a package is. No program is
+//! run, since the folder may be a stranger's.
 
 use std::path::{Path, PathBuf};
 
@@ -16,12 +16,12 @@ pub enum Manager {
 }
 
 impl Manager {
-    /// With the words of `package-manager`, and the file that tells of it.
+    /// Each manager, with its name in `package-manager` and the file that shows its use.
     pub const ALL: [(&'static str, Self, &'static str); 2] =
         [("npm", Self::Npm, "package.json"), ("cargo", Self::Cargo, "Cargo.toml")];
 
-    /// The manager that a `wesl.toml` names, or else the one whose file is in its folder or, where
-    /// none is there, nearest above.
+    /// The manager that a `wesl.toml` names. Without a name, the one whose file is in its folder
+    /// or, if there is none, in the nearest folder above.
     pub fn of(folder: &Path, declared: Option<&str>) -> Result<Self, String> {
         if let Some(name) = declared {
             let found = Self::ALL.iter().find(|(known, ..)| *known == name);
