@@ -170,9 +170,10 @@ pub(super) fn plain<'a>(
 ) -> Result<(), Error> {
     match names.into_iter().find(|name| name.chars().any(char::is_control)) {
         None => Ok(()),
-        Some(name) => {
-            Err(Error::corrupt(part, format!("{name:?} has control characters, and is no name")))
-        }
+        Some(name) => Err(Error::corrupt(
+            part,
+            format!("{name:?} has control characters, so it is not a name"),
+        )),
     }
 }
 

@@ -220,7 +220,7 @@ impl DirectoryWriter {
             let Ok(found) = fs::symlink_metadata(&place) else { continue };
             let is_ours = self.live.contains(name) || self.retired.contains(name);
             if !found.is_file() {
-                return Err(Error::Foreign(Foreign::never(&place, "is no file")));
+                return Err(Error::Foreign(Foreign::never(&place, "is not a file")));
             }
             if !is_ours && self.replace == Replace::Ours {
                 return Err(Error::Foreign(stranger(&place)));
@@ -307,7 +307,9 @@ fn read_own(place: &Path) -> Result<Option<Vec<u8>>, Error> {
     match fs::symlink_metadata(place) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(io(place, &error)),
-        Ok(found) if !found.is_file() => Err(Error::Foreign(Foreign::never(place, "is no file"))),
+        Ok(found) if !found.is_file() => {
+            Err(Error::Foreign(Foreign::never(place, "is not a file")))
+        }
         Ok(found) if found.len() > MOST_MANIFEST_BYTES => Err(Error::Foreign(stranger(place))),
         Ok(_) => fs::read(place).map(Some).map_err(|error| io(place, &error)),
     }
@@ -323,7 +325,7 @@ fn is_folder(place: &Path) -> Result<bool, Error> {
             place,
             "is a link, and blobs are neither written nor removed through links",
         ))),
-        Ok(_) => Err(Error::Foreign(Foreign::never(place, "is no folder"))),
+        Ok(_) => Err(Error::Foreign(Foreign::never(place, "is not a folder"))),
     }
 }
 

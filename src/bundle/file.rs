@@ -297,7 +297,7 @@ impl Store for Packed {
         let set = &entry.keys;
         let keys = self.section(KEYS)?;
         if !set.slot_count.is_power_of_two() {
-            return Err(Error::corrupt("meta", "a number of slots is no power of two"));
+            return Err(Error::corrupt("meta", "a number of slots is not a power of two"));
         }
         let slots = slice(keys, set.slots as usize, set.slot_count as usize * SLOT_BYTES, "keys")?
             .as_chunks::<SLOT_BYTES>()

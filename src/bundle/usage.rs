@@ -52,7 +52,7 @@ impl Usage {
         let path = path.as_ref();
         let mut all = match input::read(path, MOST_BYTES) {
             Ok(text) => Self::parse(&String::from_utf8_lossy(&text)).map_err(|line| {
-                Error::corrupt("usage list", format!("line {line} is no program and key"))
+                Error::corrupt("usage list", format!("line {line} is not a program and a key"))
             })?,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Self::default(),
             Err(error) => return Err(error.into()),

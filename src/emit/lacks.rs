@@ -39,7 +39,7 @@ const LATER: &[(MathFunction, &str)] = &[
 ];
 
 const TWO_ROWS: &str =
-    "a matrix of two rows in a uniform block is laid out otherwise in GLSL: use vectors";
+    "a matrix of two rows in a uniform block has another layout in GLSL: use vectors";
 
 /// Refuses what targets lack, at the author's places where `composed` knows them.
 ///

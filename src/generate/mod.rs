@@ -145,15 +145,7 @@ pub fn generate(
             lints.see_results(sources, program, &entries, &results);
         }
         outputs.add(&targets, &results);
-        generated.summary.add_reasons(&program.name, &results);
-        generated.summary.programs.push(summary::program(&program.name, points.len(), &results));
-        generated
-            .warnings
-            .extend(results.iter().flat_map(|result| result.warnings.iter().cloned()));
-        generated
-            .contents
-            .programs
-            .insert(program.name.clone(), contents(program, points, &results));
+        generated.add(program, points, &results);
     }
     generated.warnings.extend(lints.finish());
     generated.warnings = lint::distinct(sources, generated.warnings);
@@ -240,6 +232,15 @@ pub fn survey(
         compositions::compose_all(&entries, &program.space, &points, &nothing, progress)
     })?;
     Ok(summary::program(&program.name, points.len(), &results))
+}
+
+impl Generated {
+    fn add(&mut self, program: &Program, points: &[Assignment], results: &[EntryResult]) {
+        self.summary.add_reasons(&program.name, results);
+        self.summary.programs.push(summary::program(&program.name, points.len(), results));
+        self.warnings.extend(results.iter().flat_map(|result| result.warnings.iter().cloned()));
+        self.contents.programs.insert(program.name.clone(), contents(program, points, results));
+    }
 }
 
 fn contents(program: &Program, points: &[Assignment], results: &[EntryResult]) -> ProgramContents {

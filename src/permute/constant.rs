@@ -9,7 +9,9 @@ const LONGEST: usize = 64;
 /// What is wrong with it.
 pub fn parse(text: &str) -> Result<String, String> {
     let wrong = || {
-        format!("`{text}` is no constant: write `true`, `false` or a number, such as `4u` or `0.5`")
+        format!(
+            "`{text}` is not a constant: write `true`, `false` or a number, such as `4u` or `0.5`"
+        )
     };
     if matches!(text, "true" | "false") {
         return Ok(text.to_owned());

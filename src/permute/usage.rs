@@ -116,7 +116,7 @@ fn keys(program: &str, sources: &SourceSet, list: SourceId) -> Result<Vec<Quoted
 }
 
 fn gone(key: &Quoted, reason: &str) -> Diagnostic {
-    let message = format!("`{}` is no permutation: {reason}", key.text);
+    let message = format!("`{}` is not a permutation: {reason}", key.text);
     Diagnostic {
         severity: Severity::Warning,
         ..Diagnostic::error(codes::INVALID_PERMUTATION, message).at(key.span, "left out")

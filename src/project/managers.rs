@@ -99,7 +99,7 @@ fn is_name(package: &str) -> bool {
 
 fn npm(folder: &Path, package: &str) -> Result<PathBuf, String> {
     if !is_name(package) {
-        return Err(format!("`{package}` is no name of a package of npm"));
+        return Err(format!("`{package}` is not the name of an npm package"));
     }
     let mut places = upwards(folder).map(|above| above.join("node_modules").join(package));
     places
@@ -109,7 +109,7 @@ fn npm(folder: &Path, package: &str) -> Result<PathBuf, String> {
 
 fn cargo(folder: &Path, package: &str) -> Result<PathBuf, String> {
     if !is_name(package) || package.contains(['@', '/']) {
-        return Err(format!("`{package}` is no name of a package of Cargo"));
+        return Err(format!("`{package}` is not the name of a Cargo package"));
     }
     let above: Vec<PathBuf> = upwards(folder).collect();
     let declared = above.iter().find_map(|above| declared(above, package));

@@ -59,7 +59,7 @@ fn operator(address: &str) -> Result<Operator, String> {
         Some(("redis", _)) => Operator::new(Redis::default().endpoint(address).root(ROOT)),
         _ => {
             return Err(format!(
-                "`{address}` is no store: write `fs:/path` or `redis://host:port`"
+                "`{address}` is not a store: write `fs:/path` or `redis://host:port`"
             ));
         }
     };

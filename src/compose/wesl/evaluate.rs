@@ -124,9 +124,12 @@ impl<'a> Evaluator<'a> {
             return self.setting(name, span);
         }
         if self.unknown.insert(name) {
-            let error = Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value"))
-                .at(span, "asked for here")
-                .note(format!("help: give it one with `--constant {text}=VALUE`"));
+            let error = Diagnostic::error(
+                codes::UNKNOWN_FEATURE,
+                format!("the constant `{text}` has no value"),
+            )
+            .at(span, "asked for here")
+            .note(format!("help: give it one with `--constant {text}=VALUE`"));
             let known = self.settings.constants.keys().chain(self.settings.values.keys());
             self.errors.push(error.suggest(text, known.map(String::as_str)));
         }
@@ -139,7 +142,7 @@ impl<'a> Evaluator<'a> {
         let Some(value) = self.settings.value(text) else {
             if self.unknown.insert(name) {
                 let error =
-                    Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value"))
+                    Diagnostic::error(codes::UNKNOWN_FEATURE, format!("unknown feature `{text}`"))
                         .at(span, "asked for here");
                 let others = places_of(self.graph, name).into_iter().filter(|place| *place != span);
                 let error = shown_at(error, others.collect(), "and here");

@@ -196,7 +196,7 @@ fn conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
     let name = graph.names.text(name_of(graph, thing));
     let (code, message) = match node_of(thing) == node_of(other) {
         true => (codes::DUPLICATE_ITEM, format!("`{name}` is declared twice")),
-        false => (codes::NAME_CONFLICT, format!("two things must both be named `{name}`")),
+        false => (codes::NAME_CONFLICT, format!("two declarations must both be named `{name}`")),
     };
     declared(
         graph,

@@ -45,7 +45,7 @@ pub fn import_inside(tokens: Tokens<'_>, keyword: usize) -> Diagnostic {
 pub fn used_behind(tokens: Tokens<'_>, at: usize) -> Diagnostic {
     let message = format!("`{}` is declared in a conditional block before this", tokens.text(at));
     Diagnostic::warning(codes::BLOCK_READING, message)
-        .at(tokens.span(at), "in scope here, since the braces of `@if(...) { }` are no scope")
+        .at(tokens.span(at), "in scope here, since the braces of `@if(...) { }` are not a scope")
         .note("tools that are older than this rule end its scope at the `}`")
 }
 

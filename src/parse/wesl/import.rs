@@ -52,7 +52,7 @@ pub fn origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnost
 /// The error for `as` where a path has a name.
 fn misplaced_as(tokens: Tokens<'_>, at: usize) -> Diagnostic {
     let is_path = |at: usize| tokens.kind(at) == Some(Kind::Path);
-    let error = Diagnostic::error(codes::SYNTAX_ERROR, "`as` is no name of a path")
+    let error = Diagnostic::error(codes::SYNTAX_ERROR, "`as` cannot be a name in a path")
         .at(tokens.span(at), "a keyword");
     match at > 1 && is_path(at - 1) && is_path(at + 1) && tokens.word(at + 2).is_some() {
         true => {

@@ -48,7 +48,7 @@ impl Said {
 pub fn validation(module: &Module, error: &ValidationError) -> Said {
     match error {
         ValidationError::InvalidHandle(_) | ValidationError::Corrupted => {
-            Said::plain("naga read the text in a way that it does not understand itself")
+            Said::plain("naga's parser gave the text a form that naga's validator refuses")
         }
         ValidationError::Layouter(_) => {
             Said::plain("a type has no layout in memory: its size is not known, or too large")
