@@ -112,7 +112,7 @@ pub enum Side {
 }
 
 /// What was drawn.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Frame {
     /// The words of each target, four a pixel, row by row from the top; pixels that nothing
     /// covers hold [`SENTINEL`](crate::execute::kernel::SENTINEL).
