@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
-pub use page::{Page, Shot};
+pub use page::{Page, Screenshot};
 use process::Process;
 use wire::Wire;
 

@@ -23,7 +23,7 @@ pub struct Page {
 
 /// What a picture of a page shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shot {
+pub struct Screenshot {
     /// The width of the window, in pixels.
     pub width: u32,
     /// The height of the window. If `whole` is set and the page is higher, the picture has the
@@ -123,8 +123,8 @@ impl Page {
     ///
     /// # Errors
     /// The browser's.
-    pub fn screenshot(&self, shot: Shot) -> Result<Vec<u8>, Problem> {
-        let Shot { width, height, whole } = shot;
+    pub fn screenshot(&self, shot: Screenshot) -> Result<Vec<u8>, Problem> {
+        let Screenshot { width, height, whole } = shot;
         let size = json!({
             "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false,
         });

@@ -142,7 +142,7 @@ impl DirectoryWriter {
             return Ok(());
         }
         drop(staged);
-        self.scratch.write(&name, bytes)?;
+        self.scratch.stage(&name, bytes)?;
         Ok(())
     }
 
@@ -200,6 +200,8 @@ impl DirectoryWriter {
         let is_same = fs::read(&place).is_ok_and(|found| found == text);
         let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner);
         self.check_blobs(&staged)?;
+        // No manifest names a blob that a loss of power could take.
+        self.scratch.sync(&staged.iter().map(String::as_str).collect::<Vec<_>>())?;
         let written = self.scratch.write(MANIFEST, &text)?;
         self.remove_retired(&next);
         self.move_blobs(&staged)?;

@@ -24,6 +24,17 @@ pub enum Stage {
     Compute,
 }
 
+impl Stage {
+    /// One word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::Fragment => "fragment",
+            Self::Compute => "compute",
+        }
+    }
+}
+
 /// One entry point. This is the same for every target. Types are spelt as in WGSL; sizes, offsets
 /// and strides are in bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]

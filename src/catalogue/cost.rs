@@ -101,7 +101,7 @@ impl Costs {
 impl AxisCost {
     fn fields(&self) -> String {
         let Self { pairs, instructions, vgprs, waves, inverse_throughput, .. } = self;
-        let stage = format!("{:?}", self.stage).to_lowercase();
+        let stage = self.stage.name();
         format!(
             "program = {}, axis = {}, value = {}, stage = {}, pairs = {pairs}, \
              instructions = {instructions:?}, vgprs = {vgprs}, waves = {waves:?}, \
@@ -109,7 +109,7 @@ impl AxisCost {
             quoted(&self.program),
             quoted(&self.axis),
             quoted(&self.value),
-            quoted(&stage),
+            quoted(stage),
         )
     }
 }

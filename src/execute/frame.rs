@@ -117,7 +117,7 @@ pub enum Side {
 }
 
 /// What was drawn.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Frame {
     /// The words of each target: four per pixel, row by row from the top. Pixels that nothing
     /// covers hold [`SENTINEL`](crate::execute::kernel::SENTINEL).

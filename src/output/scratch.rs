@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::Error;
+use crate::syncing;
 
 /// How the name of a scratch folder begins; sixteen random digits follow.
 const PREFIX: &str = ".lamplight-";
@@ -80,11 +81,20 @@ impl Scratch {
         })
     }
 
+    /// Writes a file without waiting for the disk: [`Self::sync`] waits for many at once.
+    pub fn stage(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, Error> {
+        self.write_with(name, |file| file.write_all(bytes))
+    }
+
+    /// Returns when files of those names are on the disk.
+    pub fn sync(&self, names: &[&str]) -> Result<(), Error> {
+        syncing::files(&self.folder, names).map_err(|error| Error::io(&self.folder, &error))
+    }
+
     /// Writes a file under a name of its own, without waiting for the disk. This is for what can be
     /// computed again.
     pub fn write_unsynced(&self, bytes: &[u8]) -> Result<PathBuf, Error> {
-        let name = self.next.fetch_add(1, Ordering::Relaxed).to_string();
-        self.write_with(&name, |file| file.write_all(bytes))
+        self.stage(&self.next.fetch_add(1, Ordering::Relaxed).to_string(), bytes)
     }
 
     fn write_with(

@@ -67,11 +67,13 @@ impl Plan {
     /// A program or key that the manifest does not have, or that breaks a constraint.
     pub fn of_key(programs: &Programs, program: &str, text: &str) -> Result<Self, Diagnostics> {
         let found = known(programs, program)?;
-        let mut texts = SourceSet::default();
-        let id = texts.add("key", text.to_owned());
-        let point = key::parse(&found.space, &Quoted::whole(&texts, id))?;
+        let point = programs.with_texts(|texts| {
+            let id = texts.add("key", text.to_owned());
+            key::parse(&found.space, &Quoted::whole(texts, id))
+        })?;
         if let Some(constraint) = found.space.broken(&point).next() {
-            let message = format!("`{text}` breaks the constraint `{}`", constraint.text);
+            let sentence = constraint.doc.as_ref().unwrap_or(&constraint.text);
+            let message = format!("`{text}` is no permutation of `{program}`: {sentence}");
             return Err(vec![Diagnostic::error(codes::INVALID_PERMUTATION, message)]);
         }
         Self::of_point(programs, found, &point)
@@ -132,7 +134,11 @@ impl Plan {
     }
 }
 
-fn known<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Diagnostics> {
+/// The program of that name.
+///
+/// # Errors
+/// There is none.
+pub(super) fn known<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Diagnostics> {
     let unknown = || {
         let message = format!("there is no program `{name}`");
         vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]

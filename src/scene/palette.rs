@@ -39,6 +39,18 @@ pub fn materials() -> Vec<[Material; 2]> {
     FRONTS.iter().enumerate().map(|(index, front)| [material(*front), back(index)]).collect()
 }
 
+/// The lamps of shapes that float: the first shines from beside the viewer, everywhere alike.
+pub fn over_the_shoulder() -> Vec<Lamp> {
+    let key = Lamp {
+        color: DVec3::splat(0.95),
+        position: DVec3::new(-3.5, 5.5, 6.5),
+        target: DVec3::ZERO,
+        half_angle: 0.5,
+        kind: LampKind::Directional,
+    };
+    lamps(key, 5.0, 4.0, 0.22)
+}
+
 /// Ten lamps: the given key light, then coloured ones on a ring around its target.
 pub fn lamps(key: Lamp, radius: f64, height: f64, share: f64) -> Vec<Lamp> {
     const COLORS: [DVec3; 9] = [

@@ -93,7 +93,7 @@ pub fn of_program(text: &mut String, program: &str, costs: &Costs) {
     for row in rows {
         let AxisCost { axis, value, pairs, instructions, vgprs, waves, inverse_throughput, .. } =
             row;
-        let stage = format!("{:?}", row.stage).to_lowercase();
+        let stage = row.stage.name();
         let [least, median, most] = instructions;
         let [before, after] = waves;
         let _ = writeln!(

@@ -204,7 +204,7 @@ fn print(arguments: &Arguments, driver: &str, costs: &[Cost]) -> Result<(), Fail
         .map(|cost| {
             let figures = if arguments.whole { &cost.stage_figures } else { cost.figures() };
             let mut row = vec![cost.gpu.name.to_owned()];
-            row.extend(several_stages.then(|| format!("{:?}", cost.stage).to_lowercase()));
+            row.extend(several_stages.then(|| cost.stage.name().to_owned()));
             row.extend(FIGURES.iter().map(|figure| figure.of(figures).to_string()));
             row.push(cost.name.clone());
             row

@@ -9,14 +9,15 @@ pub use markdown::page as markdown;
 use std::sync::Arc;
 
 use super::pixels::Picture;
-use super::plan::{Pass, Plan};
+use super::plan::{Pass, Plan, known};
 use super::strip::{self, Comparison};
 use super::{Shot, prepare};
 use crate::bundle::Language;
 use crate::catalogue::preset::Preset;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::Diagnostics;
 use crate::execute::Session;
 use crate::picture::frame::{Programs, Stages};
+use crate::scene::sets::{self, Scene};
 
 /// The size of the gallery's pictures in pixels, and the samples for each pixel.
 pub const SIZE: [u32; 2] = [960, 720];
@@ -75,6 +76,7 @@ impl Card {
         let plan = Plan::of_preset(programs, preset, &[])?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(settings(preset).as_bytes());
+        hasher.update(geometry(&preset.scene).as_bytes());
         let all = composed_texts(programs, &plan, language)?;
         for text in all.concat() {
             hasher.update(text.as_bytes());
@@ -139,6 +141,7 @@ impl StripCard {
         let mut hasher = blake3::Hasher::new();
         let Comparison { scene, code, inset, panels, .. } = &comparison;
         hasher.update(serde_json::json!([scene, code, inset, panels]).to_string().as_bytes());
+        hasher.update(geometry(scene).as_bytes());
         for panel in panels.iter().filter(|panel| panel.value.is_none()) {
             let plan = strip::plan(programs, &comparison, panel)?;
             for text in composed_texts(programs, &plan, language)?.concat() {
@@ -186,18 +189,35 @@ fn composed_texts(
 }
 
 fn stages(programs: &Programs, pass: &Pass, language: Language) -> Result<Stages, Diagnostics> {
-    let unknown = || {
-        let message = format!("there is no program `{}`", pass.program);
-        vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
-    };
-    let program = programs.manifest().program(&pass.program).ok_or_else(unknown)?;
-    programs.stages(program, &pass.settings, language)
+    programs.stages(known(programs, &pass.program)?, &pass.settings, language)
 }
 
 /// Everything of a preset that its picture depends on, as one text.
 fn settings(preset: &Preset) -> String {
     let Preset { program, key, scene, probe, passes, numbers, .. } = preset;
     serde_json::json!([program, key, scene, probe, passes, numbers]).to_string()
+}
+
+/// Shapes, lamps and viewer of a scene as text, to the thousandth: the last digits of a sine differ
+/// from machine to machine.
+fn geometry(scene: &str) -> String {
+    let Some(set) = sets::ALL.iter().find(|set| set.name == scene) else { return String::new() };
+    let Scene {
+        objects,
+        eye,
+        lamps,
+        materials,
+        ambient,
+        sky,
+        ground,
+        haze,
+        haze_range,
+        map_size,
+        shows_lamps,
+        maps: _,
+    } = (set.make)();
+    let seen = (objects, eye, lamps, materials);
+    format!("{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}")
 }
 
 fn texts(stages: &Stages) -> Vec<Arc<str>> {

@@ -22,6 +22,8 @@ pub const ZOOM: u32 = 3;
 /// Pixels between panels, and the height of a label.
 const GAP: u32 = 6;
 const LABEL: u32 = 28;
+/// Pixels to the left and right of a label's words.
+const MARGIN: u32 = 6;
 /// The colour of the background.
 const GROUND: [u8; 3] = [24, 26, 30];
 /// The colour of the frame around the part that is enlarged.
@@ -88,7 +90,7 @@ pub fn draw(
         let left = index as u32 * (width + GAP);
         let mut small = picture.shrunk(ZOOM);
         small.outline(inset.map(|at| at / ZOOM), [width / ZOOM, height / ZOOM], FRAME);
-        label::write(&mut strip, &panel.label, [left, 4], width);
+        label::write(&mut strip, &panel.label, [left + MARGIN, 4], width - 2 * MARGIN);
         strip.place(&small, [left, LABEL]);
         strip.place(&picture.part(inset, [width, height]), [left, LABEL + height + GAP]);
     }
