@@ -1,13 +1,13 @@
-//! Constants and variables of HLSL modules, given their values as lists.
+//! Writes the initial values of constants and variables of HLSL as lists.
 //!
-//! naga calls functions that it adds, such as `ConstructPair(1.0, 2)`. fxc and dxc take that;
-//! glslang takes such a call for one of the function before it. All of them take lists.
+//! naga calls functions that it adds, such as `ConstructPair(1.0, 2)`. fxc and dxc accept that.
+//! glslang takes such a call for one of the function that stands before it. All three accept lists.
 
 use std::collections::HashMap;
 
 use super::columns;
 
-/// The text with lists in the place of calls where a variable of the module is given its value.
+/// The text with lists instead of calls, wherever a variable of the module is initialised.
 pub fn with_plain_constants(text: &str) -> String {
     if !text.contains(" = Construct") {
         return text.to_owned();
@@ -48,7 +48,7 @@ fn structs(text: &str) -> Structs<'_> {
                 line if line.starts_with(columns::STRUCTURE) => Member::Columns,
                 _ => Member::Value,
             };
-            // The columns of a matrix stand in one line.
+            // The columns of a matrix stand on one line.
             let members = members.split(';').filter(|member| !member.trim().is_empty());
             structs.insert(name, members.map(member).collect());
         }
@@ -56,7 +56,7 @@ fn structs(text: &str) -> Structs<'_> {
     structs
 }
 
-/// `ConstructPair(a, b)` as `{ a, b }`.
+/// `ConstructPair(a, b)` written as `{ a, b }`.
 fn listed(value: &str, structs: &Structs<'_>) -> String {
     let list = call(value).and_then(|(word, arguments)| {
         let of = word.strip_prefix("Construct")?;
@@ -68,7 +68,8 @@ fn listed(value: &str, structs: &Structs<'_>) -> String {
     list.map_or_else(|| value.to_owned(), |list: Vec<String>| format!("{{ {} }}", list.join(", ")))
 }
 
-/// The values of all members. naga declares the columns of a matrix of two rows as members.
+/// The values of all members, padding included. naga declares the columns of a matrix of two rows
+/// as members.
 fn filled(members: &[Member], arguments: &[&str], structs: &Structs<'_>) -> Option<Vec<String>> {
     let mut values = Vec::new();
     let mut places = members.iter().filter(|member| **member != Member::Gap);
@@ -108,7 +109,7 @@ fn listed_columns(value: &str) -> String {
     format!("{{ {} }}", list.join(", "))
 }
 
-/// A value that is a call: the function, and its arguments.
+/// Reads a value that is a call: the name of the function, and its arguments.
 fn call(value: &str) -> Option<(&str, Vec<&str>)> {
     let (word, rest) = value.split_once('(')?;
     let rest = rest.strip_suffix(')')?;

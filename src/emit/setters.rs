@@ -1,8 +1,9 @@
-//! naga's HLSL stores to a matrix of two rows within a structure or an array by a function of its
-//! own, which takes what it changes by value: the store is lost. Here that is passed to be changed.
+//! Repairs stores to matrices of two rows within structures and arrays. For these, naga's HLSL
+//! calls functions that take what they change by value, so the store is lost. Here that becomes an
+//! `inout` parameter.
 
-/// How these functions begin, as no name of an author's does in HLSL, and what is changed in the
-/// list of parameters.
+/// How these functions begin, as no name of an author's does in HLSL, and the parameter that they
+/// change.
 const SETTERS: [(&str, &str); 3] = [
     ("void SetMat", " obj, "),
     ("void __set_col_of_mat", " mat, "),

@@ -30,10 +30,10 @@ pub fn renumbered(sessions: &[Opened], target: Target, ready: &Ready<'_>) -> Opt
     (1..=NUMBERINGS).find_map(is_right)
 }
 
-/// HLSL with functions in front that nothing calls: glslangValidator numbers what follows otherwise,
+/// HLSL with variables in front that nothing reads: glslangValidator numbers what follows otherwise,
 /// and spirv-opt leaves them out.
 fn with_unused(stage: &Shipped, count: usize) -> Option<Shipped> {
-    let unused = |number| format!("float naga_unused_{number}_(float given) {{ return given; }}\n");
+    let unused = |number| format!("static float naga_unused_{number}_ = {number}.0;\n");
     let unused: String = (0..count).map(unused).collect();
     let bytes = [unused.as_bytes(), &stage.bytes].concat();
     (stage.target == Target::HLSL).then(|| Shipped { bytes, ..stage.clone() })
