@@ -93,6 +93,9 @@ struct Ready<'r> {
     stages: BTreeMap<Target, Result<Stages, Diagnostic>>,
 }
 
+/// With the places of stages in a list.
+type Placed<T> = Vec<(usize, T)>;
+
 /// What is drawn in one target.
 #[derive(Clone)]
 struct Stages {
@@ -136,7 +139,7 @@ impl Runner {
         &self,
         runnables: &[Runnable],
         ran: &mut BTreeMap<&'static str, Ran>,
-    ) -> Result<Vec<(usize, Finding)>, String> {
+    ) -> Result<Placed<Finding>, String> {
         let (ready, mut findings) = made_ready(runnables);
         let (owners, ready): (Vec<usize>, Vec<Ready<'_>>) = ready.into_iter().unzip();
         let metal = Metal::new(&ready)?;
@@ -178,7 +181,7 @@ impl Runner {
 }
 
 /// The stages that can be run with their places, and why others cannot.
-fn made_ready(runnables: &[Runnable]) -> (Vec<(usize, Ready<'_>)>, Vec<(usize, Finding)>) {
+fn made_ready(runnables: &[Runnable]) -> (Placed<Ready<'_>>, Placed<Finding>) {
     let (mut ready, mut findings) = (Vec::new(), Vec::new());
     for (index, runnable) in runnables.iter().enumerate() {
         match Ready::new(runnable) {
