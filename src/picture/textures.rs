@@ -1,5 +1,7 @@
 //! The textures and samplers of a pass: what earlier passes drew, the scene's, its surroundings'.
 
+use std::sync::Arc;
+
 use super::values::Values;
 use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -26,7 +28,7 @@ pub fn sampler(binding: &Binding) -> Fixture {
 pub struct Library<'a> {
     values: &'a Values<'a>,
     left: &'a Left,
-    maps: Option<Maps>,
+    maps: Option<Arc<Maps>>,
 }
 
 /// Edges of the environment's cube maps, and rows of the quadratures that fill them.
@@ -71,7 +73,8 @@ impl<'a> Library<'a> {
     }
 
     fn maps(&mut self) -> &Maps {
-        let make = self.values.scene.maps;
+        let scene = self.values.scene;
+        let make = || scene.own_maps.clone().unwrap_or_else(|| Arc::new((scene.maps)()));
         self.maps.get_or_insert_with(make)
     }
 }
