@@ -19,6 +19,7 @@ use glam::DVec3;
 use self::texture::Sheet;
 use crate::limits::{MODEL_BYTES, MODEL_JSON_BYTES};
 use crate::scene::sets::{Eye, Lamp, LampKind, Scene};
+use crate::validate::caught;
 
 /// A model, ready to be drawn.
 #[derive(Debug)]
@@ -57,9 +58,12 @@ pub fn read(bytes: &[u8], view: View) -> Result<Model, String> {
         return Err(format!("{} bytes are more than {MODEL_BYTES}", bytes.len()));
     }
     let (json, blob) = chunks(bytes)?;
-    let document = gltf::Gltf::from_slice(json).map_err(|error| told(&error))?.document;
-    let mut reader = Reader { document: &document, blob, notes: BTreeSet::new() };
-    scene(&mut reader, view)
+    // The crate that reads documents panics at some that are broken.
+    let read = || -> Result<Model, String> {
+        let document = gltf::Gltf::from_slice(json).map_err(|error| told(&error))?.document;
+        scene(&mut Reader { document: &document, blob, notes: BTreeSet::new() }, view)
+    };
+    caught(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
 }
 
 /// The document of a binary file, and its bytes.

@@ -35,19 +35,23 @@ pub fn on_large_stack<R: Send>(work: impl FnOnce() -> R + Send) -> R {
 
 /// Runs `work`, which calls naga over `text`; a panic becomes a diagnostic, and prints nothing.
 pub fn guard<R>(text: &str, work: impl FnOnce() -> R) -> Result<R, Diagnostic> {
-    hush();
-    let outer = GUARDED.replace(true);
-    // The values `work` may leave half changed are dropped with it: callers keep only its result.
-    let result = panic::catch_unwind(AssertUnwindSafe(work));
-    GUARDED.set(outer);
-    result.map_err(|_| {
-        let reason = PANIC.take().unwrap_or_else(|| "no message".to_owned());
+    caught(work).map_err(|reason| {
         Diagnostic::error(
             codes::NAGA_INTERNAL,
             format!("naga stopped with an internal error: {reason}"),
         )
         .note(quote(text))
     })
+}
+
+/// Runs `work`, which calls code of others; a panic becomes its message, and prints nothing.
+pub fn caught<R>(work: impl FnOnce() -> R) -> Result<R, String> {
+    hush();
+    let outer = GUARDED.replace(true);
+    // The values `work` may leave half changed are dropped with it: callers keep only its result.
+    let result = panic::catch_unwind(AssertUnwindSafe(work));
+    GUARDED.set(outer);
+    result.map_err(|_| PANIC.take().unwrap_or_else(|| "no message".to_owned()))
 }
 
 fn pool() -> Option<&'static ThreadPool> {

@@ -1,5 +1,7 @@
 //! Models of users: files that the trials write, drawn by the command.
 
+mod wrong;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -10,9 +12,6 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 pub fn trials() -> Vec<Trial> {
-    let wrong = WRONG.iter().map(|(name, file, words)| {
-        Trial::test(format!("render/model/wrong/{name}"), || refused(&file(), words))
-    });
     let drawn = [
         Trial::test("render/model/unlit_colour_is_exact", unlit_colour_is_exact),
         Trial::test("render/model/all_of_it_is_seen", all_of_it_is_seen),
@@ -24,11 +23,11 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("render/model/what_is_left_out_is_said", what_is_left_out_is_said),
         Trial::test("render/model/choices_of_the_user", choices_of_the_user),
     ];
-    drawn.into_iter().chain(wrong).collect()
+    drawn.into_iter().chain(wrong::trials()).collect()
 }
 
 /// A binary glTF file.
-pub fn glb(document: &Value, buffer: &[u8]) -> Vec<u8> {
+fn glb(document: &Value, buffer: &[u8]) -> Vec<u8> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     let mut data = buffer.to_vec();
@@ -151,9 +150,13 @@ fn unlit_colour_is_exact() -> Result<(), Failed> {
 fn all_of_it_is_seen() -> Result<(), Failed> {
     for (scale, place) in [(1.0, [0.0; 3]), (250.0, [1e4, -300.0, 77.0]), (1e-3, [0.0, 2.0, 0.0])] {
         let (mut document, buffer) = square(&[]);
-        document["nodes"] = json!([{ "mesh": 0, "scale": [scale; 3], "translation": place }]);
-        let (picture, _) = drawn(&glb(&document, &buffer), &["--set", "ambient=constant"])?;
-        let ground = drawn(&glb(&document, &buffer), &["--camera", "0,9e6,0,0,9e7,0"])?.0;
+        document["nodes"] =
+            json!([{ "mesh": 0, "scale": [scale, scale, scale], "translation": place }]);
+        let file = glb(&document, &buffer);
+        let constant = ["--set", "ambient=constant"];
+        let (picture, _) = drawn(&file, &constant)?;
+        let away = [constant.as_slice(), &["--camera", "9e6,0,0,9e7,0,0"]].concat();
+        let (ground, _) = drawn(&file, &away)?;
         let differs = |x: u32, y: u32| {
             let start = 3 * (y * picture.width + x) as usize;
             picture.pixels[start..start + 3] != ground.pixels[start..start + 3]
@@ -172,9 +175,10 @@ const GREEN: [u8; 3] = [0, 255, 0];
 const BLUE: [u8; 3] = [0, 0, 255];
 const WHITE: [u8; 3] = [255; 3];
 
-/// Which of red, green and blue there is, at all.
+/// Which of red, green and blue there is, but for the white of a highlight.
 fn hue(pixel: [u8; 3]) -> [bool; 3] {
-    pixel.map(|part| part > 40)
+    let most = pixel.into_iter().max().unwrap_or(0);
+    pixel.map(|part| u32::from(part) * 4 > u32::from(most) * 3)
 }
 
 fn has_quarters(picture: &Picture, quarters: [[u8; 3]; 4]) -> Result<(), Failed> {
@@ -270,7 +274,7 @@ fn lamp_and_camera() -> Result<(), Failed> {
         Ok(pixel(&picture, 0.5, 0.5))
     };
     let (before, behind) = (lit(3.0)?, lit(-3.0)?);
-    demand(before[0] > 100 && before[1] < 20, || format!("{before:?} before it"))?;
+    demand(before[0] > 60 && before[1] < 20, || format!("{before:?} before it"))?;
     demand(behind.iter().all(|part| *part < 20), || format!("{behind:?} behind it"))
 }
 
@@ -295,118 +299,4 @@ fn choices_of_the_user() -> Result<(), Failed> {
         demand(is_taken, || format!("{told}{}", String::from_utf8_lossy(&output.stderr)))?;
     }
     Ok(())
-}
-
-/// A name, a file, and what is said of it.
-type Wrong = (&'static str, fn() -> Vec<u8>, &'static str);
-
-const WRONG: &[Wrong] = &[
-    ("text", || b"solid cube".to_vec(), "no binary glTF"),
-    ("version", || [b"glTF".as_slice(), &[1, 0, 0, 0]].concat(), "version 1"),
-    ("cut_short", || changed(|_| ())[..40].to_vec(), "more than the file"),
-    ("no_document", || glb(&json!([1]), &[]), "model.glb"),
-    ("no_scene", || changed(|document| document["scenes"] = json!([])), "scene"),
-    ("index", || changed(|document| document["accessors"][0]["count"] = json!(2)), "is beyond"),
-    (
-        "view_beyond_the_buffer",
-        || changed(|document| document["bufferViews"][0]["byteLength"] = json!(4000)),
-        "buffer view 0 ends beyond",
-    ),
-    (
-        "view_beyond_all_numbers",
-        || changed(|document| document["bufferViews"][0]["byteOffset"] = json!(u64::MAX)),
-        "model.glb",
-    ),
-    (
-        "rows_beyond_the_view",
-        || changed(|document| document["accessors"][1]["count"] = json!(5)),
-        "TEXCOORD_0: accessor 1 ends beyond",
-    ),
-    (
-        "many_rows",
-        || changed(|document| document["accessors"][0]["count"] = json!(4_000_000_000_u32)),
-        "corners",
-    ),
-    (
-        "sparse",
-        || {
-            changed(|document| {
-                document["accessors"][0]["sparse"] = json!({ "count": 1,
-                    "indices": { "bufferView": 1, "componentType": 5123 },
-                    "values": { "bufferView": 0 } });
-            })
-        },
-        "sparse",
-    ),
-    (
-        "another_file",
-        || changed(|document| document["buffers"][0]["uri"] = json!("/etc/passwd")),
-        "in another file",
-    ),
-    (
-        "loop_of_nodes",
-        || changed(|document| document["nodes"][0]["children"] = json!([0])),
-        "nodes[0]",
-    ),
-    ("tower_of_nodes", tower, "more than 100000 nodes"),
-    ("no_number", || with_first(f32::NAN), "not finite"),
-    (
-        "infinite_place",
-        || {
-            changed(|document| {
-                document["nodes"] = json!([{ "children": [1], "scale": [1e38, 1e38, 1e38] },
-            { "children": [2], "scale": [1e38, 1e38, 1e38] }, { "mesh": 0, "scale": [1e308, 1.0, 1.0] }]);
-            })
-        },
-        "model.glb",
-    ),
-    ("image_of_gigapixels", huge_image, "images[0]"),
-    ("image_that_is_none", || pictured(b"no image".to_vec()), "images[0]"),
-];
-
-fn refused(file: &[u8], words: &str) -> Result<(), Failed> {
-    let folder = TempDir::new()?;
-    let output = render(folder.path(), file, &[])?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    let is_told = output.status.code() == Some(1)
-        && said.contains(words)
-        && said.contains("model.glb")
-        && !said.contains("panicked");
-    demand(is_told, || format!("{}: {said}", output.status))?;
-    demand(!folder.path().join("out.png").exists(), || "a picture was written".to_owned())
-}
-
-fn changed(change: impl FnOnce(&mut Value)) -> Vec<u8> {
-    let (mut document, buffer) = square(&[]);
-    change(&mut document);
-    glb(&document, &buffer)
-}
-
-/// Thirty nodes, each with the next one twice.
-fn tower() -> Vec<u8> {
-    changed(|document| {
-        let node = |index: usize| json!({ "children": [index + 1, index + 1] });
-        let nodes = (0..30).map(node).chain([json!({ "mesh": 0 })]);
-        document["nodes"] = nodes.collect();
-    })
-}
-
-fn with_first(number: f32) -> Vec<u8> {
-    let (document, mut buffer) = square(&[]);
-    buffer[..4].copy_from_slice(&number.to_le_bytes());
-    glb(&document, &buffer)
-}
-
-fn pictured(image: Vec<u8>) -> Vec<u8> {
-    let (mut document, buffer) = square(&[image]);
-    document["materials"] =
-        json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
-    glb(&document, &buffer)
-}
-
-/// A PNG whose header says 65,535 by 65,535 pixels.
-fn huge_image() -> Vec<u8> {
-    let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xff\xff\0\0\xff\xff\x08\x06\0\0\0".to_vec();
-    png.extend([0xba, 0x58, 0x9b, 0x6b]);
-    pictured(png)
 }
