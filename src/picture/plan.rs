@@ -1,4 +1,4 @@
-//! Which permutations are drawn, in which order, with which numbers.
+//! Plans a picture: which permutations are drawn, in which order, with which numbers.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,18 +15,18 @@ use crate::picture::frame::Programs;
 use crate::scene::sets::{Lamp, Scene};
 use crate::source::SourceSet;
 
-/// Everything about a picture but how it is photographed.
+/// Everything about a picture, except how it is taken.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Of the scene, one of [`sets::ALL`](crate::scene::sets::ALL).
+    /// The name of the scene, one of [`sets::ALL`](crate::scene::sets::ALL).
     pub scene: String,
     /// A scene that was read, instead of that one.
     pub model: Option<Arc<Scene>>,
-    /// In order; the last one draws the picture.
+    /// The passes in order. The last one draws the picture.
     pub passes: Vec<Pass>,
-    /// Published numbers by group, then by field, as of [`Preset`].
+    /// Published numbers by group and field, as in [`Preset`].
     pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
-    /// Nine coefficients of the light from everywhere.
+    /// The nine coefficients of the ambient light, if a probe is given.
     pub probe: Option<[[f64; 3]; 9]>,
 }
 
@@ -36,7 +36,7 @@ pub struct Pass {
     pub program: String,
     pub key: String,
     pub settings: Settings,
-    /// What a picture takes from it.
+    /// What a picture needs from it.
     pub needs: Needs,
 }
 
@@ -86,7 +86,7 @@ impl Plan {
     /// A point of a program's space, with the passes that it needs before it.
     ///
     /// # Errors
-    /// A program whose last pass is no picture.
+    /// The program does not draw a picture.
     pub fn of_point(
         programs: &Programs,
         program: &Program,
@@ -119,7 +119,7 @@ impl Plan {
         self.passes.last()
     }
 
-    /// Puts a lamp where the source has it, so that its shadow falls from there.
+    /// Moves a lamp to where the source has it, so that its shadow falls from there.
     pub(super) fn place(&self, lamp: &mut Lamp) {
         let vector = |field| {
             self.number("light", field)
@@ -175,7 +175,7 @@ impl Pass {
         }
     }
 
-    /// The number that an axis is.
+    /// The integer value of an axis.
     pub fn integer(&self, axis: &str) -> Option<i64> {
         match self.settings.values.get(axis) {
             Some(Setting::Int(value)) => Some(*value),

@@ -1,11 +1,11 @@
-//! Values as words, and back.
+//! Converts values to words, and back.
 
 use naga::{BinaryOperator as Op, Expression, Handle, ScalarKind, Type, TypeInner, VectorSize};
 
 use super::{Body, Value};
 
 impl Body<'_> {
-    /// A value of the type from words; `None` when the type is not made of words.
+    /// A value of the type from words; `None` if the type does not consist of words.
     pub(super) fn unflatten(
         &mut self,
         ty: Handle<Type>,
@@ -71,7 +71,7 @@ impl Body<'_> {
         }
     }
 
-    /// The four words of this pixel: part 0, unless `part` says another.
+    /// The four words of this pixel: those of part 0, unless `part` is another.
     pub(super) fn choose(&mut self, words: &[Value], part: Value) -> Value {
         let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
         let zero = self.literal(0);
