@@ -39,6 +39,7 @@ const FOLDERS: &[Writer] = &[
         &["compile", "main.wesl", "--set", "tint=red", "--target", "wgsl", "-o", "OUT"],
     ),
     writer("export", &["export", "OUT"]),
+    writer("migrate", &["migrate", "--from", "naga_oil", ".", "-o", "OUT"]),
     writer("export_npm", &["export", "OUT", "--form", "npm"]),
     writer("catalogue", &["catalogue", "-o", "OUT"]),
     writer("report", &["check", "half.toml", "--report", "OUT"]),
@@ -139,6 +140,7 @@ impl Place {
             ("main.wesl", MAIN),
             ("half.wesl", HALF),
             ("half.toml", CASES),
+            ("old.wgsl", "#ifdef FOG\nconst FAR: f32 = 9.0;\n#endif\n"),
         ] {
             fs::write(place.at(name), text)?;
         }
