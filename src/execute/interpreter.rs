@@ -1,4 +1,4 @@
-//! Kernels on the crate's own interpreter, in any of its numbers.
+//! Runs kernels on the crate's own evaluator, with any of its kinds of numbers.
 
 use super::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use super::kernel::{Kernel, ParameterKind};
@@ -11,7 +11,7 @@ use naga::{Module, ScalarKind};
 pub struct Interpreter {
     program: Program,
     function: FunctionId,
-    /// What each slot of the arguments takes.
+    /// What each slot of the arguments is filled with.
     slots: Vec<Slot>,
     resources: Resources,
 }
@@ -25,7 +25,7 @@ enum Slot {
     Handle(u32),
 }
 
-/// Memory for a kernel's calls in one kind of number.
+/// Calls of a kernel with one kind of number, and the memory for them.
 pub struct Calls<'p, N> {
     interpreter: &'p Interpreter,
     /// The machine, for its findings and limits.
@@ -34,7 +34,7 @@ pub struct Calls<'p, N> {
 }
 
 impl Interpreter {
-    /// Validates and lowers the kernel's module.
+    /// Validates the kernel's module and lowers it.
     pub fn new(kernel: &Kernel) -> Result<Self, Diagnostic> {
         Self::of(kernel, &kernel.module)
     }
@@ -61,7 +61,7 @@ impl Interpreter {
         &self.program
     }
 
-    /// Memory to call it with; the calls of one thread.
+    /// The memory for the calls of one thread.
     pub fn calls<N: Number>(&self) -> Result<Calls<'_, N>, Diagnostic> {
         let mut machine = Machine::new(&self.program).map_err(failed)?;
         machine.bind(self.resources.clone()).map_err(failed)?;
@@ -70,7 +70,7 @@ impl Interpreter {
 }
 
 impl<N: Number> Calls<'_, N> {
-    /// The flattened result of one row of words.
+    /// Calls the function with one row of words, and returns its flattened result.
     pub fn call(&mut self, row: &[u32]) -> Result<&[N], Diagnostic> {
         let mut words = row.iter().copied();
         self.arguments.clear();
@@ -90,7 +90,7 @@ fn number<N: Number>(word: u32, kind: ScalarKind) -> N {
     }
 }
 
-/// A slot as the number it stands for.
+/// The number in a slot.
 pub fn value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
     match kind {
         ScalarKind::Float => slot.value(),
@@ -98,7 +98,7 @@ pub fn value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
     }
 }
 
-/// A slot as the word that f32 and integers have for it.
+/// The word that represents a slot's value as f32 or as an integer.
 pub fn word_of<N: Number>(slot: N, kind: ScalarKind) -> u32 {
     match kind {
         ScalarKind::Float => slot.bits(),
@@ -174,7 +174,8 @@ impl From<Sampler> for eval::Sampler {
     }
 }
 
-/// The text naga read is the kernel's, not the author's: no place is given.
+/// The error as a diagnostic without a place, since naga read the kernel's text and not the
+/// author's.
 pub fn failed(error: eval::Error) -> Diagnostic {
     Diagnostic::error(error.code, error.message)
 }
