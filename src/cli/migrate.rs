@@ -61,11 +61,11 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     }
 }
 
+/// Paths and texts of shaders.
+type Read = Vec<(String, source::SourceId)>;
+
 /// All shaders below a folder, and what could not be read.
-fn read(
-    folder: &Path,
-    sources: &mut SourceSet,
-) -> Result<(Vec<(String, source::SourceId)>, Vec<Diagnostic>), Failure> {
+fn read(folder: &Path, sources: &mut SourceSet) -> Result<(Read, Vec<Diagnostic>), Failure> {
     let none = || Failure::input(format!("there is no folder `{}`", folder.display()));
     if !folder.is_dir() {
         return Err(none());
