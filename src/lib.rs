@@ -158,6 +158,9 @@ pub mod lint;
 pub mod metal;
 #[cfg(feature = "compile")]
 #[doc(hidden)]
+pub mod migrate;
+#[cfg(feature = "compile")]
+#[doc(hidden)]
 pub mod parse;
 #[cfg(feature = "compile")]
 pub mod permute;

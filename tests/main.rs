@@ -38,6 +38,7 @@ mod link_compare;
 mod link_random;
 mod lsp;
 mod metal;
+mod migrate;
 mod mutate;
 mod new;
 mod one_meaning;
@@ -93,6 +94,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     link_random::trials,
     lsp::trials,
     metal::trials,
+    migrate::trials,
     mutate::trials,
     new::trials,
     one_meaning::trials,

@@ -39,6 +39,7 @@ const FOLDERS: &[Writer] = &[
         &["compile", "main.wesl", "--set", "tint=red", "--target", "wgsl", "-o", "OUT"],
     ),
     writer("export", &["export", "OUT"]),
+    writer("migrate", &["migrate", "--from", "naga_oil", "oil", "-o", "OUT"]),
     writer("export_npm", &["export", "OUT", "--form", "npm"]),
     writer("catalogue", &["catalogue", "-o", "OUT"]),
     writer("report", &["check", "half.toml", "--report", "OUT"]),
@@ -134,11 +135,13 @@ struct Place(TempDir);
 impl Place {
     fn new(writer: &Writer) -> Result<Self, Failed> {
         let place = Self(tempfile::tempdir()?);
+        fs::create_dir(place.at("oil"))?;
         for (name, text) in [
             ("lamplight.toml", MANIFEST),
             ("main.wesl", MAIN),
             ("half.wesl", HALF),
             ("half.toml", CASES),
+            ("oil/old.wgsl", "#ifdef FOG\nconst FAR: f32 = 9.0;\n#endif\n"),
         ] {
             fs::write(place.at(name), text)?;
         }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod alike;
 mod compose;
 mod corpus;
 mod eval;
@@ -9,6 +10,7 @@ mod generate;
 mod library;
 mod load;
 mod lsp;
+mod migrate;
 mod scale;
 
 use std::error::Error;
@@ -24,6 +26,7 @@ const BENCHMARKS: &[Benchmark] = &[
     ("gen", generate::run),
     ("load", load::run),
     ("lsp", lsp::run),
+    ("migrate", migrate::run),
     ("scale", scale::run),
 ];
 

@@ -47,6 +47,7 @@ const ENTRIES: &[Entry] = &[
         ],
     ),
     entry("lint", PACKAGE, &["lamplight lint", "lamplight lint shaders/lamp.wesl"]),
+    entry("migrate", "From naga_oil", &[]),
     entry(
         "gen",
         MANIFEST,

@@ -93,6 +93,10 @@ pub fn axis_value(text: &str) -> Result<(String, Setting), String> {
     Ok((named(name)?, Setting::parse(value)))
 }
 
+fn is_integer(setting: &&(String, Setting)) -> bool {
+    matches!(setting.1, Setting::Int(_))
+}
+
 fn named(name: &str) -> Result<String, String> {
     let fits = name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
         && !name.starts_with(|c: char| c.is_ascii_digit());
@@ -327,6 +331,8 @@ impl Input {
     fn free(&self, root: &Path, sources: &mut SourceSet) -> Result<Chosen, Diagnostics> {
         let mut settings = Settings {
             values: self.chosen().cloned().collect(),
+            // Who gives a number by hand says that it is one.
+            integers: self.set.iter().filter(is_integer).map(|(name, _)| name.clone()).collect(),
             undeclared: self.features.undeclared(None),
             constants: self.features.constants(),
             ..Settings::default()

@@ -26,6 +26,7 @@ mod lint;
 mod list;
 mod lsp;
 mod merge;
+mod migrate;
 mod mutate;
 mod overwrite;
 mod own;
@@ -71,6 +72,7 @@ enum Command {
     Compose(compose::Arguments),
     Compile(compile::Arguments),
     Lint(lint::Arguments),
+    Migrate(migrate::Arguments),
     Gen(generate::Arguments),
     Merge(merge::Arguments),
     Variants(variants::Arguments),
@@ -189,6 +191,7 @@ fn dispatch(
         Command::Compose(arguments) => compose::run(arguments, form),
         Command::Compile(arguments) => compile::run(arguments, form),
         Command::Lint(arguments) => lint::run(arguments, form),
+        Command::Migrate(arguments) => migrate::run(arguments, form),
         Command::Gen(arguments) => generate::run(arguments, form),
         Command::Merge(arguments) => merge::run(arguments),
         Command::Variants(arguments) => variants::run(arguments, gpus, form),

@@ -1,0 +1,75 @@
+//! What lists have, and where one unit of a list ends.
+
+use super::unit::Part;
+
+/// What a list has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    Declarations,
+    Statements,
+    Cases,
+    Members,
+    Parameters,
+}
+
+impl Level {
+    /// Whether commas part its units.
+    pub fn has_commas(self) -> bool {
+        matches!(self, Self::Members | Self::Parameters)
+    }
+
+    /// Whether a condition may stand before braces around several.
+    pub fn has_blocks(self) -> bool {
+        matches!(self, Self::Declarations | Self::Statements)
+    }
+}
+
+/// A unit that is being read.
+pub struct Unit<'a> {
+    level: Level,
+    pub parts: Vec<Part<'a>>,
+    /// Its first word that is not of an attribute.
+    pub first: String,
+    before: String,
+    /// Templates that are open.
+    pub angles: usize,
+    has_parameters: bool,
+}
+
+impl Unit<'_> {
+    pub fn new(level: Level) -> Self {
+        let (first, before) = (String::new(), String::new());
+        Self { level, parts: Vec::new(), first, before, angles: 0, has_parameters: false }
+    }
+
+    pub fn note(&mut self, text: &str) {
+        match text {
+            "<" => self.angles += 1,
+            ">" => self.angles = self.angles.saturating_sub(1),
+            _ => {}
+        }
+        let is_word = text.starts_with(|first: char| first == '_' || first.is_alphabetic());
+        if self.first.is_empty() && is_word && self.before != "@" {
+            text.clone_into(&mut self.first);
+        }
+        text.clone_into(&mut self.before);
+    }
+
+    /// Whether the parenthesis is that of a function's parameters.
+    pub fn parameters_follow(&mut self) -> bool {
+        let found = self.level == Level::Declarations && self.first == "fn" && !self.has_parameters;
+        self.has_parameters |= found;
+        found
+    }
+
+    /// What the braces here hold.
+    pub fn inner(&self) -> Option<Level> {
+        match self.level {
+            Level::Declarations if self.first == "struct" => Some(Level::Members),
+            Level::Declarations => Some(Level::Statements),
+            Level::Statements if self.first == "switch" => Some(Level::Cases),
+            Level::Statements | Level::Cases => Some(Level::Statements),
+            Level::Members | Level::Parameters => None,
+        }
+    }
+}

@@ -1,0 +1,397 @@
+//! Tokens as lists: declarations, statements, members, parameters, cases of a `switch`.
+//!
+//! A condition of WESL stands around whole ones. Where one of `naga_oil` cuts through the middle,
+//! what it cuts is written once for each way that it can go. Such variants share the shortest run
+//! of whole ones behind which all of them go on at the same place.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+
+use super::condition::{Condition, Facts};
+use super::level::{Level, Unit};
+use super::tree::{Choice, Import, Kind, Line, Node, Token};
+
+#[derive(Debug)]
+pub enum Element<'a> {
+    Unit(Vec<Part<'a>>),
+    Import(&'a Import),
+    Comment(&'a Line),
+    Gone(&'a Line),
+    Choice(Chosen<'a>),
+}
+
+#[derive(Debug)]
+pub enum Part<'a> {
+    Token(&'a Token),
+    List(Level, Vec<Element<'a>>),
+}
+
+/// Elements of which one branch is there.
+#[derive(Debug)]
+pub struct Chosen<'a> {
+    /// What the author wrote, if the condition stands around whole units there.
+    pub written: Option<&'a Choice>,
+    pub branches: Vec<(Option<Condition>, Vec<Element<'a>>)>,
+}
+
+/// Why a list or a unit could not be read.
+#[derive(Debug)]
+enum Stop {
+    /// The choice at this index cuts through.
+    Cut(usize),
+    Broken(usize),
+    TooMuch,
+}
+
+/// Nodes in a row; choices that are decided are not among them.
+type Row<'a> = Vec<&'a Node>;
+type Read<T> = Result<T, Stop>;
+
+/// Steps for each token of a file, beyond those of a small one.
+const STEPS: usize = 400;
+const STEPS_AT_LEAST: usize = 200_000;
+
+/// Reads a file. The error is the byte from which on it cannot be understood.
+pub fn read<'a>(text: &'a str, nodes: &'a [Node]) -> Result<Vec<Element<'a>>, (usize, bool)> {
+    let steps = STEPS_AT_LEAST + STEPS * count(nodes);
+    let reader = Reader { text, steps: Cell::new(steps) };
+    let facts = Facts::default();
+    let row = reader.row(nodes, &facts);
+    let place = |at: usize| row.get(at).or(row.last()).map_or(0, |node| start(node));
+    let mut at = 0;
+    match reader.list(&row, &mut at, Level::Declarations, &facts) {
+        Ok(found) if at == row.len() => Ok(found),
+        Ok(_) => Err((place(at), false)),
+        Err(Stop::Cut(at) | Stop::Broken(at)) => Err((place(at), false)),
+        Err(Stop::TooMuch) => Err((place(0), true)),
+    }
+}
+
+fn count(nodes: &[Node]) -> usize {
+    let one = |node: &Node| match node {
+        Node::Choice(choice) => choice.branches.iter().map(|branch| count(&branch.nodes)).sum(),
+        _ => 1,
+    };
+    nodes.iter().map(one).sum()
+}
+
+fn start(node: &Node) -> usize {
+    match node {
+        Node::Token(token) => token.range.start,
+        Node::Import(import) => import.line.words.start,
+        Node::Choice(choice) => choice.branches[0].line.words.start,
+        Node::Comment(line) | Node::Gone(line) => line.words.start,
+    }
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    steps: Cell<usize>,
+}
+
+/// The ways a choice can go: the last one is `#else`, whether it was written or not.
+fn ways(choice: &Choice) -> Vec<(Option<Condition>, &[Node])> {
+    let mut found: Vec<(Option<Condition>, &[Node])> = Vec::new();
+    for branch in &choice.branches {
+        found.push((branch.condition.clone(), &branch.nodes));
+    }
+    if found.last().is_some_and(|(condition, _)| condition.is_some()) {
+        found.push((None, &[]));
+    }
+    found
+}
+
+/// What holds in each branch: its own condition, and none before it.
+pub fn explicit(conditions: &[Option<Condition>]) -> Vec<Vec<Condition>> {
+    let mut before = Vec::new();
+    let one = |condition: &Option<Condition>| {
+        let here: Vec<Condition> = before.iter().chain(condition).cloned().collect();
+        before.extend(condition.clone().map(Condition::not));
+        here
+    };
+    conditions.iter().map(one).collect()
+}
+
+/// A way through a choice, read as far as it is known.
+struct Variant<'a> {
+    row: Row<'a>,
+    at: usize,
+    facts: Facts,
+    elements: Vec<Element<'a>>,
+}
+
+impl<'a> Reader<'a> {
+    fn step(&self, steps: usize) -> Read<()> {
+        let left = self.steps.get().saturating_sub(steps);
+        self.steps.set(left);
+        if left == 0 { Err(Stop::TooMuch) } else { Ok(()) }
+    }
+
+    fn row(&self, nodes: impl IntoIterator<Item = &'a Node>, facts: &Facts) -> Row<'a> {
+        let mut row = Row::new();
+        for node in nodes {
+            match node {
+                Node::Choice(choice) => match decided(choice, facts) {
+                    Some(branch) => row.extend(self.row(branch, facts)),
+                    None => row.push(node),
+                },
+                node => row.push(node),
+            }
+        }
+        row
+    }
+
+    fn mark(&self, node: Option<&&'a Node>) -> Option<u8> {
+        match node {
+            Some(Node::Token(Token { kind: Kind::Mark(mark), .. })) => Some(*mark),
+            _ => None,
+        }
+    }
+
+    fn is_word(&self, node: &Node, word: &str) -> bool {
+        matches!(node, Node::Token(token) if &self.text[token.range.clone()] == word)
+    }
+
+    fn is_closer(&self, node: Option<&&'a Node>) -> bool {
+        matches!(self.mark(node), Some(b'}' | b')' | b']'))
+    }
+
+    /// Elements up to a closing bracket or the end of the row.
+    fn list(
+        &self,
+        row: &Row<'a>,
+        at: &mut usize,
+        level: Level,
+        facts: &Facts,
+    ) -> Read<Vec<Element<'a>>> {
+        let mut elements = Vec::new();
+        while *at < row.len() && !self.is_closer(row.get(*at)) {
+            elements.push(self.element(row, at, level, facts)?);
+        }
+        Ok(elements)
+    }
+
+    fn element(
+        &self,
+        row: &Row<'a>,
+        at: &mut usize,
+        level: Level,
+        facts: &Facts,
+    ) -> Read<Element<'a>> {
+        let start = *at;
+        self.step(1)?;
+        let cut = match row[start] {
+            Node::Import(import) => {
+                *at += 1;
+                return Ok(Element::Import(import));
+            }
+            Node::Comment(line) => {
+                *at += 1;
+                return Ok(Element::Comment(line));
+            }
+            Node::Gone(line) => {
+                *at += 1;
+                return Ok(Element::Gone(line));
+            }
+            Node::Choice(choice) => match self.whole(choice, level, facts) {
+                Ok(found) => {
+                    *at += 1;
+                    return Ok(Element::Choice(found));
+                }
+                Err(Stop::TooMuch) => return Err(Stop::TooMuch),
+                Err(_) => start,
+            },
+            Node::Token(_) => match self.unit(row, at, level, facts) {
+                Err(Stop::Cut(cut)) => cut,
+                found => return found.map(Element::Unit),
+            },
+        };
+        let (found, end) = self.variants(row, start, cut, level, facts)?;
+        *at = end;
+        Ok(Element::Choice(found))
+    }
+
+    /// A choice between whole units.
+    fn whole(&self, choice: &'a Choice, level: Level, facts: &Facts) -> Read<Chosen<'a>> {
+        let conditions: Vec<_> =
+            choice.branches.iter().map(|branch| branch.condition.clone()).collect();
+        let mut branches = Vec::new();
+        for (branch, known) in choice.branches.iter().zip(explicit(&conditions)) {
+            let facts = facts.with(&known);
+            let row = self.row(&branch.nodes, &facts);
+            let mut at = 0;
+            let elements = self.list(&row, &mut at, level, &facts)?;
+            if at < row.len() {
+                return Err(Stop::Broken(0));
+            }
+            branches.push((branch.condition.clone(), elements));
+        }
+        Ok(Chosen { written: Some(choice), branches })
+    }
+
+    /// Whole units from `start` on, once for each way through the choice at `cut`.
+    fn variants(
+        &self,
+        row: &Row<'a>,
+        start: usize,
+        cut: usize,
+        level: Level,
+        facts: &Facts,
+    ) -> Read<(Chosen<'a>, usize)> {
+        let Node::Choice(choice) = row[cut] else { return Err(Stop::Broken(cut)) };
+        let ways = ways(choice);
+        let conditions: Vec<_> = ways.iter().map(|(condition, _)| condition.clone()).collect();
+        let behind: HashMap<*const Node, usize> =
+            (cut + 1..row.len()).map(|index| (std::ptr::from_ref(row[index]), index)).collect();
+        let mut variants = Vec::new();
+        for ((_, nodes), known) in ways.iter().zip(explicit(&conditions)) {
+            self.step(row.len() - start)?;
+            let facts = facts.with(&known);
+            let mut variant = row[start..cut].to_vec();
+            variant.extend(self.row(nodes.iter().chain(row[cut + 1..].iter().copied()), &facts));
+            variants.push(Variant { row: variant, at: 0, facts, elements: Vec::new() });
+        }
+        let end = |variant: &Variant<'a>| match variant.row.get(variant.at) {
+            Some(node) => behind.get(&std::ptr::from_ref(*node)).copied(),
+            None => Some(row.len()),
+        };
+        loop {
+            let ends: Vec<Option<usize>> = variants.iter().map(end).collect();
+            if ends.iter().all(|end| end.is_some() && *end == ends[0]) {
+                let elements = variants.into_iter().map(|variant| variant.elements);
+                let branches = conditions.into_iter().zip(elements).collect();
+                return Ok((Chosen { written: None, branches }, ends[0].unwrap_or(row.len())));
+            }
+            let least = ends.iter().copied().min().flatten();
+            for variant in variants.iter_mut().filter(|variant| end(variant) == least) {
+                let Variant { row, at, facts, elements } = variant;
+                if *at >= row.len() || self.is_closer(row.get(*at)) {
+                    return Err(Stop::Cut(cut));
+                }
+                match self.element(row, at, level, facts) {
+                    Ok(found) => elements.push(found),
+                    Err(Stop::TooMuch) => return Err(Stop::TooMuch),
+                    Err(_) => return Err(Stop::Cut(cut)),
+                }
+            }
+        }
+    }
+
+    /// One declaration, statement, member, parameter or case.
+    fn unit(
+        &self,
+        row: &Row<'a>,
+        at: &mut usize,
+        level: Level,
+        facts: &Facts,
+    ) -> Read<Vec<Part<'a>>> {
+        let mut unit = Unit::new(level);
+        loop {
+            self.step(1)?;
+            let token = match row.get(*at) {
+                Some(Node::Token(token)) => token,
+                Some(Node::Choice(_)) => return Err(Stop::Cut(*at)),
+                None if level.has_commas() && !unit.parts.is_empty() => return Ok(unit.parts),
+                _ => return Err(Stop::Broken((*at).min(row.len().saturating_sub(1)))),
+            };
+            let mark = self.mark(row.get(*at));
+            if self.is_closer(row.get(*at)) {
+                let ends = level.has_commas() && !unit.parts.is_empty();
+                return if ends { Ok(unit.parts) } else { Err(Stop::Broken(*at)) };
+            }
+            if mark == Some(b',') && unit.parts.is_empty() {
+                return Err(Stop::Broken(*at));
+            }
+            unit.note(&self.text[token.range.clone()]);
+            unit.parts.push(Part::Token(token));
+            *at += 1;
+            match mark {
+                Some(b';') => return Ok(unit.parts),
+                Some(b',') if level.has_commas() && unit.angles == 0 => return Ok(unit.parts),
+                Some(b'(') if unit.parameters_follow() => {
+                    self.nested(row, at, Level::Parameters, facts, &mut unit.parts)?;
+                }
+                Some(b'(' | b'[') => self.group(row, at, &mut unit.parts)?,
+                Some(b'{') => {
+                    let inner = unit.inner().ok_or(Stop::Broken(*at - 1))?;
+                    self.nested(row, at, inner, facts, &mut unit.parts)?;
+                    if !(unit.first == "if" && self.goes_on(row, *at, facts)?) {
+                        return Ok(unit.parts);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether an `else` follows. A choice of which one way starts with it cuts the `if`.
+    fn goes_on(&self, row: &Row<'a>, at: usize, facts: &Facts) -> Read<bool> {
+        match row.get(at) {
+            Some(Node::Choice(choice)) => {
+                let starts = |(condition, nodes): &(Option<Condition>, &'a [Node])| {
+                    let facts = facts.with(condition.as_slice());
+                    let rest = nodes.iter().chain(row[at + 1..].iter().take(1).copied());
+                    let row = self.row(rest, &facts);
+                    matches!(self.goes_on(&row, 0, &facts), Ok(true) | Err(_))
+                };
+                let cut = ways(choice).iter().any(starts);
+                if cut { Err(Stop::Cut(at)) } else { Ok(false) }
+            }
+            Some(node) => Ok(self.is_word(node, "else")),
+            None => Ok(false),
+        }
+    }
+
+    /// A list and the bracket that closes it.
+    fn nested(
+        &self,
+        row: &Row<'a>,
+        at: &mut usize,
+        level: Level,
+        facts: &Facts,
+        parts: &mut Vec<Part<'a>>,
+    ) -> Read<()> {
+        let elements = self.list(row, at, level, facts)?;
+        let Some(Node::Token(close)) = row.get(*at) else {
+            return Err(Stop::Broken(row.len().saturating_sub(1)));
+        };
+        parts.push(Part::List(level, elements));
+        parts.push(Part::Token(close));
+        *at += 1;
+        Ok(())
+    }
+
+    /// Tokens up to the bracket that closes what was opened, and that bracket.
+    fn group(&self, row: &Row<'a>, at: &mut usize, parts: &mut Vec<Part<'a>>) -> Read<()> {
+        let mut depth = 1;
+        while depth > 0 {
+            self.step(1)?;
+            match row.get(*at) {
+                Some(Node::Token(token)) => {
+                    match token.kind {
+                        Kind::Mark(b'(' | b'[' | b'{') => depth += 1,
+                        Kind::Mark(b')' | b']' | b'}') => depth -= 1,
+                        _ => {}
+                    }
+                    parts.push(Part::Token(token));
+                    *at += 1;
+                }
+                Some(Node::Choice(_)) => return Err(Stop::Cut(*at)),
+                _ => return Err(Stop::Broken((*at).min(row.len().saturating_sub(1)))),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The branch that is known to be there; `Some` of nothing where none is.
+fn decided<'a>(choice: &'a Choice, facts: &Facts) -> Option<&'a [Node]> {
+    for branch in &choice.branches {
+        match branch.condition.as_ref().map_or(Some(true), |condition| facts.holds(condition)) {
+            Some(true) => return Some(&branch.nodes),
+            Some(false) => {}
+            None => return None,
+        }
+    }
+    Some(&[])
+}

@@ -1,0 +1,1 @@
+const light_#{INDEX}: f32 = 1.0;

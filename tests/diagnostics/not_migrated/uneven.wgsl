@@ -1,0 +1,3 @@
+#if DEPTH !! 2
+const B: f32 = 1.0;
+#endif

@@ -1,0 +1,2 @@
+#import other::thing
+virtual fn shade() -> f32 { return thing(); }

@@ -1,0 +1,164 @@
+//! Sources of `naga_oil` as WESL: the same to naga as what `naga_oil` composes, and never a panic.
+
+#[path = "../bench/src/alike.rs"]
+mod alike;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use lamplight::migrate::{self, Migrated};
+use lamplight::source::{Disk, Files as _, SourceSet};
+use libtest_mimic::{Failed, Trial};
+
+use crate::snapshot;
+
+type Outcome = Result<(), Failed>;
+
+type Run = fn() -> Outcome;
+
+const TRIALS: &[(&str, Run)] =
+    &[("text", text), ("same_modules", same_modules), ("mutants", mutants), ("beside", beside)];
+
+pub fn trials() -> Vec<Trial> {
+    let trial = |(name, run): &(&str, Run)| Trial::test(format!("migrate::{name}"), *run);
+    TRIALS.iter().map(trial).collect()
+}
+
+fn engine() -> Result<BTreeMap<String, String>, Failed> {
+    let disk = Disk::new(snapshot::root().join("tests/migrate/engine"))?;
+    let read = |path: String| match disk.read(&path) {
+        Ok(Some(text)) => Ok((path, text)),
+        found => Err(format!("{path}: {found:?}").into()),
+    };
+    disk.list(&["wgsl"]).into_iter().map(read).collect()
+}
+
+fn migrated(files: &BTreeMap<String, String>) -> Migrated {
+    let mut sources = SourceSet::default();
+    let added: Vec<_> = files
+        .iter()
+        .map(|(path, text)| (path.clone(), sources.add(path.as_str(), text.as_str())))
+        .collect();
+    migrate::naga_oil(&sources, &added)
+}
+
+/// The whole text of every file is what it should be, comments and layout included.
+fn text() -> Outcome {
+    let found = migrated(&engine()?);
+    let messages: Vec<&str> = found.diagnostics.iter().map(|one| one.message.as_str()).collect();
+    let mut text = format!(
+        "features {:?}\nnumbers {:?}\nconstants {:?}\ntold {messages:?}\n",
+        found.features, found.numbers, found.constants
+    );
+    for (path, file) in &found.files {
+        text += &format!("\n=== {path}\n{file}");
+    }
+    snapshot::check("migrate", "engine", &text)
+}
+
+/// Every choice of the shader defs gives the module that `naga_oil` composes from the original, as
+/// `cargo xtask bench migrate tests/migrate/engine tests/migrate/naga_oil.txt` recorded it.
+fn same_modules() -> Outcome {
+    let files = engine()?;
+    let found = migrated(&files);
+    let (packages, prefixes) = (alike::packages(&found), alike::prefixes(&found));
+    let recorded = fs::read_to_string(snapshot::root().join("tests/migrate/naga_oil.txt"))?;
+    let choices = alike::choices(&found);
+    if choices.len() != 32 || recorded.lines().count() != choices.len() {
+        return Err(
+            format!("{} choices, {} recorded", choices.len(), recorded.lines().count()).into()
+        );
+    }
+    for (defs, theirs) in choices.iter().zip(recorded.lines()) {
+        let ours = alike::ours(&packages, "main.wgsl", &found, &files["main.wgsl"], defs)
+            .map_err(|why| format!("{defs:?}: {why}"))?;
+        let ours = alike::normalised(ours, &prefixes);
+        if !theirs.starts_with(&alike::fingerprint(&ours)) {
+            return Err(format!("{theirs} is not what {defs:?} gives:\n{ours:#?}").into());
+        }
+    }
+    Ok(())
+}
+
+/// Texts of which a part is gone, twice there or in another place: an answer for each file.
+fn mutants() -> Outcome {
+    let files = engine()?;
+    let mut state = 7_u64;
+    let mut random = |bound: usize| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % bound.max(1)
+    };
+    let mut whole = 0;
+    for _ in 0..400 {
+        let mut mutant = files.clone();
+        let path = files.keys().nth(random(files.len())).ok_or("no file")?;
+        let mut lines: Vec<&str> = files[path].lines().collect();
+        for _ in 0..1 + random(3) {
+            let (at, to) = (random(lines.len()), random(lines.len()));
+            match random(3) {
+                0 => drop(lines.remove(at)),
+                1 => lines.insert(to, lines[at]),
+                _ => lines.swap(at, to),
+            }
+        }
+        mutant.insert(path.clone(), lines.join("\n"));
+        let found = migrated(&mutant);
+        let told = found.diagnostics.iter().filter(|one| one.code.name == "not-migrated").count();
+        if found.files.len() + told < files.len() {
+            return Err(format!("a file is lost without a word:\n{}", mutant[path]).into());
+        }
+        whole += usize::from(told == 0);
+    }
+    match whole {
+        100..=390 => Ok(()),
+        _ => Err(format!("{whole} of 400 mutants are migrated: they try little").into()),
+    }
+}
+
+/// The command writes beside what is there, again over its own, and never over anything else.
+fn beside() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let files = engine()?;
+    for (path, text) in &files {
+        let path = folder.path().join(path);
+        fs::create_dir_all(path.parent().ok_or("no folder")?)?;
+        fs::write(path, text)?;
+    }
+    expect(&run(folder.path())?, 0, "4 of 4 files migrated")?;
+    expect(&run(folder.path())?, 0, "4 of 4 files migrated")?;
+    for (path, text) in &files {
+        if fs::read_to_string(folder.path().join(path))? != *text {
+            return Err(format!("{path} was changed").into());
+        }
+    }
+    let arguments = ["compose", "main.wesl", "--set", "LIGHTS=3", "--feature", "SPOT"];
+    let constants = ["--constant", "GROUP=1,TAPS=4,GAIN=2"];
+    let composed = lamplight(folder.path(), &[&arguments[..], &constants[..]].concat())?;
+    expect(&composed, 0, "const COUNT: u32 = 3u;")?;
+    fs::write(folder.path().join("main.wesl"), "// mine")?;
+    expect(&run(folder.path())?, 1, "")?;
+    match fs::read_to_string(folder.path().join("main.wesl"))?.as_str() {
+        "// mine" => Ok(()),
+        _ => Err("a file of somebody else was replaced".into()),
+    }
+}
+
+fn run(folder: &Path) -> Result<Output, Failed> {
+    lamplight(folder, &["migrate", "--from", "naga_oil", "."])
+}
+
+fn lamplight(folder: &Path, arguments: &[&str]) -> Result<Output, Failed> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+    Ok(command.args(arguments).current_dir(folder).output()?)
+}
+
+fn expect(output: &Output, code: i32, said: &str) -> Outcome {
+    let out = String::from_utf8_lossy(&output.stdout);
+    match output.status.code() == Some(code) && out.contains(said) {
+        true => Ok(()),
+        false => Err(format!("{out}{}", String::from_utf8_lossy(&output.stderr)).into()),
+    }
+}
