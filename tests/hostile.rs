@@ -3,7 +3,9 @@
 
 mod bundles;
 mod cases;
+mod edits;
 mod isolated;
+mod linear;
 mod manifests;
 mod pictures;
 mod printed;
@@ -27,7 +29,14 @@ pub fn trials() -> Vec<Trial> {
         .into_iter()
         .flatten()
         .map(|case| Trial::test(format!("hostile::{}", case.name), move || case.check()));
-    let others = [bundles::trials(), isolated::trials(), printed::trials(), stores::trials()];
+    let others = [
+        bundles::trials(),
+        edits::trials(),
+        isolated::trials(),
+        linear::trials(),
+        printed::trials(),
+        stores::trials(),
+    ];
     rows.chain(others.into_iter().flatten()).collect()
 }
 

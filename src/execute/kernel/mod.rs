@@ -29,6 +29,7 @@ use naga::{Function, Handle, ImageClass, ImageDimension, Module, ScalarKind, Typ
 
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::fixture::Fixture;
+use crate::limits::CASE_WORK;
 
 /// Texels in a row of the input texture.
 pub const INPUT_WIDTH: u32 = 1024;
@@ -90,6 +91,8 @@ pub struct Kernel {
     pub parameters: Vec<Parameter>,
     /// The function's result, then what it left behind its pointer parameters.
     pub results: Vec<Shape>,
+    /// Steps that all calls of it together may take on the evaluator.
+    pub steps: u64,
 }
 
 impl Kernel {
@@ -161,6 +164,7 @@ pub fn build(
         function: handle,
         parameters,
         results,
+        steps: CASE_WORK,
     };
     if kernel.batch() == 0 {
         return Err(Diagnostic::error(

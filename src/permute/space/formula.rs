@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::TooComplex;
+use crate::limits::{Exhausted, Steps};
 use crate::permute::axis::ValueSet;
 
 /// A condition as written: axes by index, values by ordinal.
@@ -89,14 +90,14 @@ pub struct Conditions {
     support: Vec<u128>,
     ids: HashMap<Node, Id>,
     restricted: HashMap<(Id, u8, ValueSet), Id>,
-    steps: usize,
+    steps: Steps,
 }
 
 impl Conditions {
     /// With so many steps before its conditions are called too complex. Counting the points that
     /// satisfy arbitrary conditions is #P-hard, so hostile input must meet a bound; real manifests
     /// take some thousands of steps.
-    pub fn new(domains: Vec<ValueSet>, steps: usize) -> Self {
+    pub fn new(domains: Vec<ValueSet>, steps: Steps) -> Self {
         let mut store = Self {
             domains,
             nodes: Vec::new(),
@@ -111,7 +112,7 @@ impl Conditions {
     }
 
     /// Steps that are left.
-    pub fn steps(&self) -> usize {
+    pub fn steps(&self) -> Steps {
         self.steps
     }
 
@@ -139,6 +140,7 @@ impl Conditions {
             Node::Is(_, allowed) if set.without(allowed).is_empty() => TRUE,
             Node::Is(_, allowed) => self.is(axis, allowed.and(set)),
             Node::Join(join, parts) => {
+                self.spend(parts.len())?;
                 let parts = parts
                     .iter()
                     .map(|part| self.restrict(*part, axis, set))
@@ -194,7 +196,7 @@ impl Conditions {
         let mut others: BTreeSet<Id> = BTreeSet::new();
         let mut pending = parts;
         while let Some(part) = pending.pop() {
-            self.step()?;
+            self.spend(1)?;
             match self.nodes[part.0 as usize].clone() {
                 _ if part == join.absorbing() => return Ok(part),
                 Node::Constant(_) => {}
@@ -204,13 +206,15 @@ impl Conditions {
                     let Some(merged) = self.merge(join, &mut atoms, axis, set) else {
                         return Ok(join.absorbing());
                     };
-                    let touched = others
-                        .iter()
-                        .copied()
-                        .filter(|other| self.support[other.0 as usize] >> axis & 1 == 1);
-                    let touched: Vec<Id> = touched.filter(|_| merged).collect();
-                    others.retain(|other| !touched.contains(other));
-                    pending.extend(touched);
+                    if merged {
+                        self.spend(others.len())?;
+                        let support = &self.support;
+                        let (touched, rest) = std::mem::take(&mut others)
+                            .into_iter()
+                            .partition(|other: &Id| support[other.0 as usize] >> axis & 1 == 1);
+                        others = rest;
+                        pending.extend::<BTreeSet<Id>>(touched);
+                    }
                 }
             }
         }
@@ -229,6 +233,7 @@ impl Conditions {
         others: &mut BTreeSet<Id>,
     ) -> Result<Option<Id>, TooComplex> {
         let mut simpler = part;
+        self.spend(atoms.len())?;
         for (axis, set) in atoms {
             let known = match join {
                 Join::All => *set,
@@ -292,8 +297,7 @@ impl Conditions {
         id
     }
 
-    fn step(&mut self) -> Result<(), TooComplex> {
-        self.steps = self.steps.checked_sub(1).ok_or(TooComplex)?;
-        Ok(())
+    fn spend(&mut self, steps: usize) -> Result<(), TooComplex> {
+        self.steps.spend(steps as u64).map_err(|Exhausted| TooComplex)
     }
 }
