@@ -187,7 +187,7 @@ limits! {
     CONSTRAINT_NESTING: usize = 64, Count, "levels of a constraint", "the stack",
         "`nesting-too-deep`";
     CONSTRAINTS: usize = 4096, Count, "constraints of a program", "time", "`space-too-complex`";
-    SPACE_STEPS: u64 = 1 << 25, Count, "steps to count a program's permutations", "time",
+    SPACE_STEPS: u64 = 1 << 22, Count, "steps to count a program's permutations", "time",
         "`space-too-complex`";
     PERMUTATIONS: usize = 1_000_000, Count, "permutations of a program", "time, and your disk",
         "`too-many-permutations`";

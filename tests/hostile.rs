@@ -1,6 +1,7 @@
 //! Input that is small and asks for much: memory, time, the stack. Each gets an error with a place
 //! and the exit code of wrong input, in a process that may use little memory.
 
+mod beside;
 mod bundles;
 mod cases;
 mod edits;
@@ -30,6 +31,7 @@ pub fn trials() -> Vec<Trial> {
         .flatten()
         .map(|case| Trial::test(format!("hostile::{}", case.name), move || case.check()));
     let others = [
+        beside::trials(),
         bundles::trials(),
         edits::trials(),
         isolated::trials(),

@@ -140,7 +140,6 @@ impl Conditions {
             Node::Is(_, allowed) if set.without(allowed).is_empty() => TRUE,
             Node::Is(_, allowed) => self.is(axis, allowed.and(set)),
             Node::Join(join, parts) => {
-                self.spend(parts.len())?;
                 let parts = parts
                     .iter()
                     .map(|part| self.restrict(*part, axis, set))
@@ -207,7 +206,6 @@ impl Conditions {
                         return Ok(join.absorbing());
                     };
                     if merged {
-                        self.spend(others.len())?;
                         let support = &self.support;
                         let (touched, rest) = std::mem::take(&mut others)
                             .into_iter()
@@ -233,7 +231,6 @@ impl Conditions {
         others: &mut BTreeSet<Id>,
     ) -> Result<Option<Id>, TooComplex> {
         let mut simpler = part;
-        self.spend(atoms.len())?;
         for (axis, set) in atoms {
             let known = match join {
                 Join::All => *set,
