@@ -1,4 +1,5 @@
-//! The one way from the disk: files and nothing else, and no more of them than was agreed.
+//! The only way to read from the disk. It reads nothing but files, and of those no more than a
+//! given number of bytes.
 //!
 //! A pipe would make its reader wait for ever, and a device such as `/dev/zero` has no end.
 
@@ -6,9 +7,9 @@ use std::fs::{self, File};
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
-/// Opens what is a file, links followed.
+/// Opens a path if it is a file; links are followed.
 pub fn open(path: &Path) -> Result<File> {
-    // Looked at before it is opened, since opening a pipe waits.
+    // Checked before it is opened, since opening a pipe waits.
     check(&fs::metadata(path)?)?;
     let file = File::open(path)?;
     check(&file.metadata()?)?;
@@ -23,7 +24,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
         return Err(too_large(length, most));
     }
     let mut bytes = Vec::with_capacity(length as usize);
-    // A file that grows while it is read ends all the same.
+    // Reading ends even if the file grows meanwhile.
     match file.take(most.saturating_add(1)).read_to_end(&mut bytes)? as u64 {
         read if read > most => Err(too_large(read, most)),
         _ => Ok(bytes),

@@ -125,6 +125,12 @@ mod packing;
 #[cfg(not(feature = "single-file"))]
 #[path = "packing/absent.rs"]
 mod packing;
+#[cfg(all(feature = "compile", target_os = "linux"))]
+#[path = "syncing/system.rs"]
+mod syncing;
+#[cfg(not(all(feature = "compile", target_os = "linux")))]
+#[path = "syncing/each.rs"]
+mod syncing;
 
 #[cfg(feature = "compile")]
 pub mod cache;

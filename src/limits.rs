@@ -1,13 +1,12 @@
 //! Every bound on what comes from outside, in one table.
 //!
-//! A stage that loops or allocates takes its bound from here, so that nothing is bounded in two
-//! places or in none. `docs/guide/limits.md` has the same table, and a trial compares the two.
-//! Bounds on work are counted in steps and never in seconds: the same input has the same answer on
-//! every machine.
+//! A stage that loops or allocates takes its bound from here, so that every bound exists exactly
+//! once. `docs/guide/limits.md` has the same table, and a trial compares the two. Bounds on work
+//! are counted in steps and never in seconds: the same input has the same answer on every machine.
 
 use std::cell::Cell;
 
-/// A bound as people read it.
+/// A bound in a form for people.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     /// What is counted.
@@ -16,7 +15,7 @@ pub struct Limit {
     pub unit: Measure,
     /// What would be exhausted without it.
     pub protects: &'static str,
-    /// The code or the words of the error.
+    /// The code or the text of the error.
     pub error: &'static str,
 }
 

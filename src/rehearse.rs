@@ -1,11 +1,13 @@
-//! Work by others' code that could end the process, done first in a process of its own.
+//! Rehearses work of other people's code that could crash the process: it is done in a separate
+//! process first.
 //!
-//! An exhausted stack or memory cannot be caught. [`crate::limits`] bound what others' code sees,
-//! and nothing that stays below a part of each bound was ever seen to exhaust anything. What lies
-//! between that part and the bound is *rehearsed*: a child process with little memory and time does
-//! the same work, and where it dies its input is an error. Ordinary input never starts a process.
+//! Running out of stack or memory cannot be caught. [`crate::limits`] bound the input of such code.
+//! No input below a part of each bound was ever seen to exhaust anything. Input between that part
+//! and the bound is *rehearsed*: a child process with little memory and time does the same work,
+//! and if it crashes, its input is an error. Ordinary input never starts a process.
 //!
-//! The crate starts none by itself either: a program says how with [`run_by`], as `lamplight` does.
+//! As a library the crate never starts a process either: a program must say how with [`run_by`], as
+//! `lamplight` does.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -13,7 +15,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use crate::limits::REHEARSAL_SECONDS;
 
-/// How a rehearsal ended badly.
+/// Why a rehearsal failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Exhausted {
     /// More memory than a rehearsal may have.
@@ -22,7 +24,7 @@ pub enum Exhausted {
     Stack,
     /// More time than a rehearsal may take.
     Time,
-    /// It stopped for a reason of its own, in its last words.
+    /// It stopped for another reason, which its last output tells.
     Stopped(String),
 }
 
@@ -37,26 +39,26 @@ impl fmt::Display for Exhausted {
     }
 }
 
-/// Does a stage's job in a process of its own.
+/// Does a stage's job in a separate process.
 pub type Runner = fn(stage: &str, job: &[u8]) -> Result<(), Exhausted>;
 
-/// What became of a job, by the hash of its stage and bytes.
+/// The result of each job, by the hash of its stage and bytes.
 type Known = BTreeMap<[u8; 32], Result<(), Exhausted>>;
 
-/// Jobs that are remembered: an error is found several times on its way to its author.
+/// How many jobs are remembered, since one error is found several times on its way to its author.
 const REMEMBERED: usize = 1024;
 
 static RUNNER: OnceLock<Runner> = OnceLock::new();
 static KNOWN: Mutex<Known> = Mutex::new(BTreeMap::new());
 
-/// Rehearsals of this process go through `runner` from now on.
+/// From now on, `runner` does the rehearsals of this process.
 pub fn run_by(runner: Runner) {
-    // The first stays.
+    // If one was set before, that one stays.
     let _ = RUNNER.set(runner);
 }
 
-/// Rehearses a job, one at a time, unless it was rehearsed before. Without a runner nothing
-/// happens.
+/// Rehearses a job, unless that was done before. Only one job runs at a time. Without a runner
+/// nothing happens.
 ///
 /// # Errors
 /// What the job exhausted: it must not be done in this process.
@@ -65,7 +67,8 @@ pub fn rehearse(stage: &str, job: &[u8]) -> Result<(), Exhausted> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(stage.as_bytes()).update(&[0]).update(job);
     let key = *hasher.finalize().as_bytes();
-    // Held while the job runs: several at once would take several times the memory.
+    // The lock is held while the job runs, since several jobs at once would need several times the
+    // memory.
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(result) = known.get(&key) {
         return result.clone();

@@ -26,22 +26,22 @@ impl Tool {
         files.into_iter().find(|file| file.is_file())
     }
 
-    /// What to tell someone on whose machine it is missing.
+    /// The message for someone on whose machine it is missing.
     pub fn missing(self) -> String {
         let Self { program, package } = self;
         format!("`{program}` is not installed\ninstall it with: apt-get install {package}")
     }
 
-    /// What it calls itself, in one line: another version judges otherwise.
+    /// The version that it reports, in one line. Another version may judge differently.
     pub fn version(self) -> String {
         let said = Command::new(self.program).arg("--version").stdin(Stdio::null()).output();
         said.map_or(String::new(), |said| String::from_utf8_lossy(&said.stdout).replace('\n', " "))
     }
 
-    /// Runs it on bytes; gives what it wrote.
+    /// Runs it on bytes; returns what it wrote.
     ///
     /// # Errors
-    /// Its words where it refuses the bytes, or why it could not be run.
+    /// Its message if it refuses the bytes, or why it could not be run.
     pub fn pipe(self, arguments: &[&str], input: &[u8]) -> Result<Vec<u8>, String> {
         let failed = |error: io::Error| format!("`{}` could not be run: {error}", self.program);
         if self.path().is_none() {
@@ -56,7 +56,7 @@ impl Tool {
             .map_err(failed)?;
         let stdin = child.stdin.take();
         let said = std::thread::scope(|scope| {
-            // The program may write before it has read everything, or stop reading.
+            // The program may write before it has read everything, or may stop reading.
             scope.spawn(|| stdin.map(|mut stdin| stdin.write_all(input)));
             child.wait_with_output()
         });
@@ -75,7 +75,7 @@ impl Tool {
     }
 }
 
-/// All that a program said.
+/// Everything that a program printed.
 pub fn words(said: &Output) -> String {
     let all = [said.stdout.as_slice(), said.stderr.as_slice()].concat();
     String::from_utf8_lossy(&all).trim().to_owned()

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use lamplight::browser::serve::{Files, Server};
-use lamplight::browser::{Browser, PATIENCE, Problem, Shot};
+use lamplight::browser::{Browser, PATIENCE, Problem, Screenshot};
 use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
@@ -50,7 +50,7 @@ fn pages() -> Outcome {
         && !!document.createElement('canvas').getContext('webgl2')";
     assert_eq!(page.evaluate(both, PATIENCE)?, serde_json::json!(true));
     for width in [360, 800] {
-        let shot = page.screenshot(Shot { width, height: 300, whole: false })?;
+        let shot = page.screenshot(Screenshot { width, height: 300, whole: false })?;
         let picture = image::load_from_memory(&shot)?.into_rgb8();
         assert_eq!(picture.dimensions(), (width, 300));
         assert!(picture.pixels().all(|pixel| pixel.0 == [255, 0, 0]));

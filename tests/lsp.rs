@@ -1,15 +1,16 @@
 //! The language server over its protocol, as a process on two pipes; and Neovim as a real client.
 
-use std::fs;
-use std::io::{BufReader, Write};
-use std::path::Path;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+mod session;
 
-use lamplight::lsp::wire::{self, Incoming};
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::Command;
+
 use lamplight::source::{Embedded, Files as _};
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
-use tempfile::TempDir;
+use session::{MANIFEST, Session, UTIL};
 
 type Outcome = Result<(), Failed>;
 
@@ -35,19 +36,6 @@ pub fn trials() -> Vec<Trial> {
     TRIALS.iter().map(trial).collect()
 }
 
-const MANIFEST: &str = r#"[program.lamp]
-wesl = "main.wesl"
-
-[program.lamp.axis]
-fog = { values = [false, true], doc = "Far things fade." }
-cone = { values = ["hard", "soft"] }
-
-[features]
-TINT = { doc = "A warm colour." }
-"#;
-
-const UTIL: &str = "/// Half of it.\nfn half(x: f32) -> f32 {\n    return x * 0.5;\n}\n";
-
 const MAIN: &str = "import package::util::half;
 import lamplight::brdf::diffuse::lambert;
 
@@ -68,134 +56,6 @@ fn fs_main(@location(0) n: vec3f) -> @location(0) vec4f {
     return vec4f(sum);
 }
 ";
-
-/// A package on the disk and a server that has one of its files open.
-struct Session {
-    folder: TempDir,
-    child: Child,
-    to: Option<ChildStdin>,
-    from: BufReader<ChildStdout>,
-    next: u64,
-}
-
-impl Session {
-    fn new(main: &str) -> Result<Self, Failed> {
-        let folder = tempfile::tempdir()?;
-        fs::write(folder.path().join("lamplight.toml"), MANIFEST)?;
-        fs::write(folder.path().join("util.wesl"), UTIL)?;
-        fs::write(folder.path().join("main.wesl"), main)?;
-        let mut child = Command::new(env!("CARGO_BIN_EXE_lamplight"))
-            .arg("lsp")
-            .env("XDG_CACHE_HOME", folder.path().join("cache"))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()?;
-        let to = child.stdin.take();
-        let from = BufReader::new(child.stdout.take().ok_or("no output")?);
-        let mut session = Self { folder, child, to, from, next: 0 };
-        session.ask("initialize", json!({ "capabilities": {} }))?;
-        session.tell("initialized", json!({}))?;
-        session.open("main.wesl", main)?;
-        Ok(session)
-    }
-
-    fn uri(&self, name: &str) -> Result<String, Failed> {
-        Ok(format!("file://{}", self.folder.path().canonicalize()?.join(name).display()))
-    }
-
-    fn send(&mut self, message: &Value) -> Outcome {
-        Ok(wire::write(self.to.as_mut().ok_or("closed")?, message)?)
-    }
-
-    fn tell(&mut self, method: &str, parameters: Value) -> Outcome {
-        self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": parameters }))
-    }
-
-    fn open(&mut self, name: &str, text: &str) -> Outcome {
-        let uri = self.uri(name)?;
-        let document = json!({ "uri": uri, "languageId": "wesl", "version": 1, "text": text });
-        self.tell("textDocument/didOpen", json!({ "textDocument": document }))
-    }
-
-    fn receive(&mut self) -> Result<Value, Failed> {
-        match wire::read(&mut self.from)? {
-            Incoming::Message(message) => Ok(message),
-            other => Err(format!("{other:?}").into()),
-        }
-    }
-
-    /// The answer to a request: its result, or what it says is wrong.
-    fn answer(&mut self, method: &str, parameters: Value) -> Result<Result<Value, Value>, Failed> {
-        self.next += 1;
-        let id = self.next;
-        let message = json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": parameters });
-        self.send(&message)?;
-        loop {
-            let found = self.receive()?;
-            if found.get("id") == Some(&json!(id)) {
-                let error = found.get("error").cloned();
-                return Ok(error.map_or(Ok(found["result"].clone()), Err));
-            }
-        }
-    }
-
-    fn ask(&mut self, method: &str, parameters: Value) -> Result<Value, Failed> {
-        self.answer(method, parameters)?.map_err(|error| error.to_string().into())
-    }
-
-    /// Asks about the first place of some words in a text; `more` joins the parameters.
-    fn at(&mut self, method: &str, text: &str, words: &str, more: Value) -> Result<Value, Failed> {
-        let parameters = self.place(text, words, more)?;
-        self.ask(method, parameters)
-    }
-
-    fn place(&self, text: &str, words: &str, more: Value) -> Result<Value, Failed> {
-        let byte = text.find(words).ok_or_else(|| format!("no `{words}`"))?;
-        let line = text[..byte].matches('\n').count();
-        let start = text[..byte].rfind('\n').map_or(0, |end| end + 1);
-        let mut parameters = json!({
-            "textDocument": { "uri": self.uri("main.wesl")? },
-            "position": { "line": line, "character": text[start..byte].encode_utf16().count() },
-        });
-        if let (Some(parameters), Some(more)) = (parameters.as_object_mut(), more.as_object()) {
-            parameters.extend(more.clone());
-        }
-        Ok(parameters)
-    }
-
-    /// What is told of a file, once nothing else waits.
-    fn told(&mut self, name: &str) -> Result<Vec<Value>, Failed> {
-        let uri = self.uri(name)?;
-        loop {
-            let message = self.receive()?;
-            if message["method"] == "textDocument/publishDiagnostics"
-                && message["params"]["uri"] == json!(uri)
-            {
-                return Ok(message["params"]["diagnostics"]
-                    .as_array()
-                    .cloned()
-                    .unwrap_or_default());
-            }
-        }
-    }
-
-    fn change(&mut self, text: &str) -> Outcome {
-        let uri = self.uri("main.wesl")?;
-        let parameters = json!({
-            "textDocument": { "uri": uri, "version": 2 },
-            "contentChanges": [{ "text": text }],
-        });
-        self.tell("textDocument/didChange", parameters)
-    }
-}
-
-impl Drop for Session {
-    fn drop(&mut self) {
-        self.to = None;
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
 
 fn expect(is_so: bool, found: &impl std::fmt::Debug) -> Outcome {
     if is_so { Ok(()) } else { Err(format!("{found:#?}").into()) }

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
 use lamplight::browser::serve::{Files, Server};
-use lamplight::browser::{Browser, Page, Shot as Screenshot};
+use lamplight::browser::{Browser, Page, Screenshot};
 use lamplight::bundle::Language;
 use lamplight::catalogue;
 use lamplight::diagnostic::Diagnostics;
@@ -157,7 +159,7 @@ fn pictures() -> Outcome {
 
 fn compare(name: &str, data: &str, preset: &str) -> Outcome {
     let data = data.strip_prefix("data:image/png;base64,").ok_or("no picture")?;
-    let bytes = base64(data);
+    let bytes = BASE64_STANDARD.decode(data)?;
     let found = image::load_from_memory(&bytes)?.into_rgb8();
     let wanted = rendered(preset)?;
     assert_eq!(found.dimensions(), (wanted.width, wanted.height), "{name}");
@@ -198,24 +200,6 @@ fn rendered(preset: &str) -> Result<Picture, Failed> {
     });
     let drawn = drawn.ok_or("the renderer stopped")?;
     drawn.map_err(|problems: Diagnostics| format!("{preset}: {problems:?}").into())
-}
-
-fn base64(text: &str) -> Vec<u8> {
-    let value = |letter: u8| match letter {
-        b'A'..=b'Z' => u32::from(letter - b'A'),
-        b'a'..=b'z' => u32::from(letter - b'a') + 26,
-        b'0'..=b'9' => u32::from(letter - b'0') + 52,
-        b'+' => 62,
-        _ => 63,
-    };
-    let letters: Vec<u8> = text.bytes().filter(|letter| *letter != b'=').collect();
-    let mut bytes = Vec::new();
-    for four in letters.chunks(4) {
-        let word = four.iter().fold(0, |word, letter| word << 6 | value(*letter))
-            << (6 * (4 - four.len()));
-        bytes.extend(&word.to_be_bytes()[1..four.len()]);
-    }
-    bytes
 }
 
 /// A switched axis changes the picture and the outputs; what is impossible says why; the link holds

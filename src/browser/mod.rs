@@ -2,10 +2,10 @@
 //!
 //! `Browser::start -> Browser::open -> Page::evaluate, until, errors, screenshot`
 //!
-//! Messages go through a pair of pipes (`--remote-debugging-pipe`) and not through a socket: no port
-//! is open to others, no second protocol is needed, and the browser ends when the pipes close. So it
-//! goes away with this process, however this process ends, and the shell that started it removes its
-//! profile ([`process`]). Every wait has a limit. What a page is made of comes from [`serve`].
+//! Messages go through a pair of pipes (`--remote-debugging-pipe`) and not through a socket. So no
+//! port is open to others, no second protocol is needed, and the browser ends when the pipes close.
+//! It therefore ends with this process, however that ends, and the shell that started it removes
+//! its profile ([`process`]). Every wait has a limit. [`serve`] serves the files of a page.
 
 mod page;
 mod process;
@@ -18,14 +18,14 @@ use std::time::Duration;
 
 use serde_json::json;
 
-pub use page::{Page, Shot};
+pub use page::{Page, Screenshot};
 use process::Process;
 use wire::Wire;
 
 /// The Debian package.
 pub const PACKAGE: &str = "chromium";
 
-/// Longest wait for what a browser does at once.
+/// The longest wait for something that a browser does at once.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// What can go wrong with a browser or a page of it.
@@ -37,7 +37,7 @@ pub enum Problem {
     Gone(String),
     /// The page's process has ended.
     Crashed,
-    /// Nothing came within a time.
+    /// Nothing came within the time.
     Late { what: String, after: Duration },
     /// The browser refuses a command.
     Refused(String),
@@ -63,7 +63,7 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
-/// A browser with a profile of its own. It ends when the last page and the last owner are gone.
+/// A browser with a profile of its own. It ends when its last page and its last owner are dropped.
 #[derive(Debug)]
 pub struct Browser {
     wire: Arc<Wire>,
@@ -80,7 +80,7 @@ impl Browser {
         Self::start_as("chromium")
     }
 
-    /// Starts the browser that is called so.
+    /// Starts the browser with this program name.
     ///
     /// # Errors
     /// Those of [`Self::start`].
@@ -99,13 +99,14 @@ impl Browser {
         Ok(Arc::new(Self { wire, version, process }))
     }
 
-    /// The browser of this process: one for all who ask while anybody has it.
+    /// The browser of this process. Everyone who asks gets the same one, as long as somebody holds
+    /// it.
     ///
     /// # Errors
     /// Those of [`Self::start`].
     pub fn shared() -> Result<Arc<Self>, Problem> {
         static SHARED: Mutex<Weak<Browser>> = Mutex::new(Weak::new());
-        // Held while it starts, so that there is one.
+        // The lock is held while the browser starts, so that only one is started.
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(browser) = shared.upgrade().filter(|browser| !browser.wire.is_closed()) {
             return Ok(browser);
@@ -140,13 +141,13 @@ impl Browser {
         self.call(None, method, parameters, PATIENCE)
     }
 
-    /// Ends it at once, whatever it does.
+    /// Ends it at once, whatever it is doing.
     fn kill(&self) {
         self.wire.close();
         self.process.terminate();
     }
 
-    /// The result of a command, of a page if one is named.
+    /// Runs a command, for a page if one is named.
     fn call(
         &self,
         page: Option<&str>,

@@ -1,4 +1,4 @@
-//! One page: what it computes, says and shows.
+//! One page: evaluates scripts in it, reads its errors, and takes pictures.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{Browser, PATIENCE, Problem};
 
-/// Between two looks at what a page waits for.
+/// The time between two looks at a condition that is waited for.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// A page of a browser; it closes when it is dropped.
@@ -23,10 +23,11 @@ pub struct Page {
 
 /// What a picture of a page shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shot {
-    /// Of the window, in pixels.
+pub struct Screenshot {
+    /// The width of the window, in pixels.
     pub width: u32,
-    /// Of the window; the picture is as high as the page where that is more and `whole` is set.
+    /// The height of the window. If `whole` is set and the page is higher, the picture has the
+    /// page's height.
     pub height: u32,
     pub whole: bool,
 }
@@ -63,7 +64,7 @@ impl Page {
         }
     }
 
-    /// The value of an expression of JavaScript, of what it promises if it is a promise.
+    /// The value of an expression of JavaScript; of a promise, the value that it resolves to.
     ///
     /// # Errors
     /// It throws, or there is none within the time, or the page or the browser is gone.
@@ -110,8 +111,8 @@ impl Page {
         self.until("document.readyState === 'complete'", patience)
     }
 
-    /// What the page complained of so far: errors of the console, exceptions that nobody caught, and
-    /// what could not be loaded.
+    /// The page's errors so far: errors of the console, exceptions that were not caught, and files
+    /// that could not be loaded.
     pub fn errors(&mut self) -> &[String] {
         let events = self.browser.wire.events(&self.session);
         self.errors.extend(events.iter().filter_map(complaint));
@@ -122,13 +123,13 @@ impl Page {
     ///
     /// # Errors
     /// The browser's.
-    pub fn screenshot(&self, shot: Shot) -> Result<Vec<u8>, Problem> {
-        let Shot { width, height, whole } = shot;
+    pub fn screenshot(&self, shot: Screenshot) -> Result<Vec<u8>, Problem> {
+        let Screenshot { width, height, whole } = shot;
         let size = json!({
             "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false,
         });
         self.call("Emulation.setDeviceMetricsOverride", size)?;
-        // What was drawn for the new size.
+        // The page is drawn for the new size first.
         let drawn =
             "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))";
         self.evaluate(&format!("{drawn}.then(() => true)"), PATIENCE)?;
@@ -143,7 +144,7 @@ impl Page {
         self.browser.kill();
     }
 
-    /// The result of any command of the protocol to this page.
+    /// Runs any command of the protocol for this page.
     ///
     /// # Errors
     /// The browser's.
@@ -154,13 +155,13 @@ impl Page {
 
 impl Drop for Page {
     fn drop(&mut self) {
-        // A page that hangs is closed all the same; nobody waits for it.
+        // A page that hangs is closed too, so nobody waits for the answer.
         let parameters = json!({ "targetId": self.target });
         let _ = self.browser.call(None, "Target.closeTarget", parameters, LOOK);
     }
 }
 
-/// What was thrown, in one text.
+/// The exception as one text.
 fn thrown(details: &Value) -> String {
     let description = details["exception"]["description"].as_str();
     let value = || match &details["exception"]["value"] {
@@ -170,7 +171,7 @@ fn thrown(details: &Value) -> String {
     description.map_or_else(value, str::to_owned)
 }
 
-/// What an event complains of.
+/// The error that an event reports, if it reports one.
 fn complaint(event: &Value) -> Option<String> {
     let parameters = &event["params"];
     match event["method"].as_str()? {

@@ -1,4 +1,4 @@
-//! The process of a browser, and the shell that starts it and clears up behind it.
+//! The process of a browser, and the shell that starts it and removes its files afterwards.
 
 use std::fs;
 use std::io::Read as _;
@@ -8,13 +8,13 @@ use std::time::{Duration, Instant};
 
 use super::{PACKAGE, Problem};
 
-/// Time to end after the pipes are closed; then it is killed.
+/// How long it may take to end after the pipes are closed. Then it is killed.
 const END: Duration = Duration::from_secs(5);
-/// Bytes of last words.
+/// How many bytes of its last output are kept.
 const WORDS: usize = 4 << 10;
 
-/// Without a profile of the user's, without windows and network of its own, and with a GPU that is
-/// computed: the same on every machine.
+/// No profile of the user's, no windows, no network of its own, and a GPU that is emulated: the
+/// same on every machine.
 const FLAGS: &[&str] = &[
     "--headless",
     "--no-sandbox",
@@ -41,9 +41,9 @@ const FLAGS: &[&str] = &[
     "--password-store=basic",
 ];
 
-/// The browser reads commands from file 3 and writes answers to file 4; nobody else keeps those
-/// open. It ends when they close, and its folder goes whatever it ends by. Asked to terminate, the
-/// shell kills it first.
+/// The browser reads commands from file 3 and writes answers to file 4. Nobody else keeps these
+/// open, so it ends when they close. The shell removes its folder, whatever the reason for its end.
+/// If the shell is asked to terminate, it kills the browser first.
 const SHELL: &str = r#"
 trap '' INT HUP
 folder=$(mktemp -d) || exit 1
@@ -64,7 +64,7 @@ pub struct Process {
 }
 
 impl Process {
-    /// Starts the program, with the ends of the pipes to it.
+    /// Starts the program, and returns the other ends of its pipes.
     pub fn start(program: &str) -> Result<(Self, ChildStdin, ChildStdout), Problem> {
         if !is_installed(program) {
             return Err(Problem::Missing(format!("`{program}` is not installed")));
@@ -91,7 +91,7 @@ impl Process {
         Ok((Self { shell, words }, stdin, stdout))
     }
 
-    /// The last that it said, without what it always says.
+    /// Its last output, without messages that it always prints.
     pub fn words(&self) -> String {
         let words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
         let text = String::from_utf8_lossy(&words);
@@ -101,7 +101,7 @@ impl Process {
         last.join("\n")
     }
 
-    /// Waits until it is gone, the pipes to it being closed.
+    /// Waits until it has ended, with the pipes closed.
     pub fn end(&mut self) {
         if !self.has_ended(END) {
             self.terminate();
@@ -123,14 +123,14 @@ impl Process {
         false
     }
 
-    /// Has the shell kill the browser.
+    /// Makes the shell kill the browser.
     pub fn terminate(&self) {
         let shell = self.shell.id().to_string();
         let _ = Command::new("sh").args(["-c", "kill -TERM \"$0\"", &shell]).status();
     }
 }
 
-/// Keeps the last bytes of what it says.
+/// Keeps the last bytes of its output.
 fn listen(mut stderr: ChildStderr, kept: &Mutex<Vec<u8>>) {
     let mut buffer = [0; 1024];
     while let Ok(count @ 1..) = stderr.read(&mut buffer) {

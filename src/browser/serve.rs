@@ -1,4 +1,4 @@
-//! A folder, or files in memory, at an address of this machine that no other machine reaches.
+//! Serves a folder, or files in memory, at an address that only this machine reaches.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
@@ -8,9 +8,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// Longest wait for a browser to send or take something.
+/// The longest wait for a browser to send or take something.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// Most bytes of what a browser asks.
+/// The most bytes of a request.
 const QUESTION: u64 = 64 << 10;
 
 /// What is served.
@@ -45,7 +45,7 @@ impl Server {
                     break;
                 }
                 let files = Arc::clone(&files);
-                // A connection that fails is the browser's matter: it asks again.
+                // If a connection fails, the browser asks again.
                 std::thread::spawn(move || stream.and_then(|stream| answer(stream, &files)));
             }
         })?;
@@ -61,13 +61,13 @@ impl Server {
 impl Drop for Server {
     fn drop(&mut self) {
         self.ends.store(true, Ordering::Relaxed);
-        // It waits for somebody.
+        // Wakes the thread that waits for a connection.
         let _ = TcpStream::connect_timeout(&self.address, PATIENCE);
     }
 }
 
 impl Files {
-    /// The bytes of a path; a folder's are those of its `index.html`.
+    /// The bytes of a path. For a folder, those of its `index.html`.
     fn read(&self, path: &str) -> Option<(String, Vec<u8>)> {
         let path = match path.ends_with('/') || path.is_empty() {
             true => format!("{path}index.html"),
@@ -85,7 +85,7 @@ impl Files {
     }
 }
 
-/// Answers one question and closes the connection.
+/// Answers one request and closes the connection.
 fn answer(stream: TcpStream, files: &Files) -> std::io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
@@ -114,7 +114,7 @@ fn answer(stream: TcpStream, files: &Files) -> std::io::Result<()> {
     stream.flush()
 }
 
-/// The path without `%20` and the like.
+/// The path with `%20` and the like decoded.
 fn plain(path: &str) -> String {
     let mut bytes = Vec::new();
     let mut rest = path.as_bytes();
@@ -135,7 +135,7 @@ fn plain(path: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// What a browser is told of a file.
+/// The content type of a file.
 fn kind(path: &str) -> &'static str {
     match path.rsplit('.').next().unwrap_or_default() {
         "html" => "text/html; charset=utf-8",

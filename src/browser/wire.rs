@@ -1,4 +1,5 @@
-//! Messages of the DevTools protocol: JSON, each ended by a zero, answers found by their number.
+//! Messages of the DevTools protocol: JSON, each ended by a zero byte. Answers are matched by their
+//! number.
 
 use std::collections::HashMap;
 use std::io::{BufRead as _, BufReader, Read, Write};
@@ -11,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::Problem;
 
-/// Events of a page that are kept until somebody reads them.
+/// How many events of a page are kept until they are read.
 const EVENTS: usize = 10_000;
 
 /// Both directions of a connection.
@@ -23,9 +24,9 @@ pub struct Wire {
 
 #[derive(Debug, Default)]
 struct State {
-    /// Takes what is to be written; none once the connection is closed.
+    /// Takes messages to be written; `None` once the connection is closed.
     outgoing: Option<Sender<Vec<u8>>>,
-    /// Who waits for an answer, and the page that it is about.
+    /// Who waits for an answer, and the session that it is about.
     waiting: HashMap<u64, (Option<String>, Sender<Value>)>,
     /// Events of pages, by their sessions.
     events: HashMap<String, Vec<Value>>,
@@ -34,8 +35,8 @@ struct State {
 }
 
 impl Wire {
-    /// Reads and writes on threads of their own: a browser that does not read must not hold up
-    /// anybody who has a limit.
+    /// Reads and writes on threads of their own, so that a browser which does not read cannot block
+    /// anyone who has a time limit.
     pub fn new(mut to: impl Write + Send + 'static, from: impl Read + Send + 'static) -> Arc<Self> {
         let (outgoing, queue): (Sender<Vec<u8>>, Receiver<Vec<u8>>) = mpsc::channel();
         let state = Arc::new(Mutex::new(State { outgoing: Some(outgoing), ..State::default() }));
@@ -51,7 +52,7 @@ impl Wire {
         Arc::new(Self { state, next: AtomicU64::new(1) })
     }
 
-    /// The result of a command, of a page's session if one is named.
+    /// Runs a command, for a page's session if one is named.
     pub fn call(
         &self,
         session: Option<&str>,
@@ -110,7 +111,7 @@ impl Wire {
         session.is_some_and(|session| state.crashed.iter().any(|other| other == session))
     }
 
-    /// The events of a session since the last look.
+    /// The events of a session since the last call.
     pub fn events(&self, session: &str) -> Vec<Value> {
         lock(&self.state).events.get_mut(session).map(std::mem::take).unwrap_or_default()
     }
@@ -126,7 +127,7 @@ impl Wire {
     }
 }
 
-/// Hands out what comes until nothing more does.
+/// Passes on what comes until the connection ends.
 fn receive(from: impl Read, state: &Mutex<State>) {
     let mut from = BufReader::with_capacity(1 << 20, from);
     let mut bytes = Vec::new();
@@ -148,7 +149,7 @@ impl State {
     fn take(&mut self, message: Value) {
         if let Some(id) = message["id"].as_u64() {
             if let Some((_, sender)) = self.waiting.remove(&id) {
-                // Whoever waited may have given up.
+                // The receiver may have given up already.
                 let _ = sender.send(message);
             }
             return;

@@ -1,17 +1,17 @@
-//! Which clip space outputs take positions in.
+//! The clip space of an output's positions.
 
 /// Clip space as an author may ask for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Clip {
-    /// WebGPU's, in every target: where an API has another, the output converts.
+    /// WebGPU's, in every target. Where an API has another one, the output converts positions.
     #[default]
     Wgpu,
-    /// The API's own: outputs leave positions as the author's matrices made them.
+    /// The API's own. Outputs do not convert the author's positions.
     Native,
 }
 
 impl Clip {
-    /// Both, as they are called in manifests and on the command line.
+    /// Both, by their names in manifests and on the command line.
     pub const ALL: [(&'static str, Self); 2] = [("wgpu", Self::Wgpu), ("native", Self::Native)];
 
     /// The one of that name.

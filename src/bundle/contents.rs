@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Error, Language, Native, Reflection};
 
-/// 128 bits of BLAKE3: names units and blobs by what they are.
+/// The first 128 bits of BLAKE3, which name units and blobs by their content.
 pub type Hash = [u8; 16];
 
 /// Everything of a bundle, by program.
@@ -26,14 +26,14 @@ pub struct ProgramContents {
     pub languages: BTreeMap<Language, BTreeMap<String, EntryContents>>,
 }
 
-/// One axis of a program, its values in the manifest's order.
+/// One axis of a program, with its values in the manifest's order.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Axis {
     /// As keys name it.
     pub name: String,
-    /// As keys write them.
+    /// Its values, as keys write them.
     pub values: Vec<String>,
-    /// The value a key need not name.
+    /// The default, which a key need not name.
     pub default: String,
     /// `static`, `spec` or `dynamic`.
     pub mode: String,
@@ -46,12 +46,12 @@ impl Axis {
     }
 }
 
-/// One entry point: many keys share a unit.
+/// One entry point. Many keys share a unit.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct EntryContents {
-    /// By [`Unit::hash`].
+    /// The units, by [`Unit::hash`].
     pub units: BTreeMap<Hash, Unit>,
-    /// Canonical key to unit.
+    /// The unit of each canonical key.
     pub keys: BTreeMap<String, Hash>,
 }
 
@@ -60,7 +60,7 @@ pub struct EntryContents {
 pub struct Unit {
     /// What is bound, and what enters and leaves the stage.
     pub reflection: Arc<Reflection>,
-    /// By name of the target, so that a bundle may have targets this build does not know.
+    /// By the name of the target, so that a bundle may have targets that this build does not know.
     pub targets: BTreeMap<String, Artifact>,
 }
 
@@ -75,12 +75,12 @@ pub struct Artifact {
     pub native: Arc<Native>,
 }
 
-/// What a unit is, in short.
+/// The hashes of a unit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Digest {
-    /// Equal for units of equal content, on any machine.
+    /// Equal for units with equal content, on any machine.
     pub unit: Hash,
-    /// The checksum of each target's bytes, and how many there are, in the order of the targets.
+    /// The checksum and the length of each target's bytes, in the order of the targets.
     pub blobs: Box<[(Hash, u32)]>,
 }
 
@@ -110,7 +110,7 @@ impl Unit {
         Ok(Digest { unit: short(&hasher.finalize()), blobs: blobs.into() })
     }
 
-    /// Equal for units of equal content, on any machine.
+    /// Equal for units with equal content, on any machine.
     pub fn hash(&self) -> Result<Hash, Error> {
         Ok(self.digest()?.unit)
     }
@@ -162,16 +162,18 @@ fn merge_entry(mine: &mut EntryContents, other: EntryContents) -> Result<(), Err
     Ok(())
 }
 
-/// Refuses names that would be more than a name where they are printed.
+/// Refuses names with control characters, which would do more than show a name when they are
+/// printed.
 pub(super) fn plain<'a>(
     part: &str,
     names: impl IntoIterator<Item = &'a String>,
 ) -> Result<(), Error> {
     match names.into_iter().find(|name| name.chars().any(char::is_control)) {
         None => Ok(()),
-        Some(name) => {
-            Err(Error::corrupt(part, format!("{name:?} has control characters, and is no name")))
-        }
+        Some(name) => Err(Error::corrupt(
+            part,
+            format!("{name:?} has control characters, so it is not a name"),
+        )),
     }
 }
 
@@ -199,7 +201,7 @@ pub(super) fn hex(bytes: &[u8]) -> String {
         .collect()
 }
 
-/// What [`hex`] wrote.
+/// Reads what [`hex`] wrote.
 pub(super) fn unhex(text: &str) -> Option<Hash> {
     let mut hash = [0; 16];
     let (pairs, rest) = text.as_bytes().as_chunks::<2>();

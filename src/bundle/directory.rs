@@ -14,21 +14,21 @@ use crate::input;
 pub(super) const MANIFEST: &str = "manifest.json";
 pub(super) const BLOBS: &str = "blobs";
 
-/// Bytes of a manifest: forty times those of 100,000 permutations.
+/// The most bytes of a manifest: forty times what 100,000 permutations need.
 pub(super) const MOST_MANIFEST_BYTES: u64 = crate::limits::MANIFEST_BYTES;
 
-/// Artifacts by target, each with the number of its blob.
+/// Artifacts by target, each with the index of its blob.
 type Numbered = BTreeMap<String, (ManifestArtifact, u32)>;
 
 /// An open directory; blobs are read when asked for.
 pub struct Directory {
     blobs: PathBuf,
     programs: Programs,
-    /// By number of the entry point.
+    /// For each entry point, the unit of each key.
     keys: Vec<BTreeMap<String, u32>>,
     units: Vec<(Arc<Reflection>, Numbered)>,
     natives: BTreeMap<String, Arc<Native>>,
-    /// By number of the blob, each distinct one once.
+    /// The blobs, each distinct one once.
     artifacts: Vec<ManifestArtifact>,
     numbers: BTreeMap<ManifestArtifact, u32>,
 }
@@ -109,7 +109,7 @@ pub fn blob_files(path: impl AsRef<Path>) -> Result<BTreeSet<BlobFile>, Error> {
     listed(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
 }
 
-/// The same of a manifest whose blobs are where `place` says.
+/// The same for a manifest whose blobs are where `place` says.
 pub(super) fn listed(
     manifest: &Manifest,
     place: &dyn Fn(&str) -> PathBuf,
@@ -234,7 +234,8 @@ impl Store for Directory {
         }
     }
 
-    /// A blob is read once however many units name it, and none is larger than a group.
+    /// Bounds the memory that reading may take: a blob is read once, however many units name it,
+    /// and none is larger than a group.
     fn measure(&self) -> Result<(), Error> {
         Ok(())
     }

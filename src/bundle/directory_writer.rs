@@ -1,11 +1,12 @@
 //! Writes the directory form.
 //!
 //! A run collects its blobs in a scratch folder inside the directory. When all are there and
-//! synced, they are renamed into `blobs/`, and then the manifest into its place, by one rename:
-//! killed at any point, the directory is the old bundle or the new one, whole.
+//! synced, they are renamed into `blobs/`. Then one rename puts the manifest into its place. So
+//! whenever the run is killed, the directory holds either the old bundle or the new one, complete.
 //!
-//! A program that has the older bundle open goes on reading it: its blobs stay until the run
-//! after, listed in [`RETIRED`]. Only what a manifest of ours names is ever removed.
+//! A program that has the older bundle open can go on reading it: its blobs are listed in
+//! [`RETIRED`] and stay until the next run. Only blobs that a manifest of ours names are ever
+//! removed.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -19,12 +20,12 @@ use super::{Contents, Digest, Error, Unit};
 use crate::limits::GROUP_BYTES;
 use crate::output::{self, Foreign, Replace, Scratch};
 
-/// The blobs that only the bundle before this one has, one a line.
+/// Lists the blobs that only the bundle before this one has, one on each line.
 const RETIRED: &str = ".lamplight-retired";
 const RETIRED_HEADER: &str =
     "# Blobs of the bundle that was here before this one. The next run removes them.\n";
 
-/// Writes the directory form over whatever bundle of ours is there.
+/// Writes the directory form, and replaces a bundle of ours that is there.
 pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
     let writer = DirectoryWriter::create(path)?;
     let entries = contents
@@ -38,34 +39,36 @@ pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<()
     writer.finish(contents)
 }
 
-/// Writes the directory form over whatever bundle of ours is there, unit by unit, so that no more
-/// than its manifest is ever in memory.
+/// Writes the directory form unit by unit, and replaces a bundle of ours that is there. Only the
+/// manifest is kept in memory.
 #[derive(Debug)]
 pub struct DirectoryWriter {
     path: PathBuf,
     replace: Replace,
-    /// Files of blobs that the bundle there names.
+    /// Files of blobs that the present bundle names.
     live: BTreeSet<String>,
-    /// Those that only the bundle before it named.
+    /// Files of blobs that only the bundle before it named.
     retired: BTreeSet<String>,
     scratch: Scratch,
     manifest: Mutex<Manifest>,
-    /// Files of blobs that wait in the scratch folder.
+    /// Files of blobs in the scratch folder.
     staged: Mutex<BTreeSet<String>>,
-    /// Held until the writer is gone.
+    /// Held until the writer is dropped.
     _turn: Option<File>,
 }
 
 impl DirectoryWriter {
-    /// Starts over at `path`; the bundle that is there stays as it is until [`Self::finish`].
+    /// Begins a new bundle at `path`. A bundle that is there does not change until
+    /// [`Self::finish`].
     ///
     /// # Errors
-    /// [`Error::Foreign`] where `path` has files and no bundle of ours.
+    /// [`Error::Foreign`] where `path` has files but no bundle of ours.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, Error> {
         Self::take_over(path, Replace::Ours, &|| ())
     }
 
-    /// The same over what `replace` says; `waiting` is called if another run writes there.
+    /// As [`Self::create`], but replaces what `replace` allows. `waiting` is called if another run
+    /// writes there.
     pub fn take_over(
         path: impl AsRef<Path>,
         replace: Replace,
@@ -97,7 +100,7 @@ impl DirectoryWriter {
         })
     }
 
-    /// Goes on with the bundle at `path`.
+    /// Continues the bundle at `path`.
     pub(super) fn reopen(path: impl AsRef<Path>) -> Result<Self, Error> {
         let writer = Self::create(path)?;
         let manifest = read_manifest(&writer.path)?;
@@ -125,7 +128,7 @@ impl DirectoryWriter {
         Ok(digest)
     }
 
-    /// Writes a blob to be, unless the directory has it already.
+    /// Writes a blob to the scratch folder, unless the directory has it already.
     fn stage(&self, name: String, bytes: &[u8]) -> Result<(), Error> {
         let place = self.path.join(BLOBS).join(&name);
         let found = fs::symlink_metadata(&place).ok();
@@ -139,12 +142,12 @@ impl DirectoryWriter {
             return Ok(());
         }
         drop(staged);
-        self.scratch.write(&name, bytes)?;
+        self.scratch.stage(&name, bytes)?;
         Ok(())
     }
 
     /// The blobs of all units so far, where they are now: in the scratch folder, or already in
-    /// their place. They can be looked at before [`Self::finish`].
+    /// `blobs/`. So they can be looked at before [`Self::finish`].
     pub fn blob_files(&self) -> Result<BTreeSet<BlobFile>, Error> {
         let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner);
         let place = |name: &str| match staged.contains(name) {
@@ -154,8 +157,8 @@ impl DirectoryWriter {
         listed(&self.manifest(), &place)
     }
 
-    /// Writes the manifest for the programs and keys of `contents`, whose own units are not
-    /// looked at. Blobs that it does not name are removed by the run after this one.
+    /// Writes the manifest for the programs and keys of `contents`; units in `contents` are
+    /// ignored. Blobs that the manifest does not name are removed by the next run.
     ///
     /// # Errors
     /// [`Error::Corrupt`] where a key refers to a unit that was not added.
@@ -165,7 +168,7 @@ impl DirectoryWriter {
         self.publish(&manifest)
     }
 
-    /// Sets the keys of `contents` and leaves all others as they are.
+    /// Sets the keys of `contents`, and leaves all others as they are.
     pub(super) fn patch(self, contents: &Contents) -> Result<(), Error> {
         let mut manifest = std::mem::take(&mut *self.manifest());
         let mut others = std::mem::take(&mut manifest.programs);
@@ -185,8 +188,9 @@ impl DirectoryWriter {
         self.publish(&manifest)
     }
 
-    /// Each step leaves the older bundle whole, and the next run knows what a killed one left:
-    /// the manifest in the scratch folder names the blobs that may have been moved already.
+    /// Puts the blobs and the manifest in place. Each step leaves the older bundle complete. If a
+    /// run is killed, the manifest in its scratch folder tells the next run which blobs may have
+    /// been moved already.
     fn publish(&self, manifest: &Manifest) -> Result<(), Error> {
         let artifacts = manifest.units.values().flat_map(|unit| unit.targets.values());
         let next = artifacts.map(ManifestArtifact::file).collect::<Result<BTreeSet<_>, _>>()?;
@@ -196,6 +200,8 @@ impl DirectoryWriter {
         let is_same = fs::read(&place).is_ok_and(|found| found == text);
         let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner);
         self.check_blobs(&staged)?;
+        // No manifest names a blob that a loss of power could take.
+        self.scratch.sync(&staged.iter().map(String::as_str).collect::<Vec<_>>())?;
         let written = self.scratch.write(MANIFEST, &text)?;
         self.remove_retired(&next);
         self.move_blobs(&staged)?;
@@ -207,7 +213,7 @@ impl DirectoryWriter {
         Ok(())
     }
 
-    /// No blob of ours may replace a file of somebody else.
+    /// Refuses to replace a file of somebody else by a blob.
     fn check_blobs(&self, staged: &BTreeSet<String>) -> Result<(), Error> {
         let blobs = self.path.join(BLOBS);
         is_folder(&blobs)?;
@@ -216,7 +222,7 @@ impl DirectoryWriter {
             let Ok(found) = fs::symlink_metadata(&place) else { continue };
             let is_ours = self.live.contains(name) || self.retired.contains(name);
             if !found.is_file() {
-                return Err(Error::Foreign(Foreign::never(&place, "is no file")));
+                return Err(Error::Foreign(Foreign::never(&place, "is not a file")));
             }
             if !is_ours && self.replace == Replace::Ours {
                 return Err(Error::Foreign(stranger(&place)));
@@ -236,7 +242,7 @@ impl DirectoryWriter {
         Ok(())
     }
 
-    /// Removes the blobs of the bundle before the one that is there.
+    /// Removes the blobs that only the bundle before the present one has.
     fn remove_retired(&self, next: &BTreeSet<String>) {
         for name in self.retired.difference(next).filter(|name| !self.live.contains(*name)) {
             remove_blob(&self.path.join(BLOBS).join(name));
@@ -258,7 +264,7 @@ impl DirectoryWriter {
     }
 
     fn manifest(&self) -> MutexGuard<'_, Manifest> {
-        // A thread that panicked here left the manifest without its unit, which no key names.
+        // A thread that panicked here has not added its unit, so no key can name that.
         self.manifest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -271,7 +277,7 @@ fn stranger(path: &Path) -> Foreign {
     Foreign::file(path, "is a file that Lamplight did not write")
 }
 
-/// The blobs of the manifest that is there; `None` where there is none.
+/// The blobs of the manifest that is there; `None` if there is none.
 fn survey_manifest(path: &Path, replace: Replace) -> Result<Option<BTreeSet<String>>, Error> {
     let place = path.join(MANIFEST);
     let Some(text) = read_own(&place)? else { return Ok(None) };
@@ -298,18 +304,20 @@ fn read_retired(path: &Path, replace: Replace) -> Result<BTreeSet<String>, Error
     }
 }
 
-/// A file of the directory itself, which must be one and no link; `None` where there is none.
+/// A file of the directory itself, which must be a file and not a link; `None` if there is none.
 fn read_own(place: &Path) -> Result<Option<Vec<u8>>, Error> {
     match fs::symlink_metadata(place) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(io(place, &error)),
-        Ok(found) if !found.is_file() => Err(Error::Foreign(Foreign::never(place, "is no file"))),
+        Ok(found) if !found.is_file() => {
+            Err(Error::Foreign(Foreign::never(place, "is not a file")))
+        }
         Ok(found) if found.len() > MOST_MANIFEST_BYTES => Err(Error::Foreign(stranger(place))),
         Ok(_) => fs::read(place).map(Some).map_err(|error| io(place, &error)),
     }
 }
 
-/// Whether there is a folder, and no link to one.
+/// Whether a folder is there. A link to a folder is refused.
 fn is_folder(place: &Path) -> Result<bool, Error> {
     match fs::symlink_metadata(place) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
@@ -319,11 +327,11 @@ fn is_folder(place: &Path) -> Result<bool, Error> {
             place,
             "is a link, and blobs are neither written nor removed through links",
         ))),
-        Ok(_) => Err(Error::Foreign(Foreign::never(place, "is no folder"))),
+        Ok(_) => Err(Error::Foreign(Foreign::never(place, "is not a folder"))),
     }
 }
 
-/// A folder without a bundle of ours must have nothing else in it.
+/// Refuses a folder that has something in it but no bundle of ours.
 fn survey_strangers(path: &Path, scratch: &Scratch, has_blobs: bool) -> Result<(), Error> {
     let entries = |folder: &Path| {
         let entries = fs::read_dir(folder).map_err(|error| io(folder, &error))?;
@@ -346,7 +354,7 @@ fn survey_strangers(path: &Path, scratch: &Scratch, has_blobs: bool) -> Result<(
     Err(Error::Foreign(Foreign::file(path, found)))
 }
 
-/// Removes the blobs that a killed run moved and no manifest names.
+/// Removes blobs that a killed run moved and that no manifest names.
 fn remove_unfinished(left: &Path, blobs: &Path, known: [&BTreeSet<String>; 2]) {
     let Ok(Some(text)) = read_own(&left.join(MANIFEST)) else { return };
     let Before::Whole(files) = manifest::before(&text) else { return };
@@ -356,7 +364,7 @@ fn remove_unfinished(left: &Path, blobs: &Path, known: [&BTreeSet<String>; 2]) {
         .for_each(|name| remove_blob(&blobs.join(name)));
 }
 
-/// What cannot be removed now is no harm.
+/// Removes a blob. If that fails, the file only takes up space.
 fn remove_blob(place: &Path) {
     if fs::symlink_metadata(place).is_ok_and(|found| found.is_file()) {
         let _ = fs::remove_file(place);

@@ -4,35 +4,35 @@ use std::fmt;
 
 use crate::output::{self, Foreign};
 
-/// Why a bundle, or something of it, cannot be had.
+/// Why a bundle, or a part of it, cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
     /// The operating system's words.
     Io(String),
-    /// Something that is no bundle of ours is where one would be written.
+    /// Something that is not a bundle of ours is where one would be written.
     Foreign(Foreign),
     /// Bytes are not what was written: which part, and what is wrong with it.
     Corrupt {
-        /// What of the bundle.
+        /// Which part of the bundle.
         part: String,
         /// What is wrong with it.
         reason: String,
     },
     /// The bundle was written in a format that this loader does not read.
     Version {
-        /// That of the bundle.
+        /// The version of the bundle.
         found: u32,
-        /// That of this loader.
+        /// The version of this loader.
         known: u32,
     },
-    /// There is no program, entry point or target of that name; the names there are.
+    /// There is no program, entry point or target of that name.
     NotFound {
-        /// The kind of thing.
+        /// What kind of thing it is.
         what: &'static str,
         /// What was asked for.
         name: String,
-        /// What there is instead.
+        /// The names that there are.
         known: Vec<String>,
     },
     /// A key names an axis or a value that the program does not have.
@@ -51,9 +51,9 @@ pub enum Error {
 /// A permutation that was asked for and is not in the bundle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Miss {
-    /// In canonical form.
+    /// The key that was asked for, in canonical form.
     pub asked: String,
-    /// The permutation that differs in the fewest axes, the first by text among equals.
+    /// The permutation that differs in the fewest axes; of several, the first by text.
     pub nearest: Option<String>,
 }
 

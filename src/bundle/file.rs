@@ -1,4 +1,4 @@
-//! Reads the single file where it lies: only its header and META are parsed on opening.
+//! Reads the single file in place: only its header and META are parsed on opening.
 
 mod verify;
 
@@ -17,8 +17,8 @@ use super::{Axis, Error, Reflection, VERSION};
 use crate::input;
 use crate::packing;
 
-/// Decompressed groups that are kept, and their bytes: what a level's worth of similar shaders
-/// needs.
+/// How many decompressed groups are kept, and how many bytes: about what the shaders of one level
+/// of a game need.
 const KEPT_GROUPS: usize = 16;
 const KEPT_BYTES: usize = 32 << 20;
 
@@ -26,7 +26,7 @@ const KEPT_BYTES: usize = 32 << 20;
 pub struct Packed {
     bytes: Bytes,
     sections: [(usize, usize, Hash); SECTIONS.len()],
-    /// Outcome of each section's checksum, on first use.
+    /// The result of each section's checksum, which is computed on first use.
     checked: [OnceLock<Result<(), Error>>; SECTIONS.len()],
     meta: Meta,
     programs: Programs,
@@ -63,7 +63,7 @@ pub fn open(path: &Path) -> Result<Packed, Error> {
     parse(Bytes::Mapped(map))
 }
 
-/// The same over bytes in memory.
+/// As [`Self::open`], for bytes in memory.
 pub fn from_bytes(bytes: Vec<u8>) -> Result<Packed, Error> {
     parse(Bytes::Owned(bytes))
 }
@@ -104,7 +104,7 @@ fn parse(bytes: Bytes) -> Result<Packed, Error> {
     })
 }
 
-/// Where the sections are, from a header that is what was written.
+/// The offset, length and checksum of each section, from a header whose own checksum is right.
 fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error> {
     let part = "header";
     if slice(bytes, 0, 8, part)? != MAGIC {
@@ -151,7 +151,7 @@ fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error>
 }
 
 impl Packed {
-    /// A section, its checksum verified once.
+    /// The bytes of a section, whose checksum is verified once.
     fn section(&self, index: usize) -> Result<&[u8], Error> {
         let (offset, length, expected) = self.sections[index];
         let section = slice(&self.bytes, offset, length, SECTIONS[index])?;
@@ -193,7 +193,7 @@ impl Packed {
         u32_at(keys, entry.units as usize + index * 4, "keys")
     }
 
-    /// One of the JSON texts, as a value.
+    /// One of the JSON texts, parsed.
     fn text<T: DeserializeOwned>(&self, index: u32) -> Result<T, Error> {
         if index >= self.meta.texts {
             return Err(Error::corrupt("texts", "a number is out of range"));
@@ -209,7 +209,7 @@ impl Packed {
         serde_json::from_slice(text).map_err(|error| Error::corrupt("texts", error.to_string()))
     }
 
-    /// Reflection, first artifact and number of artifacts.
+    /// Of a unit: the reflection, the first artifact and the number of artifacts.
     fn unit_record(&self, unit: u32) -> Result<(u32, u32, u32), Error> {
         let units = self.section(UNITS)?;
         let at = unit as usize * UNIT_BYTES;
@@ -223,7 +223,7 @@ impl Packed {
         if in_range { Ok(record) } else { Err(Error::corrupt("units", "a number is out of range")) }
     }
 
-    /// The target, the number of its native text, and the blob.
+    /// Of an artifact: the target, the number of its native text, and the blob.
     fn artifact_record(&self, artifact: u32) -> Result<(&TargetMeta, u32, u32), Error> {
         let units = self.section(UNITS)?;
         let at = self.meta.units as usize * UNIT_BYTES + artifact as usize * ARTIFACT_BYTES;
@@ -232,7 +232,7 @@ impl Packed {
         Ok((target, u32_at(units, at + 4, "units")?, u32_at(units, at + 8, "units")?))
     }
 
-    /// A decompressed group, from those kept or the file.
+    /// A decompressed group, kept or from the file.
     fn group(&self, group: u32) -> Result<Arc<[u8]>, Error> {
         if let Ok(kept) = self.groups.lock()
             && let Some((_, bytes)) = kept.iter().find(|(index, _)| *index == group)
@@ -270,7 +270,7 @@ impl Packed {
         }
     }
 
-    /// Offset in DATA, length there, length decompressed, checksum.
+    /// Of a group: offset in DATA, length there, length decompressed, checksum.
     fn group_record(&self, group: u32) -> Result<(usize, usize, usize, Hash), Error> {
         let table = self.section(BLOBS)?;
         let at = self.meta.blobs as usize * BLOB_BYTES + group as usize * GROUP_BYTES;
@@ -297,7 +297,7 @@ impl Store for Packed {
         let set = &entry.keys;
         let keys = self.section(KEYS)?;
         if !set.slot_count.is_power_of_two() {
-            return Err(Error::corrupt("meta", "a number of slots is no power of two"));
+            return Err(Error::corrupt("meta", "a number of slots is not a power of two"));
         }
         let slots = slice(keys, set.slots as usize, set.slot_count as usize * SLOT_BYTES, "keys")?
             .as_chunks::<SLOT_BYTES>()

@@ -12,7 +12,7 @@ pub const DEFAULT: &str = "default";
 /// The value that an axis has where a key names it alone.
 pub const IMPLIED: &str = "true";
 
-/// The mode of axes that permutations do not differ in.
+/// The mode of axes in which permutations do not differ.
 const DYNAMIC: &str = "dynamic";
 
 /// A word of a key, without the blanks around it.
@@ -27,14 +27,14 @@ pub struct Word<'k> {
 /// What stands between two commas of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Part<'k> {
-    /// The name of an axis; empty where there is none, which is a mistake.
+    /// The name of an axis; empty where it is missing, which is a mistake.
     pub axis: Word<'k>,
-    /// What stands behind `=`; empty where nothing does, which is a mistake. `None` without `=`.
+    /// What follows the `=`; empty where nothing does, which is a mistake. `None` without `=`.
     pub value: Option<Word<'k>>,
 }
 
 impl<'k> Part<'k> {
-    /// The value it chooses: [`IMPLIED`] where it has none of its own.
+    /// The value that it chooses, which is [`IMPLIED`] without a `=`.
     pub fn chosen(&self) -> &'k str {
         self.value.map_or(IMPLIED, |value| value.text)
     }
@@ -65,7 +65,7 @@ fn trimmed(text: &str, start: usize) -> Word<'_> {
     Word { text: text.trim(), start: start + text.len() - text.trim_start().len() }
 }
 
-/// Writes a key: axes that differ from their defaults with their values, in any order.
+/// Writes the key of axes that differ from their defaults, given in any order with their values.
 pub fn write<'a>(differing: impl IntoIterator<Item = (&'a str, &'a str)>) -> String {
     let mut parts: Vec<(&str, &str)> = differing.into_iter().collect();
     if parts.is_empty() {
@@ -79,10 +79,10 @@ pub fn write<'a>(differing: impl IntoIterator<Item = (&'a str, &'a str)>) -> Str
     parts.collect::<Vec<_>>().join(",")
 }
 
-/// The key as it is written: axes sorted, defaults left out.
+/// The canonical form of a key: axes sorted, defaults left out.
 ///
 /// # Errors
-/// [`Error::BadKey`] where it names an axis or a value that there is not, or an axis twice.
+/// [`Error::BadKey`] where it names an axis or a value that does not exist, or an axis twice.
 pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
     let mut chosen: Vec<(&str, &str)> = Vec::new();
     for part in parts(key) {
@@ -136,7 +136,7 @@ pub fn distance(a: &str, b: &str) -> usize {
     let mut left = parts(a).peekable();
     let mut right = parts(b).peekable();
     let mut differing = 0;
-    // Both are sorted by axis: one walk over the two, as in merging.
+    // Both are sorted by axis, so they are walked together, as in a merge.
     loop {
         match (left.peek().map(words_of), right.peek().map(words_of)) {
             (None, None) => return differing,

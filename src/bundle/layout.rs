@@ -40,11 +40,11 @@ pub const SLOT_BYTES: usize = 16;
 pub const BLOB_BYTES: usize = 28;
 pub const GROUP_BYTES: usize = 32;
 
-/// Most bytes of a group before compression: bounds what damaged lengths can allocate.
+/// The most bytes of a group before compression. It bounds what a damaged length can allocate.
 pub const MOST_GROUP_BYTES: usize = crate::limits::GROUP_BYTES;
 
-/// Most slots that a lookup passes by. Of keys that nobody chose for their hashes, some tens share
-/// a place in the worst of a million tables.
+/// The most slots that a lookup passes. With keys that nobody chose for their hashes, this many
+/// collisions do not occur: in the worst of a million tables a few dozen keys share a slot.
 pub const PROBES: usize = 4096;
 
 /// The META section.
@@ -86,18 +86,18 @@ pub struct KeySet {
     pub count: u32,
     /// Where the records start in KEYS.
     pub records: u32,
-    /// Where the hash slots start in KEYS, and how many there are: a power of two. Each is 96 bits
-    /// of a key's [`hash`] above the index of its record plus one, or zeros. A lookup compares the
-    /// bits and no text, which would be one more read from far away; two keys are alike in them
-    /// with a chance of 2^-96.
+    /// Where the hash slots start in KEYS, and how many there are, which is a power of two. A slot
+    /// has 96 bits of a key's [`hash`] above one more than the index of its record, or is zero. A
+    /// lookup compares these bits and not the text, since reading the text would be one more access
+    /// to distant memory. Two keys have the same bits with a probability of 2^-96.
     pub slots: u32,
     pub slot_count: u32,
 }
 
-/// 128 bits of a key: two chains of multiplications over its words, each product folded so that
-/// all its bits count.
+/// A hash of 128 bits. Two chains of multiplications go over the key's words, and each product is
+/// folded so that all its bits count.
 pub fn hash(key: &[u8]) -> u128 {
-    // Odd fractions of the square roots of 2, 3, 5 and 7.
+    // Odd numbers from the fractions of the square roots of 2, 3, 5 and 7.
     const ROOTS: [u64; 4] = [
         0x6a09_e667_f3bc_c909,
         0xbb67_ae85_84ca_a73b,

@@ -1,4 +1,4 @@
-//! What an engine calls.
+//! The interface for engines.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ pub struct Bundle {
     path: Option<PathBuf>,
 }
 
-/// Opens either form.
+/// Opens a bundle of either form.
 pub fn store_of(path: &Path) -> Result<Box<dyn Store>, Error> {
     Ok(if path.is_dir() { Box::new(directory::open(path)?) } else { Box::new(file::open(path)?) })
 }
@@ -117,8 +117,9 @@ impl Bundle {
         Ok(Program { store: &*self.store, recorder: self.recorder.as_ref(), name, program })
     }
 
-    /// Collects from now on which permutations are asked for, those that are missing too: write
-    /// [`Bundle::usage`] to a file that the manifest names, and the next bundle has exactly them.
+    /// Records from now on which permutations are asked for, including those that are missing.
+    /// Write [`Bundle::usage`] to a file that the manifest names, and the next bundle has exactly
+    /// these.
     pub fn record(&mut self) {
         self.recorder.get_or_insert_with(Recorder::default);
     }
@@ -133,8 +134,8 @@ impl Bundle {
         self.store.verify()
     }
 
-    /// Everything, in memory: to merge, compare, or write in the other form. Each blob is there
-    /// once, however many units share it.
+    /// Everything, in memory: to merge, compare, or write in the other form. A blob is there once,
+    /// even if many units share it.
     pub fn contents(&self) -> Result<Contents, Error> {
         self.store.measure()?;
         let mut blobs = BTreeMap::new();
@@ -177,7 +178,7 @@ impl Bundle {
         self.unit_with(number, &mut BTreeMap::new())
     }
 
-    /// A unit, with blobs that were read before as they are.
+    /// A unit. Blobs that were read before are shared.
     fn unit_with(&self, number: u32, blobs: &mut BTreeMap<u32, Arc<[u8]>>) -> Result<Unit, Error> {
         let unit = self.store.unit(number)?;
         let targets = unit.targets.into_iter().map(|(target, found)| {
@@ -225,7 +226,8 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// An entry point in whichever language has it; WESL where both do, which prove alike.
+    /// An entry point in a language that has it. If both have it this is WESL; the two are proven
+    /// to agree.
     pub fn shader(&self, name: &str) -> Result<Shader<'a>, Error> {
         let language =
             self.entries().find(|(_, found)| *found == name).map(|(language, _)| language);
@@ -236,10 +238,11 @@ impl<'a> Program<'a> {
 }
 
 impl Shader<'_> {
-    /// The permutation of a key, for one target. Axes may come in any order, and with defaults.
+    /// The permutation of a key, for one target. Axes may be in any order, and defaults may be
+    /// written out.
     ///
     /// # Errors
-    /// [`Error::Miss`] names the nearest permutation there is; [`Error::BadKey`] where the key
+    /// [`Error::Miss`] names the nearest permutation that exists; [`Error::BadKey`] where the key
     /// names an axis or a value the program does not have; [`Error::NotFound`] for the target.
     pub fn get(&self, key: &str, target: Target) -> Result<Found, Error> {
         let unit = self.find(key)?;
@@ -281,7 +284,7 @@ impl Shader<'_> {
         Ok(keys)
     }
 
-    /// Names of the targets a key was compiled for, sorted.
+    /// Names of the targets that a key was compiled for, sorted.
     pub fn targets(&self, key: &str) -> Result<Vec<String>, Error> {
         Ok(self.store.unit(self.find(key)?)?.targets.into_keys().collect())
     }
@@ -296,7 +299,7 @@ impl Shader<'_> {
         let mut best: Option<(usize, String)> = None;
         self.store.each_key(self.entry, &mut |known, _| {
             let distance = key::distance(asked, known);
-            // Keys come sorted, so that the first of equals stays.
+            // Keys are sorted, so of several equally near ones the first stays.
             if best.as_ref().is_none_or(|(least, _)| distance < *least) {
                 best = Some((distance, known.to_owned()));
             }
@@ -305,10 +308,10 @@ impl Shader<'_> {
     }
 }
 
-/// What a key says of the axes that are overrides of the shader.
+/// The values that a key gives to axes that are overrides of the shader.
 ///
 /// # Errors
-/// [`Error::BadKey`] where the key names an axis or a value that there is not.
+/// [`Error::BadKey`] where the key names an axis or a value that does not exist.
 pub fn constants(
     axes: &[Axis],
     key: &str,

@@ -12,11 +12,12 @@ use super::{Axis, Contents, Digest, Error, Hash, Language, Native, Reflection, U
 /// The published JSON Schema of the manifest.
 pub const SCHEMA: &str = include_str!("schema.json");
 
-/// How the file ends after the checksum.
+/// How the file ends, after the checksum.
 const END: &str = "\"\n}\n";
 const BLANK: &str = "00000000000000000000000000000000";
 
-/// The whole file. Everything is named by what it is, so that an edit moves no other line.
+/// The whole file. Everything is named by its content, so that a change of one shader does not
+/// change other lines.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Manifest {
     pub version: u32,
@@ -24,7 +25,7 @@ pub struct Manifest {
     pub units: BTreeMap<String, ManifestUnit>,
     pub reflections: BTreeMap<String, Reflection>,
     pub natives: BTreeMap<String, Native>,
-    /// Over the text of the file with zeros in its place; the last value of the file.
+    /// The checksum of the file's text with zeros instead of it. It is the last value of the file.
     pub checksum: String,
 }
 
@@ -68,7 +69,7 @@ pub struct ManifestArtifact {
 }
 
 impl ManifestArtifact {
-    /// The blob's file below `blobs/`, if the parts are what a writer writes.
+    /// The blob's file below `blobs/`, if the fields are as a writer writes them.
     pub fn file(&self) -> Result<String, Error> {
         file(&self.blob, &self.extension).ok_or_else(|| {
             let reason = format!("`{}` and `{}` do not name a blob", self.blob, self.extension);
@@ -85,7 +86,7 @@ fn file(blob: &str, extension: &str) -> Option<String> {
     (is_hex && parts.all(is_part)).then(|| format!("{}.{extension}", &blob[..16]))
 }
 
-/// Writes the text of a manifest, the checksum of what came before it at its end.
+/// Writes the text of a manifest, and at its end the checksum of everything before.
 pub fn write(manifest: &Manifest, out: impl io::Write) -> Result<(), Error> {
     let mut out = io::BufWriter::with_capacity(
         1 << 16,
@@ -97,7 +98,7 @@ pub fn write(manifest: &Manifest, out: impl io::Write) -> Result<(), Error> {
     out.into_inner().map_err(|error| Error::Io(error.to_string()))?.seal()
 }
 
-/// Passes a text on and hashes it, but holds back its end, where the checksum goes.
+/// Passes a text on and hashes it, but holds back its end, which gets the checksum.
 struct Sealing<W> {
     out: W,
     hasher: blake3::Hasher,
@@ -129,7 +130,7 @@ impl<W: io::Write> Sealing<W> {
     }
 }
 
-/// The manifest, if its text is what was written.
+/// Reads a manifest whose checksum is right.
 pub fn read(text: &str) -> Result<Manifest, Error> {
     let damaged = |reason: String| Error::corrupt("manifest.json", reason);
     let manifest: Manifest = match serde_json::from_str(text) {
@@ -146,17 +147,17 @@ pub fn read(text: &str) -> Result<Manifest, Error> {
     }
 }
 
-/// Whether the checksum is that of the text; `None` where it is not at its end.
+/// Whether the checksum is that of the text; `None` if it is not at the end.
 fn is_sealed(text: &str, sum: &str) -> Option<bool> {
     let body = text.strip_suffix(END)?.strip_suffix(sum)?;
     Some(hex(&checksum(format!("{body}{BLANK}{END}").as_bytes())) == sum)
 }
 
-/// What a writer must know of the manifest that it is about to replace.
+/// What a writer must know about the manifest that it will replace.
 pub enum Before {
-    /// A manifest as it was written: the files of its blobs.
+    /// An undamaged manifest, with the files of its blobs.
     Whole(BTreeSet<String>),
-    /// One of ours, of another version or damaged.
+    /// One of ours that is damaged or of another version.
     Unreadable,
     /// A file of somebody else.
     Foreign,

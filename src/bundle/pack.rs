@@ -13,15 +13,15 @@ use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
 use crate::output::{self, Replace};
 use crate::packing;
 
-/// A group is closed at so many blobs or bytes: large enough for neighbours to share their
-/// common text, small enough to be decompressed within a millisecond.
+/// A group is closed when it has this many blobs or bytes. That is large enough for similar shaders
+/// to share their common text, and small enough to be decompressed within a millisecond.
 const GROUP_BLOBS: usize = 32;
 const GROUP_BYTES: usize = 256 << 10;
 
-/// The single-file form. The same contents give the same bytes.
+/// Writes the single-file form. The same contents always give the same bytes.
 ///
 /// # Errors
-/// [`Error::Io`] where a table outgrows 4 GiB or a blob 16 MiB.
+/// [`Error::Io`] where a table is larger than 4 GiB or a blob larger than 16 MiB.
 pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
     let mut packer = Packer::default();
     packer.collect_blobs(contents)?;
@@ -45,12 +45,13 @@ pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
     packer.finish()
 }
 
-/// [`pack`] into a file, which is replaced as a whole if it is a bundle, absent or empty.
+/// As [`pack`], into a file. It is replaced as a whole, if it is a bundle or empty or does not
+/// exist.
 pub fn write_file(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
     replace_file(contents, path, Replace::Ours)
 }
 
-/// [`write_file`] over what the caller says.
+/// As [`write_file`], but replaces what the caller allows.
 pub fn replace_file(
     contents: &Contents,
     path: impl AsRef<Path>,
@@ -121,7 +122,7 @@ impl Packer {
         Ok(())
     }
 
-    /// Writes the set of an entry point's keys, unless an earlier one has the same.
+    /// Writes the keys of an entry point as a set, unless an earlier one has the same.
     fn key_set<'a>(
         &mut self,
         sets: &mut BTreeMap<Vec<&'a str>, KeySet>,
@@ -151,7 +152,7 @@ impl Packer {
         Ok(set)
     }
 
-    /// Writes one unit number for each key; returns where they start.
+    /// Writes one unit number for each key, and returns where they start.
     fn unit_numbers(&mut self, entry: &EntryContents) -> Result<u32, Error> {
         let start = number(self.keys.len())?;
         for hash in entry.keys.values() {
@@ -203,7 +204,7 @@ impl Packer {
         assemble([json(&self.meta)?, self.keys, self.units, heap(&self.texts)?, blobs, data])
     }
 
-    /// The BLOBS and DATA sections.
+    /// Builds the BLOBS and DATA sections.
     fn groups(&mut self) -> Result<(Vec<u8>, Vec<u8>), Error> {
         let (mut table, mut groups, mut data) = (Vec::new(), Vec::new(), Vec::new());
         let mut raw = Vec::new();
@@ -235,7 +236,7 @@ fn in_key_order(entry: &EntryContents) -> impl Iterator<Item = &Unit> {
     entry.keys.values().filter_map(|hash| entry.units.get(hash))
 }
 
-/// The hash table of a key set.
+/// Builds the hash table of a key set.
 fn slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
     let mut slots = vec![0; count];
     for (index, key) in keys.iter().enumerate() {
@@ -254,7 +255,7 @@ fn slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
     Ok(slots)
 }
 
-/// (offset, length) of each text in the section, then the texts.
+/// A section of texts: the offset and length of each, then the texts.
 fn heap(texts: &[Vec<u8>]) -> Result<Vec<u8>, Error> {
     let mut section = Vec::new();
     let mut at = texts.len() * 8;
@@ -266,7 +267,7 @@ fn heap(texts: &[Vec<u8>]) -> Result<Vec<u8>, Error> {
     Ok(section)
 }
 
-/// The header, then the sections. DATA has no checksum of its own: its groups have.
+/// The header and the sections. DATA has no checksum of its own, since each of its groups has one.
 fn assemble(sections: [Vec<u8>; 6]) -> Result<Vec<u8>, Error> {
     let total = HEADER_BYTES + sections.iter().map(Vec::len).sum::<usize>();
     let mut file = Vec::with_capacity(total);

@@ -1,4 +1,4 @@
-//! What an engine must know of a shader to use it.
+//! What an engine needs to know about a shader to use it.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,18 +24,29 @@ pub enum Stage {
     Compute,
 }
 
-/// One entry point, the same for every target. Types are spelt as in WGSL; sizes, offsets and
-/// strides are in bytes.
+impl Stage {
+    /// One word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::Fragment => "fragment",
+            Self::Compute => "compute",
+        }
+    }
+}
+
+/// One entry point. This is the same for every target. Types are spelt as in WGSL; sizes, offsets
+/// and strides are in bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Reflection {
     /// Stage of the entry point.
     pub stage: Stage,
-    /// Of compute shaders.
+    /// The size of a workgroup, for compute shaders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub workgroup_size: Option<[u32; 3]>,
-    /// What the entry point takes: vertex attributes, or what the vertex stage gave.
+    /// What enters the entry point: vertex attributes, or outputs of the vertex stage.
     pub inputs: Vec<Varying>,
-    /// What it gives: to the fragment stage, or to the attachments.
+    /// What leaves it: to the fragment stage, or to the attachments.
     pub outputs: Vec<Varying>,
     /// Resources that are used, by group and binding.
     pub bindings: Vec<Binding>,
@@ -46,7 +57,7 @@ pub struct Reflection {
 }
 
 impl Reflection {
-    /// Of an entry point that uses nothing.
+    /// The reflection of an entry point that uses nothing.
     pub fn of(stage: Stage) -> Self {
         Self {
             stage,
@@ -63,13 +74,13 @@ impl Reflection {
 /// A value that enters or leaves the stage.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Varying {
-    /// The author's name, of the argument or the member.
+    /// The author's name of the argument or the member.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// `@location`, unless it is built in.
+    /// Its `@location`, unless it is a built-in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location: Option<u32>,
-    /// `@builtin`, by its WGSL name.
+    /// Its `@builtin`, by the name in WGSL.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub builtin: Option<String>,
     /// Type in WGSL.
@@ -115,7 +126,7 @@ pub struct Binding {
     /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
-    /// Of buffers; without the elements of a trailing array of unknown length.
+    /// The size of a buffer, without the elements of a runtime-sized array at its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<u32>,
     /// Whether the shader writes to it.
@@ -134,11 +145,11 @@ pub struct Member {
     /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
-    /// From the start of the struct it is in.
+    /// Offset from the start of the struct that it is in.
     pub offset: u32,
     /// Bytes of the member.
     pub size: u32,
-    /// Between elements of an array.
+    /// The stride of an array.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stride: Option<u32>,
     /// Members of a struct, or of each element of an array of structs.
@@ -146,7 +157,7 @@ pub struct Member {
     pub members: Vec<Member>,
 }
 
-/// A place by group and binding.
+/// A group and a binding.
 pub type Place = [u32; 2];
 
 /// A texture and the sampler it is sampled with.
@@ -182,25 +193,26 @@ pub struct Native {
     pub entry_name: String,
     /// Where each binding of the reflection ended up.
     pub slots: Vec<Slot>,
-    /// Names of combined samplers, in targets that have no separate ones.
+    /// Combined samplers, in targets that do not have separate textures and samplers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub combined: Vec<Combined>,
-    /// How the overrides of the reflection are chosen here; those that are not named have their
+    /// How the overrides of the reflection are chosen here. Those that are not listed have their
     /// defaults.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<Choice>,
-    /// Semantics of a vertex stage's inputs, in targets that bind attributes by them (HLSL).
+    /// Semantics of a vertex stage's inputs, in targets that match attributes by them (HLSL).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub semantics: Vec<Semantic>,
-    /// Where samplers are, in targets that take them from arrays of all samplers (HLSL): they
-    /// have no slot of their own there.
+    /// Where samplers are, in targets that take them from an array of all samplers (HLSL). Such
+    /// samplers have no slot of their own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sampler_heaps: Vec<SamplerHeap>,
-    /// The argument that takes lengths of buffers, where the entry point has one (MSL).
+    /// The argument with the lengths of buffers, where the entry point has one (MSL).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buffer_sizes: Option<BufferSizes>,
-    /// The uniform of type `uint` that takes the number of a draw's first instance, where the
-    /// target's own numbers leave that out and the shader asks for them (GLSL).
+    /// The name of a uniform of type `uint` that must be set to the first instance of a draw. It is
+    /// there if the shader uses the instance index and the target's own index does not include the
+    /// first instance (GLSL).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_instance: Option<String>,
     /// The clip space of a vertex stage's positions.
@@ -208,14 +220,15 @@ pub struct Native {
     pub clip: Option<ClipSpace>,
 }
 
-/// The clip space that an output takes the author's positions in, and what the host has to do for it.
+/// The clip space in which an output expects the author's positions, and what the host has to do
+/// for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct ClipSpace {
     /// Where the author's y axis points in the picture.
     pub y: YAxis,
-    /// Depth of the near plane, and of the far plane, in the author's normalised coordinates.
+    /// Depth of the near plane, in the author's normalised coordinates.
     pub near: i8,
-    /// Depth of the far plane.
+    /// Depth of the far plane, in the author's normalised coordinates.
     pub far: i8,
     /// Whether the output converts positions before the API sees them.
     pub is_converted: bool,
@@ -223,7 +236,7 @@ pub struct ClipSpace {
     pub viewport: Viewport,
     /// Which row of a texture or framebuffer comes first in memory.
     pub rows: Rows,
-    /// How triangles wind for the API that wind counter-clockwise in the picture.
+    /// How a triangle winds for the API if it winds counter-clockwise in the picture.
     pub front_face: FrontFace,
 }
 
@@ -243,7 +256,7 @@ pub enum YAxis {
 pub enum Viewport {
     /// As usual.
     Positive,
-    /// Turned over: it starts at the bottom.
+    /// Upside down: it starts at the bottom.
     Negative,
 }
 
@@ -267,10 +280,13 @@ pub enum FrontFace {
     Reversed,
 }
 
-/// How a target takes the value of an override: in WGSL as the pipeline constant of its `@id`, or
-/// else `symbol` where it was given another name, or else its name; in SPIR-V as the specialisation
-/// constant `id`, in MSL as the function constant `id`, elsewhere as the macro `symbol`, defined
-/// before the text (in GLSL after `#version`).
+/// How a target takes the value of an override.
+///
+/// - WGSL: as the pipeline constant of its `@id`; or `symbol`, where it was given another name; or else
+///   its name.
+/// - SPIR-V: as the specialisation constant `id`.
+/// - MSL: as the function constant `id`.
+/// - Others: as the macro `symbol`, defined before the text (in GLSL after `#version`).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Choice {
     /// As in the reflection.
@@ -315,13 +331,13 @@ pub struct Semantic {
     pub index: u32,
 }
 
-/// An array of samplers that the host binds once. A shader finds each of its samplers there by a
-/// number that the host wrote into a buffer.
+/// An array of samplers that the host binds once. A shader finds each of its samplers there by an
+/// index that the host wrote into a buffer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct SamplerHeap {
     /// The identifier in the output.
     pub name: String,
-    /// Sampler register and register space of its first element.
+    /// Sampler register of its first element.
     pub register: u32,
     /// Space of the heap's registers.
     pub space: u32,
@@ -333,28 +349,29 @@ pub struct SamplerHeap {
     pub samplers: Vec<HeapSampler>,
 }
 
-/// A sampler of a heap: element `element` of a structured buffer of 32-bit numbers says where in
-/// the heap it is.
+/// A sampler in a heap. Its index in the heap is in element `element` of a structured buffer of
+/// 32-bit numbers.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct HeapSampler {
     /// Group of the sampler in WGSL.
     pub group: u32,
     /// Binding of the sampler in WGSL.
     pub binding: u32,
-    /// Shader resource register (`t`) and register space of the buffer of numbers.
+    /// Shader resource register (`t`) of the buffer of indices.
     pub buffer_register: u32,
-    /// Space of that buffer's register.
+    /// Register space of that buffer.
     pub buffer_space: u32,
-    /// Number of its element that holds the place in the heap.
+    /// The element of the buffer that holds the index.
     pub element: u32,
 }
 
-/// An argument with the sizes of buffers whose last member is an array of unknown length.
+/// An argument with the sizes of buffers whose last member is a runtime-sized array.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct BufferSizes {
     /// Its place in the table of buffers.
     pub index: u32,
-    /// Group and binding of each buffer, in the order of its 32-bit sizes in bytes.
+    /// Group and binding of each buffer, in the order of their sizes. A size is a 32-bit number of
+    /// bytes.
     pub buffers: Vec<Place>,
 }
 

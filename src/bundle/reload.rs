@@ -9,12 +9,12 @@ use super::store::{Store, Unit};
 use super::{Error, Language};
 
 impl Bundle {
-    /// Reads the bundle again from where it was opened, and says which permutations are others than
-    /// before: those are the pipelines to make anew.
+    /// Reads the bundle again from where it was opened, and tells which permutations have changed:
+    /// their pipelines must be made again.
     ///
-    /// A bundle is replaced as a whole, so that what was read before and what is read after
-    /// belong to one generation each. On an error, such as a file that is being copied, the bundle
-    /// stays at the generation that it has. One that came from memory never changes.
+    /// A bundle is replaced as a whole, so everything read before belongs to one generation, and
+    /// everything read afterwards to the next. On an error, such as a file that is being copied,
+    /// the bundle stays at its present generation. A bundle from memory never changes.
     ///
     /// # Errors
     /// As of [`Bundle::open`].
@@ -73,7 +73,7 @@ fn keys(store: &dyn Store, entry: Option<usize>) -> Result<BTreeMap<String, u32>
     Ok(keys)
 }
 
-/// What changed of one entry point; many keys share a unit, which is compared once.
+/// What changed of one entry point. Many keys share a unit, which is compared once.
 fn changes(
     old: &dyn Store,
     new: &dyn Store,

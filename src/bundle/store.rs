@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{Axis, Error, Language, Native, Reflection};
 
-/// The small part of a bundle that is in memory once it is open.
+/// The part of a bundle that is in memory once it is open, which is small.
 pub type Programs = BTreeMap<String, Program>;
 
 /// One program of an open bundle.
@@ -16,7 +16,7 @@ pub struct Program {
     pub entries: BTreeMap<(Language, String), usize>,
 }
 
-/// A unit as found, its bytes still where they are.
+/// A unit whose bytes were not read yet.
 pub struct Unit {
     pub reflection: Arc<Reflection>,
     pub targets: BTreeMap<String, Artifact>,
@@ -30,7 +30,7 @@ pub struct Artifact {
     pub blob: u32,
 }
 
-/// A form of a bundle. Numbers are indices of its own, checked on each use.
+/// A form of a bundle. Its numbers are indices, which are checked on each use.
 pub trait Store: Send + Sync {
     fn programs(&self) -> &Programs;
 
@@ -61,7 +61,7 @@ pub trait Store: Send + Sync {
     /// The hash of a blob's bytes, without reading them.
     fn digest(&self, blob: u32) -> Result<String, Error>;
 
-    /// Refuses what would take memory or time out of proportion to its size.
+    /// Refuses a bundle that would take memory or time out of proportion to its size.
     fn measure(&self) -> Result<(), Error>;
 
     /// Checks every byte.

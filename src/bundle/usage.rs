@@ -6,7 +6,7 @@
 //! forward shadow=hard,two_sided
 //! ```
 //!
-//! Lines are sorted and no order is needed: lists of several runs merge by `sort -u`.
+//! Lines are written sorted, but any order is read. So `sort -u` merges the lists of several runs.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt;
@@ -29,7 +29,7 @@ pub struct Usage {
 }
 
 impl Usage {
-    /// Reads a list; the number of a line that is none, from 1, is the error.
+    /// Reads a list. The error is the number, from 1, of a line that is not an entry.
     pub fn parse(text: &str) -> Result<Self, usize> {
         let mut usage = Self::default();
         for (index, line) in text.lines().enumerate() {
@@ -43,15 +43,16 @@ impl Usage {
         Ok(usage)
     }
 
-    /// Adds to the list in a file, which is made if it is not there and replaced as a whole.
+    /// Adds to the list in a file. The file is made if it does not exist, and is replaced as a
+    /// whole.
     ///
     /// # Errors
-    /// [`Error::Corrupt`] where the file is no list: it is left alone.
+    /// [`Error::Corrupt`] where the file is not a list; it is not changed then.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         let mut all = match input::read(path, MOST_BYTES) {
             Ok(text) => Self::parse(&String::from_utf8_lossy(&text)).map_err(|line| {
-                Error::corrupt("usage list", format!("line {line} is no program and key"))
+                Error::corrupt("usage list", format!("line {line} is not a program and a key"))
             })?,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Self::default(),
             Err(error) => return Err(error.into()),
@@ -73,7 +74,8 @@ impl fmt::Display for Usage {
     }
 }
 
-/// Collects keys from many threads. What was seen before costs a shared lock and a lookup.
+/// Collects keys from many threads. A key that was seen before costs only a shared lock and a
+/// lookup.
 #[derive(Default)]
 pub struct Recorder(RwLock<BTreeMap<String, HashSet<String>>>);
 

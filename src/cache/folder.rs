@@ -9,7 +9,8 @@ use super::{KINDS, Storage, record};
 use crate::input;
 use crate::output::{self, Foreign, Scratch};
 
-/// Says to backup programs what the folder is, and to the next run that it is ours.
+/// The tag tells backup programs what the folder is, and tells the next run that the folder is
+/// ours.
 const TAG_FILE: &str = "CACHEDIR.TAG";
 const TAG: &[u8] = b"Signature: 8a477f597d28d172789f06886806bc55\n\
     # This folder is a cache of lamplight. It may be deleted at any time.\n";
@@ -18,15 +19,15 @@ const TAG: &[u8] = b"Signature: 8a477f597d28d172789f06886806bc55\n\
 #[derive(Debug, Clone)]
 pub struct Folder {
     path: PathBuf,
-    /// Made with the first write.
+    /// The scratch folder, made before the first write.
     scratch: Arc<OnceLock<Result<Scratch, String>>>,
 }
 
 impl Folder {
-    /// The folder, which is made when something is put into it.
+    /// Opens the folder. It is made when something is first put into it.
     ///
     /// # Errors
-    /// Where there is something else.
+    /// If the path is something other than a cache.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, Foreign> {
         let path = path.into();
         let is_ours = |found: &fs::DirEntry| {
@@ -37,7 +38,7 @@ impl Folder {
         let entries: Vec<fs::DirEntry> = match fs::read_dir(&path) {
             Ok(entries) => entries.flatten().collect(),
             Err(error) if error.kind() == ErrorKind::NotADirectory => {
-                return Err(Foreign::never(&path, "is no folder"));
+                return Err(Foreign::never(&path, "is not a folder"));
             }
             Err(_) => Vec::new(),
         };
@@ -46,7 +47,7 @@ impl Folder {
         match entries.iter().find(|found| !is_tagged && !is_ours(found)) {
             Some(found) => {
                 let found = found.file_name();
-                let found = format!("has `{}` in it and is no cache", found.to_string_lossy());
+                let found = format!("has `{}` in it and is not a cache", found.to_string_lossy());
                 Err(Foreign::never(&path, found))
             }
             None => Ok(Self { path, scratch: Arc::default() }),
@@ -74,14 +75,14 @@ impl Folder {
         })
     }
 
-    /// Makes the folders of a name; none of them may be a link.
+    /// Makes the folders of a name. None of them may be a link.
     fn make_folders(&self, name: &str) -> Result<(), String> {
         let mut folder = self.path.clone();
         for part in Path::new(name).parent().into_iter().flat_map(Path::components) {
             folder.push(part);
             match fs::symlink_metadata(&folder) {
                 Ok(found) if found.is_dir() => {}
-                Ok(_) => return Err(format!("`{}` is no folder", folder.display())),
+                Ok(_) => return Err(format!("`{}` is not a folder", folder.display())),
                 Err(_) => match fs::create_dir(&folder) {
                     Err(error) if error.kind() != ErrorKind::AlreadyExists => {
                         return Err(error.to_string());
@@ -99,7 +100,7 @@ impl Storage for Folder {
         let path = self.path.join(name);
         match fs::symlink_metadata(&path) {
             Ok(found) if found.is_file() => {}
-            Ok(_) => return Err(format!("`{}` is no file", path.display())),
+            Ok(_) => return Err(format!("`{}` is not a file", path.display())),
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(error.to_string()),
         }
@@ -117,7 +118,7 @@ impl Storage for Folder {
         if let Ok(found) = fs::symlink_metadata(&path)
             && (!found.is_file() || found.len() > 0 && !is_record(&path))
         {
-            return Err(format!("`{}` is no record of a cache", path.display()));
+            return Err(format!("`{}` is not a record of a cache", path.display()));
         }
         self.put_file(scratch, &path, bytes)
     }

@@ -1,9 +1,11 @@
-//! Results by what they were made of: a text is compiled once, whoever asks, whenever.
+//! Keeps results under a hash of all that they depend on, so that a text is compiled once, whoever
+//! asks for it and whenever.
 //!
-//! A key covers everything that a result depends on: the composed text (its comments aside), the entry point, the
-//! options, the targets, and [`BUILD`], which stands for the code of this crate and of naga. No
-//! time, path or machine enters it. What is read is verified; whatever is damaged, or of another
-//! version, counts as absent. A cache that cannot be read or written costs time and nothing else.
+//! A key covers everything that a result depends on: the composed text (its comments aside), the
+//! entry point, the options, the targets, and [`BUILD`], which stands for the code of this crate
+//! and of naga. No time, path or machine enters it. Records are verified when they are read, and a
+//! damaged one, or one of another version, counts as absent. A cache that cannot be read or written
+//! costs time and nothing else.
 
 mod folder;
 mod record;
@@ -37,23 +39,24 @@ pub struct Cache {
     hits: AtomicUsize,
 }
 
-/// A storage that is left alone once it failed too often: a server that died costs no more time.
+/// A storage with the number of its failures. After too many of them it is not asked any more, so
+/// that a server that stopped costs no more time.
 struct Counted {
     storage: Box<dyn Storage>,
     failures: AtomicUsize,
 }
 
-/// What names of records begin with.
+/// The first words of the names of records.
 const KINDS: [&str; 5] = ["errors", "judged", "runs", "units", "warnings"];
 
 const MOST_FAILURES: usize = 8;
 
-/// What compiling a text depends on.
+/// Everything that the result of compiling a text depends on.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
     /// What is compiled.
     pub text: &'a str,
-    /// The composition it stands for, whose places errors have.
+    /// The composition that the text stands for. Errors have its places.
     pub composed: &'a Composed,
     /// Name of the entry point.
     pub entry: &'a str,
@@ -65,7 +68,7 @@ pub struct Job<'a> {
     pub clip: Clip,
 }
 
-/// What comes of a text: a unit, and what its author can mend.
+/// The result of compiling a text: a unit, and the warnings for its author.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Made {
     /// The outputs.
@@ -81,7 +84,7 @@ impl Cache {
         Self { storages: storages.into_iter().map(counted).collect(), hits: AtomicUsize::new(0) }
     }
 
-    /// The result of an equal job, if there was one.
+    /// The result of an equal job, if it is known.
     pub fn find(&self, job: Job<'_>) -> Option<Result<Made, Diagnostics>> {
         let key = unit_key(job);
         let told = |kind| {
@@ -117,12 +120,12 @@ impl Cache {
         }
     }
 
-    /// How many jobs were found.
+    /// How many jobs were found in the cache.
     pub fn hits(&self) -> usize {
         self.hits.load(Ordering::Relaxed)
     }
 
-    /// How many reads and writes storages refused.
+    /// How many reads and writes the storages refused.
     pub fn failures(&self) -> usize {
         self.storages.iter().map(|storage| storage.failures.load(Ordering::Relaxed)).sum()
     }
@@ -167,7 +170,7 @@ impl Counted {
     }
 }
 
-/// Two letters of the hash make a folder, so that none grows too large.
+/// The name of a record. Two letters of the hash name a folder, so that no folder grows too large.
 fn name(kind: &str, key: Hash) -> String {
     let hex = hex(&key);
     format!("{kind}/{}/{}", &hex[..2], &hex[2..])
@@ -191,12 +194,13 @@ fn unit_key(job: Job<'_>) -> Hash {
     hash(&["unit", BUILD, &rest, text])
 }
 
-/// Diagnostics have places, so they depend on where each part of the text came from too.
+/// The key of a unit's diagnostics. They have places, so it covers where each part of the text came
+/// from.
 fn told_key(unit: Hash, composed: &Composed) -> Hash {
     hash(&["told", &hex(&unit), &composed.text, &format!("{:?}", composed.map.segments())])
 }
 
-/// 128 bits over parts that cannot run into each other.
+/// 128 bits of a hash. Each part is hashed with its length, so parts cannot run into each other.
 pub(crate) fn hash(parts: &[&str]) -> Hash {
     let mut hasher = blake3::Hasher::new();
     for part in parts {

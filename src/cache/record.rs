@@ -15,14 +15,15 @@ use crate::source::{SourceId, Span};
 pub const MAGIC: &[u8; 4] = b"LLC3";
 const SUM_BYTES: usize = 16;
 
-/// Bytes of a record.
+/// The most bytes of a record.
 pub const MOST_RECORD_BYTES: u64 = CACHE_BYTES as u64;
 
-/// What a byte of LZ4 gives at most: a record that says more was not written by us.
+/// The most bytes that a byte of LZ4 can expand to. A record that claims more was not written by
+/// this crate.
 const MOST_RATIO: usize = 256;
 
-/// A payload, packed, with a checksum over it and over the name it is kept under; none where it
-/// is too large to be kept.
+/// Packs a payload, with a checksum over it and over its name; `None` where it is too large to be
+/// kept.
 pub fn seal(name: &str, payload: &[u8]) -> Option<Vec<u8>> {
     if payload.len() > CACHE_BYTES {
         return None;
@@ -31,7 +32,7 @@ pub fn seal(name: &str, payload: &[u8]) -> Option<Vec<u8>> {
     Some([MAGIC.as_slice(), &sum(name, &packed), &packed].concat())
 }
 
-/// The payload of a record that is as it was written, and was written under that name.
+/// Unpacks the payload of a record that is undamaged and was written under that name.
 pub fn open(name: &str, record: &[u8]) -> Option<Vec<u8>> {
     let (found, packed) = record.strip_prefix(MAGIC)?.split_first_chunk::<SUM_BYTES>()?;
     if sum(name, packed) != *found {
@@ -42,7 +43,8 @@ pub fn open(name: &str, record: &[u8]) -> Option<Vec<u8>> {
     block::decompress(packed, size).ok()
 }
 
-/// The checksum of a record. A record under another name is another result.
+/// The checksum of a record. It covers the name, so that a record that was moved to another name is
+/// not taken for that result.
 fn sum(name: &str, packed: &[u8]) -> Hash {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&(name.len() as u64).to_le_bytes());
@@ -51,10 +53,10 @@ fn sum(name: &str, packed: &[u8]) -> Hash {
     short(&hasher.finalize())
 }
 
-/// What stands before the bytes of a unit's targets.
+/// What is written before the bytes of a unit's targets.
 #[derive(Serialize, Deserialize)]
 struct Head {
-    /// Whether warnings belong to it, which have places and so a record of their own.
+    /// Whether there are warnings. They have places, and so a record of their own.
     has_warnings: bool,
     reflection: Reflection,
     targets: BTreeMap<String, Part>,
@@ -132,7 +134,7 @@ pub fn encode_diagnostics(errors: &Diagnostics) -> Option<Vec<u8>> {
     serde_json::to_vec(&errors.collect::<Vec<_>>()).ok()
 }
 
-/// The diagnostics of a record, if all their places are in texts that `is_known`.
+/// Reads the diagnostics of a record, if all their places are in texts that `is_known`.
 pub fn decode_diagnostics(
     payload: &[u8],
     is_known: impl Fn(SourceId) -> bool,

@@ -1,5 +1,5 @@
-//! Recorded costs: what functions and values of axes cost on GPUs that are not there, from
-//! `costs.toml`. `cargo xtask docs --costs` measures and writes that file; [`super::pages`] shows it.
+//! Recorded costs of functions and of the values of axes, from `costs.toml`. `cargo xtask docs
+//! --costs` measures and writes that file; [`super::pages`] shows it.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -18,10 +18,10 @@ pub const PATH: &str = "costs.toml";
 /// Headings of a function's figures, in the order of [`Costs::functions`].
 pub const FIGURES: [&str; 4] = ["instructions", "VGPRs", "latency", "inverse throughput"];
 
-/// The figure by which functions are sorted.
+/// The index of the figure by which functions are sorted.
 pub const SORTED_BY: usize = 3;
 
-/// The GPU that tables show where they have room for one.
+/// The GPU that tables show if they have room for only one.
 pub const SHOWN: &str = "navi21";
 
 /// Everything that is recorded.
@@ -30,7 +30,7 @@ pub const SHOWN: &str = "navi21";
 pub struct Costs {
     /// The driver that compiled. Figures of another version are not comparable.
     pub driver: String,
-    /// The GPUs of each function's rows.
+    /// The GPUs, in the order of each function's rows.
     pub gpus: Vec<Chip>,
     /// By path: for each GPU the [`FIGURES`] that the function adds to a fragment stage.
     pub functions: BTreeMap<String, Vec<[i64; FIGURES.len()]>>,
@@ -57,9 +57,9 @@ pub struct AxisCost {
     pub axis: String,
     pub value: String,
     pub stage: Stage,
-    /// Pairs of permutations that differ in the axis alone.
+    /// Pairs of permutations that differ only in the axis.
     pub pairs: usize,
-    /// The least change, the median, the most.
+    /// The smallest change, the median, and the largest.
     pub instructions: [i64; 3],
     /// The median change.
     pub vgprs: i64,
@@ -70,7 +70,7 @@ pub struct AxisCost {
 }
 
 impl Costs {
-    /// Where the GPU of [`SHOWN`] is in rows.
+    /// The index of the GPU [`SHOWN`] in rows.
     pub fn shown(&self) -> Option<usize> {
         self.gpus.iter().position(|gpu| gpu.name == SHOWN)
     }
@@ -101,7 +101,7 @@ impl Costs {
 impl AxisCost {
     fn fields(&self) -> String {
         let Self { pairs, instructions, vgprs, waves, inverse_throughput, .. } = self;
-        let stage = format!("{:?}", self.stage).to_lowercase();
+        let stage = self.stage.name();
         format!(
             "program = {}, axis = {}, value = {}, stage = {}, pairs = {pairs}, \
              instructions = {instructions:?}, vgprs = {vgprs}, waves = {waves:?}, \
@@ -109,7 +109,7 @@ impl AxisCost {
             quoted(&self.program),
             quoted(&self.axis),
             quoted(&self.value),
-            quoted(&stage),
+            quoted(stage),
         )
     }
 }
@@ -123,7 +123,7 @@ pub fn is_record(head: &[u8]) -> bool {
     head.starts_with(b"# What functions and axes cost.")
 }
 
-/// What is recorded of the library; nothing where there is no record.
+/// The library's record; empty if there is none.
 pub fn library(sources: &mut SourceSet) -> Result<Costs, Diagnostics> {
     let library = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
     match source::read(sources, &library, PATH).map_err(|error| vec![error.into()])? {

@@ -20,7 +20,7 @@ use crate::permute::Manifest;
 use crate::project::LIBRARY;
 use crate::source::{Embedded, Files, SourceSet};
 
-/// Folders of the library that hold programs, not modules.
+/// The folder of the library that holds programs, which are not modules.
 const PROGRAMS: &str = "programs/";
 
 /// What an item is.
@@ -48,7 +48,7 @@ pub struct Member {
     pub name: String,
     /// Type in WESL.
     pub ty: String,
-    /// What it is, its range and unit; empty where nothing is said.
+    /// Its meaning, range and unit; empty if it is not documented.
     pub doc: String,
 }
 
@@ -61,7 +61,7 @@ pub struct Item {
     /// Module path below the package, `::` between its parts.
     pub module: String,
     pub name: String,
-    /// Lines of the doc comment, without their marks.
+    /// The lines of the doc comment, without comment marks.
     pub doc: Vec<String>,
     /// Declaration in WESL, without its body.
     pub wesl: String,
@@ -74,7 +74,8 @@ pub struct Item {
 }
 
 impl Item {
-    /// Path below the library: `lighting::spot::cone_hard`; with its package for any other.
+    /// The path below the library, such as `lighting::spot::cone_hard`. In any other package it
+    /// begins with the package.
     pub fn path(&self) -> String {
         in_package(&self.package, &format!("{}::{}", self.module, self.name))
     }
@@ -96,7 +97,7 @@ impl Item {
         paragraphs(&lines)
     }
 
-    /// The text under the heading `NAME:`, without that word.
+    /// The text under the heading `NAME:`, without the heading.
     pub fn section(&self, name: &str) -> Option<String> {
         let start = self
             .doc
@@ -146,7 +147,7 @@ fn paragraphs(lines: &[String]) -> Vec<String> {
     blocks.map(|block| block.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")).collect()
 }
 
-/// A path as the library's need no package.
+/// A path, with its package unless that is the library.
 fn in_package(package: &str, path: &str) -> String {
     if package == LIBRARY { path.to_owned() } else { format!("{package}::{path}") }
 }
@@ -154,7 +155,8 @@ fn in_package(package: &str, path: &str) -> String {
 /// A module of the library or of the user's own package.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Module {
-    /// Path below the library, `::` between its parts; with its package for any other.
+    /// The path below the library, with `::` between its parts. In any other package it begins with
+    /// the package.
     pub path: String,
     /// The package by the name that imports it.
     pub package: String,
@@ -196,7 +198,7 @@ pub fn modules(files: &dyn Files) -> Vec<Module> {
     paths.filter_map(|path| module(files, LIBRARY, path.strip_suffix(".wesl")?, ".wesl")).collect()
 }
 
-/// Every module of the user's own package, documented or not.
+/// Every module of the user's own package, even if it is not documented.
 pub fn own_modules(files: &dyn Files) -> Vec<Module> {
     let paths = files.list(&["wesl", "wgsl"]).into_iter();
     let of = |path: String| {
@@ -206,7 +208,7 @@ pub fn own_modules(files: &dyn Files) -> Vec<Module> {
     paths.filter_map(of).collect()
 }
 
-/// What imports call the user's own package.
+/// The name of the user's own package in imports.
 const OWN: &str = "package";
 
 fn module(files: &dyn Files, package: &str, stem: &str, ending: &str) -> Option<Module> {
@@ -215,7 +217,7 @@ fn module(files: &dyn Files, package: &str, stem: &str, ending: &str) -> Option<
     let path = stem.replace('/', "::");
     let glsl = outline::glsl(&twin);
     let declared = outline::wesl(&text).into_iter();
-    // What the library does not document is none of its users' business.
+    // What the library does not document is not for its users.
     let declared = declared.filter(|found| package != LIBRARY || !found.doc.is_empty());
     let items = declared.map(|found| item(package, &path, found, &glsl)).collect();
     let doc = paragraphs(&outline::module_doc(&text));
@@ -244,7 +246,7 @@ fn item(
     item
 }
 
-/// Gives each parameter the words that the section `Parameters` has for it.
+/// Gives each parameter its text from the section `Parameters`.
 fn describe_parameters(item: &mut Item) {
     let Some(section) = item.section(SECTIONS[0]) else { return };
     for entry in section.trim_end_matches('.').split("; ") {
@@ -255,7 +257,7 @@ fn describe_parameters(item: &mut Item) {
     }
 }
 
-/// The names in backticks that an entry begins with, and what it says of them.
+/// The names in backticks at the start of an entry, and the text about them.
 fn described(entry: &str) -> (Vec<String>, String) {
     let (mut names, mut rest) = (Vec::new(), entry.trim());
     while let Some((name, after)) = rest.strip_prefix('`').and_then(|rest| rest.split_once('`')) {

@@ -1,4 +1,4 @@
-//! The order in which people number things: `7_2` before `7_10`.
+//! Sorts names with numbers as people do: `7_2` before `7_10`.
 
 use std::cmp::Ordering;
 

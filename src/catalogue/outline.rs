@@ -1,4 +1,4 @@
-//! Declarations and their doc comments, at the top level of a module's text.
+//! Finds the declarations at the top level of a module's text, with their doc comments.
 
 use super::{Kind, Member};
 
@@ -79,7 +79,7 @@ fn declaration(kind: Kind, name: String, doc: Vec<String>, lines: &[&str]) -> De
     Declaration { kind, name, doc, members, result, declaration }
 }
 
-/// `name: type` of each parameter; a comma within brackets belongs to a type.
+/// The `name: type` of each parameter. A comma within brackets belongs to a type.
 fn parameters(head: &str) -> Vec<Member> {
     let list = head
         .split_once('(')
@@ -144,7 +144,7 @@ fn glsl_name(line: &str) -> Option<(Kind, String)> {
     if let Some((_, name)) = line.strip_prefix("const ").and_then(|rest| rest.split_once(' ')) {
         return Some((Kind::Constant, identifier(name)));
     }
-    // A line that is moved in continues the list of parameters.
+    // An indented line continues the list of parameters.
     let (before, _) = line.split_once('(').filter(|_| !line.starts_with(' '))?;
     let (result, name) = before.rsplit_once(' ')?;
     let plain = |word: &str| {

@@ -1,4 +1,4 @@
-//! Presets: one published example each, as a permutation with a scene and its numbers.
+//! Presets: each is a published example, as a permutation with a scene and its numbers.
 //!
 //! `presets.toml` is one table a preset:
 //!
@@ -16,13 +16,14 @@
 //! deviations = ["The map is compared with linear filtering, in the recipe with the nearest texel."]
 //! ```
 //!
-//! `look` says what to look for in the picture. The tables `light`, `material`, `surroundings`, `haze`, `caster` and `moments` have the numbers
-//! that the source publishes, named after the fields of the uniform they go to. `depth_pass` has
-//! what the shadow map is drawn with: `polygon_offset`, `cull_front`, and of a spot light the whole
-//! angle `fov` in degrees and the planes `near` and `far` in scene units. `open` names the numbers
-//! that the source leaves to its reader, or to models of its own: the scene and the renderer choose
-//! them. Every number that the permutation reads is in one or the other. `deviations` says in which
-//! ways the picture differs from the example, and why; it is empty where it does not.
+//! `look` says what to look for in the picture. The tables `light`, `material`, `surroundings`,
+//! `haze`, `caster` and `moments` have the numbers that the source publishes, named after the
+//! fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
+//! `polygon_offset`, `cull_front`, and of a spot light the whole angle `fov` in degrees and the
+//! planes `near` and `far` in scene units. `open` names the numbers that the source leaves to its
+//! reader, or to models of its own: the scene and the renderer choose them. Every number that the
+//! permutation reads is in one or the other. `deviations` says how the picture differs from the
+//! example, and why. It is empty if it does not differ.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,24 +52,24 @@ pub struct Preset {
     pub key: String,
     /// One of [`sets::ALL`].
     pub scene: String,
-    /// One of the light probes, where the example is about one.
+    /// One of the light probes, if the example is about one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe: Option<String>,
-    /// What is drawn before, in order.
+    /// The passes before it, in order.
     pub passes: Vec<Pass>,
     /// Published numbers by group, then by field.
     pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
     /// Numbers that the source leaves open, as `group.field`, sorted.
     pub open: BTreeSet<String>,
-    /// In which ways the picture differs from the example: a sentence or more each.
+    /// How the picture differs from the example: one or more sentences for each difference.
     pub deviations: Vec<String>,
 }
 
-/// Names of presets that are techniques, from no book of examples, and what they are called.
+/// How names of presets begin that are techniques and not examples from a book, and their heading.
 const TECHNIQUES: (&str, &str) = ("tech_", "Techniques of today");
 
 impl Preset {
-    /// The work that it is from, without the place in it; techniques are together.
+    /// The work that it is from, without the place in the work. All techniques are together.
     pub fn work(&self) -> &str {
         let (prefix, title) = TECHNIQUES;
         if self.name.starts_with(prefix) {
@@ -77,7 +78,7 @@ impl Preset {
         self.source.split(", ").next().unwrap_or_default()
     }
 
-    /// Whether the source's number of a field is known, or known to be open.
+    /// Whether the source's number of a field is known, or is known to be open.
     pub fn accounts_for(&self, group: &str, field: &str) -> bool {
         self.numbers.get(group).is_some_and(|fields| fields.contains_key(field))
             || self.open.contains(&format!("{group}.{field}"))
@@ -123,7 +124,7 @@ impl std::fmt::Display for Number {
 type Group = BTreeMap<String, Number>;
 type Entries = BTreeMap<Spanned<String>, Entry>;
 
-/// A preset as the file has it.
+/// A preset in the form of the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Entry {
@@ -246,12 +247,12 @@ impl Checker<'_> {
         }
     }
 
-    /// A number cannot be open and given, and is in one of the groups.
+    /// A number that is open must not be given, and must be in one of the groups.
     fn open(&mut self, name: &Spanned<String>, groups: &[(&str, Group)]) {
         let text = name.get_ref();
         let (group, field) = text.split_once('.').unwrap_or((text, ""));
         let problem = match groups.iter().find(|(known, _)| *known == group) {
-            _ if field.is_empty() => format!("`{text}` is no `group.field`"),
+            _ if field.is_empty() => format!("`{text}` is not of the form `group.field`"),
             Some((_, fields)) if fields.contains_key(field) => {
                 format!("`{text}` is open, and has a number")
             }
@@ -301,7 +302,7 @@ impl Checker<'_> {
     }
 }
 
-/// What is wrong with a preset's key: it must be canonical, valid and shipped.
+/// Errors in a preset's key, which must be canonical, valid and shipped.
 fn check_key(program: &Program, text: &Quoted) -> Diagnostics {
     let point = match key::parse(&program.space, text) {
         Ok(point) => point,

@@ -1,4 +1,5 @@
-//! Light probes: published environments as nine spherical harmonics, and the modules made of them.
+//! Light probes: published environments as nine spherical harmonics, and the modules that are made
+//! from them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -97,8 +97,8 @@ fn open(path: &PathBuf) -> Result<Bundle, Failure> {
     Bundle::open(path).map_err(|error| Failure::input(format!("`{}`: {error}", path.display())))
 }
 
-/// Checks every byte. A directory that is written anew meanwhile is looked at again: its blobs
-/// are kept for one more run only.
+/// Checks every byte. If a directory is written at the same time, it is checked again, since old
+/// blobs are kept for only one more run.
 fn verify(path: &PathBuf) -> Result<(), Failure> {
     const MOST_LOOKS: u32 = 16;
     let state = || input::read(&path.join("manifest.json"), MANIFEST_BYTES).ok();

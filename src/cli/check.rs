@@ -57,7 +57,7 @@ pub struct Arguments {
     spec: bool,
 }
 
-/// Functions without a case that are told by name.
+/// How many functions without a case are listed by name.
 const UNTESTED: usize = 10;
 
 /// Case files of one package.
@@ -139,7 +139,7 @@ fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure>
     if report.passed() { Ok(()) } else { Err(Failure::Check(sources, failures(&report))) }
 }
 
-/// What was asked for, as one types it again.
+/// The command line, to be typed again.
 fn command_line() -> String {
     let quoted =
         |word: String| match word.chars().all(|c| c.is_alphanumeric() || "-_./:=,".contains(c)) {
@@ -163,7 +163,7 @@ fn print_untested(report: &Report) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The check of one selection; with `--bless`, its package's recorded shares are lowered after it.
+/// Checks one selection. With `--bless`, the recorded shares of its package are lowered afterwards.
 fn one(
     selection: &Selection,
     sources: &Mutex<SourceSet>,
@@ -198,7 +198,8 @@ fn one(
         .map_err(Failure::from))
 }
 
-/// What is stated below WGSL's own bounds: no failure, since a backend may well do better.
+/// Tolerances below WGSL's own bounds. This is not a failure, since a backend may well be more
+/// exact.
 fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
     let lines = stricter(report);
     match (all, lines.lines().count()) {
@@ -249,7 +250,7 @@ fn asked(arguments: &Arguments, language: Language) -> bool {
     arguments.lang.is_none_or(|name| Language::from(name) == language)
 }
 
-/// Case files of the user's: the file itself, that of a module, or all below a folder.
+/// The user's case files: the file itself, that of a module, or all below a folder.
 fn case_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if path.is_dir() {
         let disk = Disk::new(path).map_err(|error| unreadable(path, &error))?;
@@ -278,7 +279,7 @@ fn case_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     }
 }
 
-/// Adds a case file to the selection of its package and its languages.
+/// Adds a case file to the selection for its package and its languages.
 fn add_own(
     selections: &mut Vec<Selection>,
     file: &Path,
@@ -336,7 +337,7 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
             let near = nearest(&asked, known.iter().map(String::as_str));
             let near = near.map_or(String::new(), |near| format!("\nhelp: did you mean `{near}`?"));
             return Err(Failure::input(format!(
-                "`{path}` is no file, and no module of the library with numeric cases{near}"
+                "`{path}` is neither a file nor a module of the library with numeric cases{near}"
             )));
         }
         found.extend(matching);

@@ -1,4 +1,4 @@
-//! `lamplight completions SHELL` and `lamplight man`: what shells and `man` read.
+//! `lamplight completions SHELL` and `lamplight man`: files for shells and for `man`.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -59,7 +59,8 @@ fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failu
     if failed { Err(Failure::input("not every expression has a value")) } else { Ok(()) }
 }
 
-/// One line out for each expression; what has no value gives an empty line, and diagnostics.
+/// Prints one line for each expression. An expression without a value gives an empty line, and
+/// diagnostics.
 fn print(
     library: &Library,
     text: &str,

@@ -1,4 +1,4 @@
-//! How a command fails, and how that is told.
+//! How a command fails, and how that is reported.
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -17,12 +17,12 @@ pub enum Failure {
     Input(SourceSet, Diagnostics),
     /// A check failed: exit code 3, diagnostics at its cases.
     Check(SourceSet, Diagnostics),
-    /// A sentence and the exit code of the contract.
+    /// A sentence, with its exit code.
     Message(u8, String),
 }
 
 impl Failure {
-    /// The input is wrong in a way that has no place in a text.
+    /// The input is wrong, but there is no place in a text to point to.
     pub fn input(message: impl Into<String>) -> Self {
         Self::Message(1, message.into())
     }
@@ -42,10 +42,11 @@ impl Failure {
         Self::Message(4, message.into())
     }
 
-    /// Says on standard error what went wrong; the exit code.
+    /// Prints on standard error what went wrong, and returns the exit code.
     pub fn report(self, form: DiagnosticForm) -> ExitCode {
         match self {
-            // A bundle that cannot be written is the machine's fault, not the author's.
+            // If a bundle cannot be written, this is not the author's mistake but a problem of the
+            // machine.
             Self::Input(sources, diagnostics)
                 if diagnostics.iter().any(|error| error.code == codes::BUNDLE_FAILED) =>
             {
@@ -78,7 +79,7 @@ impl Failure {
     }
 }
 
-/// Diagnostics, and for people where to read on.
+/// Prints diagnostics, and for people where to read on.
 fn explain(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
     warn(sources, diagnostics, form);
     let reading = guide::after_errors(diagnostics);
@@ -87,12 +88,12 @@ fn explain(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm
     }
 }
 
-/// What has neither code nor place, in the form of what has.
+/// An error without code and place, in the form of one that has both.
 fn message_as_json(message: &str) -> serde_json::Value {
     serde_json::json!({ "severity": "error", "code": null, "message": message, "labels": [], "notes": [] })
 }
 
-/// A pipe that was closed by its reader ends the command in peace; any other failure is told.
+/// A pipe that its reader closed ends the command without an error. Any other failure is reported.
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         match error.kind() {
@@ -102,11 +103,11 @@ impl From<io::Error> for Failure {
     }
 }
 
-/// Prints diagnostics that do not stop the command, or those that did.
+/// Prints diagnostics, whether or not they stop the command.
 pub fn warn(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
     let text = render(sources, diagnostics, form.into());
     let _ = match form {
-        // What is quoted in it has lost its control characters by now.
+        // Control characters were removed from quoted text before.
         DiagnosticForm::Coloured => coloured().write_all(text.as_bytes()),
         _ => stderr().write_all(text.as_bytes()),
     };

@@ -1,4 +1,4 @@
-//! Where the guide explains what a command is about: a line at the end of help and of errors.
+//! Names the page of the guide that explains a command, at the end of its help and of errors.
 
 use std::collections::BTreeSet;
 
@@ -7,8 +7,8 @@ use clap::Command;
 use super::terminal::is_person;
 use crate::diagnostic::{Diagnostic, Severity, guide};
 
-/// What help adds to a command: the title of its page, and examples that work in a package that
-/// `lamplight init` has written, once `lamplight gen` has run there.
+/// What is added to a command's help: the title of its page, and examples. They work in a package
+/// that `lamplight init` has written, once `lamplight gen` has run there.
 struct Entry {
     command: &'static str,
     page: &'static str,
@@ -127,7 +127,7 @@ fn with(command: Command, entry: &Entry) -> Command {
     command.after_help(short).after_long_help(long)
 }
 
-/// What to read about the errors, for a person at a terminal; nothing for a program.
+/// What to read about the errors, for a person at a terminal; `None` for a program.
 pub fn after_errors(diagnostics: &[Diagnostic]) -> Option<String> {
     is_person().then(|| reading(diagnostics)).flatten()
 }

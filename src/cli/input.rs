@@ -112,7 +112,8 @@ pub fn feature(text: &str) -> Result<(String, Setting), String> {
     }
 }
 
-/// What is wrong with a point that a source as a whole names.
+/// The error about a permutation that breaks a constraint, labelled at the source that names all of
+/// its values.
 pub fn broken(
     program: &Program,
     point: &Assignment,
@@ -137,7 +138,7 @@ pub struct Ready {
     pub context: Context,
 }
 
-/// What a composed text was made of, and what its errors are told with.
+/// What a composed text was made from, for reporting its errors.
 pub struct Context {
     pub graph: Graph,
     pub settings: Settings,
@@ -148,12 +149,12 @@ pub struct Context {
 }
 
 impl Context {
-    /// Warnings with the permutation, those aside that only a dependency's author can mend.
+    /// Warnings with the permutation, without those that only the author of a dependency can mend.
     pub fn own(&self, warnings: Diagnostics) -> Diagnostics {
         of_permutation(self.graph.own(warnings), self.permutation.as_deref())
     }
 
-    /// With the chain of imports that led there, and the permutation.
+    /// Adds the chain of imports and the permutation.
     pub fn explain(&self, diagnostics: Diagnostics) -> Diagnostics {
         of_permutation(self.graph.traced(diagnostics), self.permutation.as_deref())
     }
@@ -170,7 +171,7 @@ struct Chosen {
     clip: Clip,
     /// A note that names them.
     permutation: Option<String>,
-    /// The axes come from a manifest.
+    /// Whether the axes come from a manifest.
     declared: bool,
     /// Their names.
     axes: Vec<String>,
@@ -268,7 +269,7 @@ impl Input {
         }
     }
 
-    /// What is chosen twice is a slip, whichever is meant.
+    /// A setting that is chosen twice is a mistake, so neither value is taken.
     fn check_usage(&self) -> Result<(), Failure> {
         let mut names: Vec<&str> = self.chosen().map(|(name, _)| name.as_str()).collect();
         names.sort_unstable();
@@ -282,7 +283,7 @@ impl Input {
         self.set.iter().chain(&self.feature)
     }
 
-    /// Settings of the command line that are no axes and that nothing can ask for.
+    /// Warns of settings on the command line that are not axes and that nothing can ask for.
     fn unused(&self, graph: &Graph, axes: &[String]) -> Diagnostics {
         let unused = self.chosen().map(|(name, _)| name);
         let unused = unused.filter(|name| !axes.contains(name) && !graph.may_ask(name)).cloned();
@@ -302,8 +303,8 @@ impl Input {
         Options { mangle, keep: if self.keep_all { Keep::All } else { Keep::EntryPoints } }
     }
 
-    /// What the command line chooses, over the defaults of the program that the file belongs to
-    /// where the package's manifest has one.
+    /// The settings from the command line, and the defaults of the program that the file belongs
+    /// to, if the package's manifest has one.
     fn settings(
         &self,
         project: &mut Project,
@@ -350,8 +351,9 @@ impl Input {
         })
     }
 
-    /// The point of the program's space that the options name; broken constraints are warnings,
-    /// since the composition has a meaning all the same. A feature that is no axis is one more flag.
+    /// The point of the program's space that the options name. A broken constraint is a warning,
+    /// since the composition has a meaning all the same. A feature that is not an axis is one more
+    /// flag.
     fn of_program(
         &self,
         program: &Program,

@@ -1,5 +1,5 @@
-//! `gen --validate`: what the judges of the targets say of a run's outputs, before they replace
-//! the bundle that is there.
+//! `gen --validate`: asks the judges of the targets about a run's outputs, before these replace the
+//! bundle that is there.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ use crate::project;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 
-/// The judges of a run's targets, all there.
+/// The judges of a run's targets, which are all installed.
 pub struct Judges {
     tint: Tint,
 }
@@ -29,7 +29,7 @@ pub struct Inputs<'a> {
 }
 
 impl Judges {
-    /// Looks whether everything is there; Tint is beside the cache folder.
+    /// Checks that all judges are installed. Tint is beside the cache folder.
     pub fn open(
         manifest: &Manifest,
         request: &Request,
@@ -52,7 +52,7 @@ impl Judges {
         }
     }
 
-    /// Judges files; a refusal is a mistake of the input.
+    /// Judges files. A refusal is an error of the input.
     pub fn files(
         &self,
         files: impl IntoIterator<Item = BlobFile>,

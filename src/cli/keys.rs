@@ -56,7 +56,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
         found => found.and_then(Result::ok).flatten(),
     };
     if let (Some(path), Some(lock), true) = (&named, &lock, arguments.lock) {
-        // What is there was read as a lock file.
+        // The file that is there was read as a lock file, so it may be replaced.
         put(&project::lock_path(path), &lock.to_string(), arguments.check, Replace::Any)?;
     }
     let Some(language) = arguments.lang else { return Ok(()) };
@@ -79,8 +79,8 @@ fn open(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> {
     }
 }
 
-/// The lock that numbers are written from: the file beside the manifest, with what it lacks where
-/// it is to be written.
+/// The lock from which numbers are written: the file beside the manifest. If it is to be written,
+/// what it lacks is added.
 fn lock(
     path: &Path,
     arguments: &Arguments,

@@ -1,4 +1,4 @@
-//! `lamplight lint`: a whole package, reached or not.
+//! `lamplight lint`: checks a whole package, whether or not anything reaches a module.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -55,7 +55,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     }
     let counted = [(modules, "module"), (errors, "error"), (warnings, "warning")];
     writeln!(stdout(), "{}", counted.map(|(count, what)| plural(count, what)).join(", "))?;
-    // What is wrong has been told.
+    // The errors have been printed already.
     if errors == 0 { Ok(()) } else { Err(Failure::Input(last, Vec::new())) }
 }
 

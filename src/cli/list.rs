@@ -45,7 +45,7 @@ enum What {
     Executors,
 }
 
-/// Things, each an object; the table shows some of their keys, the last one wrapped.
+/// Things, each as an object. The table shows some of their keys and wraps the last one.
 struct Table {
     shown: &'static [&'static str],
     things: Vec<Value>,

@@ -21,12 +21,12 @@ use crate::source::{Embedded, Files};
 #[derive(Args)]
 pub struct Arguments {}
 
-/// Waiting for more keystrokes before documents are looked at.
+/// How long to wait for more keystrokes before looking at documents.
 const PAUSE: Duration = Duration::from_millis(2);
 
 pub fn run(_: Arguments) -> Result<(), Failure> {
     let (sender, receiver) = channel();
-    // Reading goes on while documents are looked at, so that a keystroke ends the waiting.
+    // Reading goes on while documents are looked at, so that a keystroke is noticed at once.
     thread::spawn(move || {
         let mut stream = BufReader::new(stdin().lock());
         while let Ok(incoming) = wire::read(&mut stream) {
@@ -42,7 +42,7 @@ pub fn run(_: Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Answers until the editor leaves; the exit code that the protocol asks for.
+/// Answers until the editor leaves; returns the exit code that the protocol demands.
 fn serve(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
     let mut server = Server::new(Box::new(library_file));
     let mut pause = PAUSE;
@@ -75,7 +75,7 @@ fn serve(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
     }
 }
 
-/// One question that goes wrong inside is answered as such; the server goes on.
+/// A request that panics is answered with an error, and the server continues.
 fn guarded(
     server: &mut Server,
     message: &Value,

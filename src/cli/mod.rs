@@ -123,7 +123,8 @@ fn described() -> clap::Command {
     guide::in_help(Cli::command()).color(asked_for_colour())
 }
 
-/// What `--color` says, for help and wrong usage, which are told before options are read.
+/// What `--color` says, read before the other options: help and wrong usage are printed before
+/// those are read.
 fn asked_for_colour() -> clap::ColorChoice {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let value = |index: usize| match arguments[index].strip_prefix("--color") {
@@ -142,7 +143,7 @@ fn asked_for_colour() -> clap::ColorChoice {
 pub fn main() -> ExitCode {
     let matches = described().try_get_matches().unwrap_or_else(wrong_usage);
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(wrong_usage);
-    // While there is one thread.
+    // Done while there is only one thread.
     executors::prepare(&cli.command.executors());
     let gpus = cli.command.gpus();
     let form = cli.color.of(cli.diagnostics);
@@ -155,7 +156,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Says what is wrong with the arguments, which are quoted and may hold anything; help as it is.
+/// Prints what is wrong with the arguments. They are quoted and may contain anything, so they are
+/// escaped; help is not.
 fn wrong_usage<T>(error: clap::Error) -> T {
     if !error.use_stderr() {
         error.exit();

@@ -1,4 +1,4 @@
-//! What commands that write files have in common.
+//! What commands that write files share.
 
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -24,7 +24,7 @@ impl Overwrite {
     }
 }
 
-/// What is there belongs to somebody else: the input is wrong, since it names that place.
+/// The path names a file of somebody else, so the input is wrong.
 impl From<Foreign> for Failure {
     fn from(foreign: Foreign) -> Self {
         let help = match foreign.can_be_forced {
@@ -45,7 +45,7 @@ impl From<Error> for Failure {
     }
 }
 
-/// Says why nothing happens.
+/// Says why nothing happens for the moment.
 pub fn waiting(out: &Path) {
     let _ = writeln!(stderr(), "waiting for another run that writes `{}`", out.display());
 }

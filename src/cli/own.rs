@@ -1,4 +1,4 @@
-//! The user's own package, for commands that are about the library and about it.
+//! The user's own package, for commands that are about the library and also about that package.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub struct Own {
 }
 
 impl Own {
-    /// Its root folder. The library's own sources are no package beside the library.
+    /// Its root folder; `None` for the library's own sources, which are not a second package.
     pub fn root(&self) -> Option<PathBuf> {
         let found = || {
             project::package_above(Path::new(""))
@@ -54,6 +54,6 @@ impl Own {
     }
 }
 
-/// What the package is called in expressions, which are a package of their own: `package::` there
-/// means this one.
+/// The name of the package in expressions. Those are a package of their own, in which `package::`
+/// means this name.
 const NAME: &str = "lamplight_own";

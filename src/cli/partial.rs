@@ -1,4 +1,4 @@
-//! A part of a bundle must not replace all of it by accident.
+//! Keeps a part of a bundle from replacing all of it by accident.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! A bar on a terminal, silence elsewhere.
+//! A progress bar on a terminal; nothing elsewhere.
 
 use std::sync::Mutex;
 
@@ -12,7 +12,7 @@ pub struct Bar(Mutex<ProgressBar>);
 impl Bar {
     pub fn new() -> Self {
         let bar = ProgressBar::new(0);
-        // The template is fixed and valid; the default style serves otherwise.
+        // The template is fixed and valid, so there is nothing to report.
         if let Ok(style) = ProgressStyle::with_template("{msg:28} {bar:40} {pos}/{len} {elapsed}") {
             bar.set_style(style);
         }

@@ -1,5 +1,5 @@
-//! `lamplight rehearse`: work that might end its process, done in one that may have little memory
-//! and time. This program calls itself so, where input is near a limit; nobody else does.
+//! `lamplight rehearse`: does work that might crash its process, in a process with limits on memory
+//! and time. This program calls itself in this way when input is near a limit; nobody else does.
 
 use std::io::{Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -16,21 +16,21 @@ use crate::{link, validate};
 /// Do a job in a process that may have little memory and time.
 #[derive(Args)]
 pub struct Arguments {
-    /// Whose code it is.
+    /// Which code does the job.
     stage: String,
 }
 
-/// Waiting for a processor is no work, but it has an end too.
+/// The limit in real time. Waiting for a processor does not count as work, but must end too.
 const LONGEST: Duration = Duration::from_secs(12 * REHEARSAL_SECONDS);
-/// Bytes of a process' last words.
+/// How many bytes of a process's error output are read.
 const WORDS: u64 = 64 << 10;
 
-/// Rehearsals of this process are done by [`run`] in another.
+/// Makes [`run`] in another process do the rehearsals of this one.
 pub fn install() {
     run_by(in_a_child);
 }
 
-/// The other process: the job is on standard input.
+/// Runs in the other process: the job is on standard input.
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     limited()?;
     let mut job = Vec::new();
@@ -46,14 +46,14 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Takes away what a job might exhaust. Elsewhere than on Linux only its time has an end, and the
-/// caller sees to that.
+/// Limits the resources of this process. On systems other than Linux only its time is limited, by
+/// the caller.
 #[cfg(target_os = "linux")]
 fn limited() -> Result<(), Failure> {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
-    // Nobody may have more than the user allowed from the start. Of memory it is half of that,
-    // since the process that starts this one has threads and files beside what is done here.
+    // No limit is raised above what the user allows. Of memory the job gets half of that, since the
+    // process that starts it has threads and files of its own.
     let limits = [
         (Resource::As, crate::limits::REHEARSAL_BYTES, 2),
         (Resource::Cpu, REHEARSAL_SECONDS, 1),
@@ -73,12 +73,13 @@ fn limited() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Where no process can be started, the job is done here without a rehearsal, as a library does.
+/// Runs a job in a child process. Where no process can be started, the job is done here without a
+/// rehearsal, as a library does.
 fn in_a_child(stage: &str, job: &[u8]) -> Result<(), Exhausted> {
     let Ok(program) = std::env::current_exe() else { return Ok(()) };
     let child = Command::new(program)
         .args(["rehearse", stage])
-        // A large stack for each thread is address space too.
+        // One thread, since each would reserve a large stack.
         .env("RAYON_NUM_THREADS", "1")
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
@@ -90,7 +91,7 @@ fn in_a_child(stage: &str, job: &[u8]) -> Result<(), Exhausted> {
         scope.spawn(|| stdin.map(|mut stdin| stdin.write_all(job)));
         let words = scope.spawn(|| {
             let mut words = Vec::new();
-            // What comes after is read and forgotten, so that the process does not wait.
+            // The rest of the output is read and dropped, so that the process does not wait.
             if let Some(mut stderr) = stderr {
                 let _ = stderr.by_ref().take(WORDS).read_to_end(&mut words);
                 let _ = std::io::copy(&mut stderr, &mut std::io::sink());
@@ -131,7 +132,7 @@ fn judged(status: Option<ExitStatus>, words: &str) -> Result<(), Exhausted> {
     }
 }
 
-/// Linux sends one of two signals to a process that has had its time.
+/// Whether a process used up its time: Linux then sends it one of two signals.
 #[cfg(unix)]
 fn is_out_of_time(status: ExitStatus) -> bool {
     use std::os::unix::process::ExitStatusExt as _;

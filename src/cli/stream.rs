@@ -1,4 +1,4 @@
-//! Root modules that are no files: `-`, and pipes such as `/dev/stdin` or `<(...)`.
+//! Root modules that are not files: `-`, and pipes such as `/dev/stdin` or `<(...)`.
 
 use std::fs::{self, File};
 use std::io::{Read, stdin};
@@ -40,8 +40,7 @@ pub fn read(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// What the module of a stream is called in its package: the composer takes the stage of GLSL
-/// from the name.
+/// The name of a stream's module in its package, which tells the composer the stage of GLSL.
 pub fn name(language: Language, stage: Option<Stage>) -> String {
     let stage = match stage {
         Some(Stage::Vertex) => ".vert",
@@ -55,7 +54,7 @@ pub fn name(language: Language, stage: Option<Stage>) -> String {
     }
 }
 
-/// Files of a package with a text in the place of one of them.
+/// The files of a package, with a text instead of one of them.
 pub struct Overlay {
     pub below: Box<dyn Files>,
     pub name: String,

@@ -1,32 +1,32 @@
 //! The one way to standard output and standard error.
 //!
 //! What commands print holds names, paths and messages from elsewhere: a bundle's programs, a
-//! cached message, an argument that is echoed. A terminal obeys control characters, so that such a
-//! name could hide lines, move the cursor or turn writing around. Everything printed passes
-//! [`Escaping`], whatever its form; bytes that are a result ([`data`]) pass it where the other end
-//! is a terminal, and stay as they are in pipes and files. No other file of the command line may
-//! name the streams of the standard library: `house::one_way_to_the_terminal` looks.
+//! cached message, an argument that is echoed. A terminal obeys control characters, so such a name
+//! could hide lines, move the cursor or reverse the writing direction. Everything that is printed
+//! goes through [`Escaping`]. Bytes that are a result ([`data`]) do so only on a terminal, and are
+//! unchanged in pipes and files. No other file of the command line may name the streams of the
+//! standard library; `house::one_way_to_the_terminal` checks that.
 
 use std::io::{self, IsTerminal, Write};
 
 use crate::diagnostic::is_obeyed;
 
-/// Text for people or programs, on standard output.
+/// Standard output, for text.
 pub fn stdout() -> Escaping<io::Stdout> {
     Escaping::new(io::stdout())
 }
 
-/// Text for people or programs, on standard error.
+/// Standard error, for text.
 pub fn stderr() -> Escaping<io::Stderr> {
     Escaping::new(io::stderr())
 }
 
-/// Text with colours of ours, on standard error.
+/// Standard error, for text with colours of our own.
 pub fn coloured() -> Escaping<io::Stderr> {
     Escaping { out: io::stderr(), has_colours: true, cut: Vec::new() }
 }
 
-/// Text of somebody else's within text of ours.
+/// Escapes text of somebody else, to be put into text of ours.
 pub fn escaped(text: &str) -> String {
     let mut bytes = Vec::new();
     // Writing to memory does not fail.
@@ -34,17 +34,18 @@ pub fn escaped(text: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Whether a person reads standard output.
+/// Whether standard output is a terminal.
 pub fn is_terminal() -> bool {
     io::stdout().is_terminal()
 }
 
-/// Whether a person reads standard error.
+/// Whether standard error is a terminal.
 pub fn is_person() -> bool {
     io::stderr().is_terminal()
 }
 
-/// Writes a result, such as a shader: byte by byte as it is, unless a terminal would obey it.
+/// Writes a result, such as a shader, byte by byte. If standard output is a terminal, it is
+/// escaped.
 pub fn data(bytes: &[u8]) -> io::Result<()> {
     match is_terminal() {
         true => stdout().write_all(bytes),
@@ -52,18 +53,19 @@ pub fn data(bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Sends what was written to standard output on its way.
+/// Flushes standard output.
 pub fn flush() -> io::Result<()> {
     io::stdout().flush()
 }
 
-/// Writes what a terminal would obey as `\u001b`, which is the same character in JSON.
+/// Writes characters that a terminal would obey as `\u001b` and the like, which mean the same
+/// characters in JSON.
 #[derive(Debug)]
 pub struct Escaping<W: Write> {
     out: W,
-    /// Whether sequences that choose a colour pass.
+    /// Whether sequences that choose a colour are kept.
     has_colours: bool,
-    /// The beginning of a character whose other bytes are not written yet.
+    /// The first bytes of a character whose other bytes were not written yet.
     cut: Vec<u8>,
 }
 
@@ -93,7 +95,7 @@ impl<W: Write> Escaping<W> {
     }
 }
 
-/// Bytes of the sequence that chooses a colour, if the text begins with one.
+/// Length of the sequence that chooses a colour, if the text begins with one.
 fn colour(text: &str) -> usize {
     let Some(rest) = text.strip_prefix("\u{1b}[") else { return 0 };
     let end = rest.find(|letter: char| !(letter.is_ascii_digit() || letter == ';'));
@@ -118,7 +120,7 @@ impl<W: Write> Write for Escaping<W> {
     }
 }
 
-/// A character that was cut is written at the latest with the writer's end.
+/// A character that was cut is written when the writer is dropped.
 impl<W: Write> Drop for Escaping<W> {
     fn drop(&mut self) {
         let rest = String::from_utf8_lossy(&std::mem::take(&mut self.cut)).into_owned();
@@ -126,7 +128,7 @@ impl<W: Write> Drop for Escaping<W> {
     }
 }
 
-/// Bytes before a character that the end cuts.
+/// Length of the bytes before a character that is cut at the end.
 fn whole(bytes: &[u8]) -> usize {
     let tail = bytes.len().saturating_sub(3);
     let start = (tail..bytes.len()).rev().find(|at| bytes[*at] & 0xc0 != 0x80);

@@ -1,4 +1,5 @@
-//! Text for a terminal: wrapped paragraphs and tables, at most [`WIDTH`] columns where words allow.
+//! Formats text for a terminal: wrapped paragraphs and tables, at most [`WIDTH`] columns wide where
+//! the words allow it.
 
 /// Columns of a line.
 pub const WIDTH: usize = 100;

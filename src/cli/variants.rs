@@ -1,4 +1,4 @@
-//! `lamplight variants`: what a manifest's axes multiply to.
+//! `lamplight variants`: how many permutations a manifest's axes multiply to.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -130,7 +130,7 @@ pub fn open(
     }
 }
 
-/// Fills in what only composing, and compiling, tells.
+/// Adds what only composing and compiling can tell.
 fn compose(
     arguments: &Arguments,
     sources: &mut SourceSet,

@@ -16,8 +16,8 @@ use crate::input;
 use crate::permute::Quoted;
 use crate::source::LIMITS;
 
-/// Between looks at the files, which are compared by content: no service of the operating system
-/// is needed, and editors may write as they like.
+/// The time between looks at the files. They are compared by content: no service of the operating
+/// system is needed, and it does not matter how editors write.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Compose, compile and bundle again whenever a file changes, until interrupted.
@@ -54,7 +54,8 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     }
 }
 
-/// Wrong input is told and waited out; anything else ends the command.
+/// An error in the input is printed, and the command waits for the next change. Any other error
+/// ends it.
 fn told(outcome: Result<(), Failure>, form: DiagnosticForm) -> Result<(), Failure> {
     match outcome {
         Err(failure @ Failure::Input(..)) => {

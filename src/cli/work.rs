@@ -1,4 +1,4 @@
-//! What `gen` and `watch` share: a package, its manifest, the cache, and a run over them.
+//! What `gen` and `watch` share: a package, its manifest, the cache, and runs over them.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ impl Places {
     }
 }
 
-/// Everything a run needs, read and ready.
+/// Everything that a run needs, read and ready.
 pub struct Work {
     pub sources: SourceSet,
     pub out: PathBuf,
@@ -63,11 +63,11 @@ pub struct Work {
     manifest: Manifest,
     observer: Observer,
     cache: Option<Cache>,
-    /// Of the cache, as it was asked for.
+    /// The cache folder, as it was asked for.
     cache_folder: Option<PathBuf>,
     judges: Option<Judges>,
     replace: Replace,
-    /// The manifest and what declares packages: all that is read before the packages are.
+    /// The manifest and what declares packages, which are read before the packages are.
     declared: SourceSet,
 }
 
@@ -94,14 +94,14 @@ impl Work {
         })
     }
 
-    /// Lets the judges of the request's targets look at what runs make from now on.
+    /// From now on, lets the judges of the request's targets check what runs make.
     pub fn judge(&mut self, request: &Request) -> Result<(), Failure> {
         let cache = self.cache_folder.clone();
         self.judges = Some(Judges::open(&self.manifest, request, &self.path, cache)?);
         Ok(())
     }
 
-    /// Judges the bundle that is there, if anything is to be judged.
+    /// Judges the bundle that is there, if anything needs to be judged.
     pub fn judge_bundle(&mut self) -> Result<Option<Judged>, Failure> {
         let (out, bar) = (self.out.clone(), Bar::new());
         let (judges, inputs) = self.judges();
@@ -113,7 +113,7 @@ impl Work {
         (judges.as_ref(), Inputs { sources, packages, manifest, cache: cache.as_ref() })
     }
 
-    /// Whether files are as they were when they were read.
+    /// Whether files are still as they were when they were read.
     pub fn is_current(&self) -> bool {
         let mut sources = SourceSet::default();
         let declared = project::declared(&self.path, &mut sources).is_ok()
@@ -124,7 +124,7 @@ impl Work {
         declared && self.observer.is_current(&self.packages)
     }
 
-    /// The account of an earlier run, if there is nothing to do since; says what it said.
+    /// The summary of an earlier run, if nothing changed since. Its warnings are printed again.
     pub fn up_to_date(&self, request: &Request, form: DiagnosticForm) -> Option<Summary> {
         let Trace { summary, told, .. } = Trace::find(self.cache.as_ref()?, self.as_run(request))?;
         let _ = stderr().write_all(told.text(form.into()).as_bytes());
@@ -169,7 +169,7 @@ impl Work {
         }
     }
 
-    /// One permutation into the bundle directory that is there, before all others.
+    /// Writes one permutation into the present bundle directory, before all others.
     pub fn patch(&mut self, request: &Request) -> Result<(), Failure> {
         let memory = Memory::default();
         let mut generated = self.generate(request, &memory, &Bar::new())?;
@@ -178,7 +178,7 @@ impl Work {
             .map_err(|error| unwritable(&self.out, error))
     }
 
-    /// Writes a directory as its units are made.
+    /// Writes a directory, unit by unit.
     fn streamed(&mut self, request: &Request, bar: &Bar) -> Result<Generated, Failure> {
         let writer = DirectoryWriter::take_over(&self.out, self.replace, &|| waiting(&self.out));
         let writer = writer.map_err(|error| unwritable(&self.out, error))?;
@@ -195,7 +195,7 @@ impl Work {
         Ok(generated)
     }
 
-    /// Compares with what is there, or writes a single file, whose order is known at the end only.
+    /// Compares with what is there, or writes a single file, which can only be ordered at the end.
     fn in_memory(
         &mut self,
         request: &Request,
@@ -249,7 +249,7 @@ fn cache(places: &Places, manifest: &Path) -> Result<Option<Cache>, Failure> {
     Ok((!storages.is_empty()).then(|| Cache::new(storages)))
 }
 
-/// A cache that fails is no reason to fail, but its user wants to know.
+/// Warns if the cache failed. The run does not fail because of that.
 fn told_failures(cache: &Cache) {
     if cache.failures() > 0 {
         let _ = writeln!(

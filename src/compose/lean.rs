@@ -1,11 +1,11 @@
-//! A text without its comments and its layout: the same program in a third of the bytes.
+//! Removes comments and layout from a text: the same program in a third of the bytes.
 //!
 //! naga ignores comments and layout. So the outputs of a lean text are those of the whole text;
 //! only naga's spans differ, and no output holds spans. Texts that differ in comments or layout
-//! alone are compiled once, and after an edited comment nothing is compiled.
+//! alone are compiled once, and an edited comment does not cause any compilation.
 //!
-//! Type aliases are replaced by what they stand for. naga gives an alias a type of its own, and
-//! Metal would take an array and its alias for two types.
+//! Type aliases are replaced by what they stand for. naga makes a type of its own for an alias, so
+//! in Metal an array and its alias would be two types.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -14,13 +14,14 @@ use super::{Composed, Part, PartKind, SourceMap};
 use crate::bundle::Language;
 use crate::parse::wesl::blank::{block_comment, is_blank, line_comment};
 
-/// The most aliases within each other that are replaced. Deeper ones stay, so that naga reports them.
+/// How deeply aliases may refer to each other. Deeper ones are kept, so that naga reports them.
 const ALIAS_DEPTH: usize = 64;
 
-/// Bytes that the aliases of one part may be expanded to.
+/// Bytes to which the aliases of one part may expand.
 const ALIAS_BYTES: usize = 1 << 16;
 
-/// The text to compile. It has no map to the author's files: for errors, validate the whole text.
+/// The text to compile. It has no map to the author's files: to get errors with places, validate
+/// the whole text.
 pub fn lean(composed: &Composed) -> Composed {
     let mut text = String::with_capacity(composed.text.len() / 2);
     let mut parts = Vec::with_capacity(composed.parts.len());
@@ -56,12 +57,12 @@ pub fn lean(composed: &Composed) -> Composed {
     }
 }
 
-/// Writes parts without their comments and layout, each at the beginning of a line.
+/// Writes parts without their comments and layout, each on a new line.
 struct Squeezer {
     language: Language,
-    /// Some part may have lines that have to stay as they are.
+    /// Whether some part may have lines that must stay as they are.
     has_odd_lines: bool,
-    /// GLSL without its comments, for one part at a time.
+    /// The GLSL of one part without its comments; the memory is used again.
     plain: String,
 }
 
@@ -81,20 +82,20 @@ impl Squeezer {
     }
 }
 
-/// A backslash continues a line, comments too; a line may end with a carriage return alone, and be
-/// asked for its number.
+/// Whether lines must stay as they are: a backslash continues a line or a comment, a line ends with
+/// a carriage return alone, or the text asks for its line's number.
 fn has_odd_lines(text: &str) -> bool {
     text.contains('\\') || text.contains('\r') || text.contains("__LINE__")
 }
 
-/// A part with what its aliases stand for; `None` where they cannot be expanded.
+/// A part with its aliases expanded; `None` where that is not possible.
 fn expanded(composed: &Composed, part: &Part) -> Option<String> {
     let mut text = String::new();
     append(composed, part, part.range.clone(), ALIAS_DEPTH, &mut text)?;
     Some(text)
 }
 
-/// Appends a range of a part, each alias in it replaced by its type.
+/// Appends a range of a part, in which each alias is replaced by its type.
 fn append(
     composed: &Composed,
     part: &Part,
@@ -111,7 +112,7 @@ fn append(
         let name = alias.names.first()?;
         let equals = alias.range.start + declares(declaration, name)?;
         let end = alias.range.start + declaration.rfind(';')?;
-        // A blank on both sides: the bracket that ends a type must not meet a `=` or `>`.
+        // A blank on both sides, since the bracket that ends a type must not touch a `=` or `>`.
         text.push(' ');
         append(composed, alias, equals..end, depth.checked_sub(1)?, text)?;
         text.push(' ');
@@ -124,10 +125,10 @@ fn append(
     Some(())
 }
 
-/// Where the type begins in the declaration of an alias: after the `=` that follows its name.
+/// Where the type begins in the declaration of an alias: after the `=` behind its name.
 fn declares(declaration: &str, name: &str) -> Option<usize> {
     let squeezed = wgsl(declaration);
-    // A comment may hold an `=` too, so each one is tried: the right one leaves the type behind it.
+    // A comment may have a `=` too. Each one is tried, and the right one has the type behind it.
     let (_, target) = squeezed.split_once('=')?;
     let plain = squeezed.strip_prefix("alias ")?.trim_start().strip_prefix(name)?;
     let ends = declaration.rfind(';')?;
@@ -161,7 +162,7 @@ fn append_wgsl(text: &str, lean: &mut String) {
     }
 }
 
-/// Writes a blank where what comes next could become one token with what is there.
+/// Writes `next`, after a blank where the two could become one token.
 fn part(lean: &mut String, next: &str) {
     let alone = |found: Option<&u8>| found.is_none_or(|byte| stands_alone(*byte));
     if !alone(lean.as_bytes().last()) && !alone(next.as_bytes().first()) {
@@ -169,7 +170,7 @@ fn part(lean: &mut String, next: &str) {
     }
 }
 
-/// Bytes before the first blank or comment.
+/// Length of the text up to the first blank or comment.
 fn token(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut at = 0;
@@ -186,13 +187,13 @@ fn token(text: &str) -> usize {
     at
 }
 
-/// Bytes of the blanks and comments that the text begins with.
+/// Length of the blanks and comments at the start of the text.
 fn gap(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
         at += match byte {
-            // Nearly all blanks are of these two.
+            // Nearly all blanks are one of these two.
             b' ' | b'\n' => 1,
             b'!'..=b'.' | b'0'..=b'~' => return at,
             _ => match (comment(&text[at..]), text[at..].chars().next()) {
@@ -205,12 +206,12 @@ fn gap(text: &str) -> usize {
     at
 }
 
-/// Whether nothing next to the character can become one token with it.
+/// Whether the character can never become part of a longer token.
 fn stands_alone(found: u8) -> bool {
     matches!(found, b'\n' | b'(' | b')' | b'[' | b']' | b'{' | b'}' | b',' | b';')
 }
 
-/// Bytes of the comment that the text begins with.
+/// Length of the comment at the start of the text, if there is one.
 fn comment(text: &str) -> Option<usize> {
     match text.as_bytes() {
         [b'/', b'/', ..] => Some(line_comment(text)),
@@ -250,7 +251,7 @@ fn append_glsl(text: &str, plain: &mut String, lean: &mut String) {
         let is_directive = line.starts_with('#');
         for word in line.split_ascii_whitespace() {
             // A blank before a bracket matters in a directive: `#define F(x)` has a parameter,
-            // `#define F (x)` has none.
+            // `#define F (x)` does not.
             if is_directive && !lean.ends_with('\n') && !lean.is_empty() {
                 lean.push(' ')
             } else {

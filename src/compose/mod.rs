@@ -28,17 +28,17 @@ pub enum Mangle {
     Underscore,
 }
 
-/// What of the root module must be kept, with all that it reaches.
+/// What of the root module is kept, together with all that it reaches.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Hash)]
 pub enum Keep {
-    /// Entry points of the root module; its whole content where it has none.
+    /// Entry points of the root module; all its content where it has none.
     #[default]
     EntryPoints,
     /// The items of these names (entry points or functions).
     Items(Vec<String>),
     /// All that the root module declares, entry points or not.
     Root,
-    /// Everything of every module reached: no dead-code removal.
+    /// Everything of every module that is reached.
     All,
 }
 
@@ -64,13 +64,13 @@ pub struct Composed {
     pub map: SourceMap,
     /// The declarations of the text, in its order. Beside them it has only comments and blanks.
     pub parts: Vec<Part>,
-    /// The settings that were asked for, in the order of asking, with the answers: another
-    /// permutation that answers alike composes to the same text.
+    /// The settings that were asked for and their values, in the order of asking. Another
+    /// permutation with the same values for these composes to the same text.
     pub reads: Vec<(String, Setting)>,
     /// Lints.
     pub warnings: Vec<Diagnostic>,
-    /// GLSL: the conditions that asked for a setting, in the order of reading. WESL's are
-    /// evaluated on their own.
+    /// For GLSL, the conditions that asked for a setting, in the order of reading. Conditions of
+    /// WESL are evaluated separately.
     pub decisions: Vec<Decision>,
 }
 
@@ -103,7 +103,7 @@ impl Composed {
     }
 }
 
-/// The lines with code in a part of a text, without what surrounds it.
+/// The ranges of the lines in a part that have code, without the blanks around it.
 pub fn code_lines(text: &str, part: Range<usize>) -> impl Iterator<Item = Range<usize>> {
     let mut at = part.start;
     let lines = text.get(part).unwrap_or_default().split_inclusive('\n');
@@ -126,7 +126,7 @@ pub struct Decision {
     pub later: bool,
 }
 
-/// Composes a graph's root for the settings. Pure: same input, same bytes.
+/// Composes a graph's root for the settings. The same input always gives the same bytes.
 pub fn compose(
     graph: &Graph,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! From bytes of a composed text back to the author's text.
+//! Maps bytes of a composed text to the author's text.
 
 use std::ops::Range;
 
@@ -30,7 +30,8 @@ impl SourceMap {
 
     /// The author's span for a range of the output, if its first byte has an author.
     ///
-    /// A range over several segments ends where the author's contiguous text does.
+    /// A range over several segments gives a span that ends where the author's text is no longer
+    /// contiguous.
     pub fn lookup(&self, range: Range<usize>) -> Option<Span> {
         let first = self
             .segments

@@ -1,4 +1,4 @@
-//! Recorded costs, and what rose since.
+//! Recorded costs, and which figures rose since.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 use super::Cost;
 use super::statistics::{FIGURES, Statistics};
 
-/// What a file of recorded costs is recognised by.
+/// Identifies a file of recorded costs.
 const FORMAT: &str = "lamplight-costs-1";
 
-/// Figures by name, GPU and stage, of one version of the driver.
+/// Figures of one version of the driver, by name, GPU and stage.
 #[derive(Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Baseline {
     /// [`FORMAT`].
     format: String,
-    /// Figures of another version are not comparable.
+    /// The driver's version. Figures of other versions are not comparable.
     pub driver: String,
     pub costs: BTreeMap<String, Statistics>,
 }
@@ -31,13 +31,13 @@ pub struct Rise {
     pub after: i64,
 }
 
-/// What a cost is recorded under.
+/// The key under which a cost is recorded.
 pub fn key(cost: &Cost) -> String {
     format!("{} {} {:?}", cost.name, cost.gpu.name, cost.stage).to_lowercase()
 }
 
 impl Baseline {
-    /// Of costs.
+    /// Records costs.
     pub fn of(driver: &str, costs: &[Cost]) -> Self {
         let costs = costs.iter().map(|cost| (key(cost), *cost.figures())).collect();
         Self { format: FORMAT.to_owned(), driver: driver.to_owned(), costs }
@@ -46,7 +46,7 @@ impl Baseline {
     /// Reads a file's bytes.
     ///
     /// # Errors
-    /// Why they are no recorded costs.
+    /// Why they are not recorded costs.
     pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let read: Self = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
         match read.format == FORMAT {
@@ -55,7 +55,7 @@ impl Baseline {
         }
     }
 
-    /// The text of a file: a line for each cost, so that differences can be read.
+    /// The text of a file, with one line for each cost, so that a diff is readable.
     pub fn text(&self) -> String {
         let written = |value: &str| serde_json::Value::from(value).to_string();
         let line = |(key, figures): (&String, &Statistics)| {
@@ -77,7 +77,7 @@ impl Baseline {
     }
 
     /// Figures that are worse than recorded by more than a share of the recorded figure, such as
-    /// 0.02. What is not recorded is not compared.
+    /// 0.02. Figures that are not recorded are not compared.
     pub fn rises(&self, costs: &[Cost], share: f64) -> Vec<Rise> {
         let mut rises = Vec::new();
         for cost in costs {

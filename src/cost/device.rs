@@ -1,4 +1,4 @@
-//! Mesa's RADV on GPUs that are not there: pipelines are compiled and asked for their figures.
+//! Uses Mesa's RADV for GPUs that are not installed: compiles pipelines and reads their figures.
 //!
 //! With `RADV_FORCE_FAMILY` the driver makes a device of that family on top of no hardware. Nothing
 //! is ever submitted to it. The loader is pointed at RADV alone, so that no other driver, and no
@@ -15,7 +15,7 @@ use super::pipeline::Pipeline;
 use super::statistics::Statistics;
 use crate::bundle::Stage;
 
-/// Names another manifest of the driver.
+/// The environment variable that names another manifest of the driver.
 const MANIFEST: &str = "LAMPLIGHT_RADV_MANIFEST";
 
 /// Where packages put the driver's manifest.
@@ -25,16 +25,16 @@ const MANIFESTS: &[&str] = &[
     "/etc/vulkan/icd.d/radeon_icd.x86_64.json",
 ];
 
-/// What the device's name has in it where no hardware is behind it.
+/// A part of the device's name if it has no hardware.
 const NULL_HARDWARE: &str = "Null hardware";
 
 /// How to get the driver.
 pub const INSTALL: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
 
-/// A GPU that compiles.
+/// A GPU to compile for.
 pub struct Device {
     pub gpu: &'static Gpu,
-    /// The driver's version: figures of two versions differ.
+    /// The driver's version. Figures of different versions differ.
     pub driver: String,
     _entry: ash::Entry,
     instance: ash::Instance,
@@ -43,11 +43,11 @@ pub struct Device {
 }
 
 impl Device {
-    /// Opens the GPU. To be called while the process has one thread: it changes the environment
-    /// for as long as it takes, and the loader and the driver read it.
+    /// Opens the GPU. Call this while the process has only one thread: it changes the environment
+    /// for a moment, since the loader and the driver read it.
     ///
     /// # Errors
-    /// Why there is no such device, with the command that installs the driver if it is missing.
+    /// Why the device cannot be opened. If the driver is missing, the command that installs it.
     pub fn open(gpu: &'static Gpu) -> Result<Self, String> {
         let manifest = manifest().ok_or_else(|| missing("there is no RADV driver"))?;
         let settings = [

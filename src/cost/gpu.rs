@@ -9,7 +9,7 @@ pub struct Gpu {
     pub generation: &'static str,
     /// A card that has it.
     pub example: &'static str,
-    /// Whether it stands for its generation where no GPU is named.
+    /// Whether it represents its generation where no GPU is named.
     pub is_default: bool,
 }
 

@@ -1,11 +1,11 @@
-//! Pipelines as Vulkan takes them.
+//! Creates pipelines of Vulkan.
 
 use ash::vk;
 
 use super::pipeline::{Attribute, Pipeline, Slot, Words};
 use crate::bundle::{Kind, Stage};
 
-/// What is made for one pipeline, and destroyed with it.
+/// The objects of one pipeline, which are destroyed with it.
 pub(super) struct Made<'d> {
     device: &'d ash::Device,
     modules: Vec<vk::ShaderModule>,
@@ -219,7 +219,7 @@ fn attribute(attribute: &Attribute) -> vk::VertexInputAttributeDescription {
         .format(format(attribute.scalar, attribute.components))
 }
 
-/// Each attribute has a buffer of its own.
+/// The layout of a vertex buffer. Each attribute has its own.
 fn stride(attribute: &Attribute) -> vk::VertexInputBindingDescription {
     vk::VertexInputBindingDescription::default().binding(attribute.location).stride(16)
 }
@@ -228,7 +228,7 @@ fn color(attribute: &Option<Attribute>) -> vk::Format {
     attribute.as_ref().map_or(vk::Format::UNDEFINED, |attribute| format(attribute.scalar, 4))
 }
 
-/// The format of 32-bit components that holds a value as it is.
+/// The format that holds a value of 32-bit components unchanged.
 fn format(scalar: naga::ScalarKind, components: u8) -> vk::Format {
     use vk::Format;
     let formats = match scalar {

@@ -1,8 +1,8 @@
-//! What a shader costs on GPUs that are not there: instructions, registers, waves, latency.
+//! What a shader costs on GPUs that are not installed: instructions, registers, waves, latency.
 //!
-//! Mesa's driver for AMD GPUs compiles for any chip it knows, with or without the hardware, and
-//! tells figures of the machine code. They depend on the SPIR-V, the GPU and Mesa's version alone,
-//! so that they can be recorded and compared. Nothing is run.
+//! Mesa's driver for AMD GPUs compiles for any chip that it knows, with or without the hardware,
+//! and reports figures of the machine code. They depend only on the SPIR-V, the GPU and Mesa's
+//! version, so they can be recorded and compared. Nothing is run.
 //!
 //! `subject -> pipeline -> device -> statistics`
 
@@ -33,7 +33,7 @@ use statistics::Statistics;
 pub struct Subject {
     /// A function's path, a permutation's key or a file.
     pub name: String,
-    /// The stages that are told.
+    /// The stages whose figures are reported.
     pub stages: Vec<Stage>,
     pub pipeline: Pipeline,
     /// The same stage without the function; its figures are subtracted.
@@ -48,12 +48,12 @@ pub struct Cost {
     pub stage: Stage,
     /// Figures of the whole stage.
     pub stage_figures: Statistics,
-    /// Of a function: those less the empty stage's.
+    /// For a function, the figures less those of the stage without it.
     pub net: Option<Statistics>,
 }
 
 impl Cost {
-    /// What is compared: of a function its own figures, else those of the stage.
+    /// The figures that are compared: a function's own, or else those of the stage.
     pub fn figures(&self) -> &Statistics {
         self.net.as_ref().unwrap_or(&self.stage_figures)
     }
@@ -100,10 +100,10 @@ pub fn stages(name: &str, mut known: Vec<Known>) -> Result<Subject, String> {
     Ok(Subject { name: name.to_owned(), stages, pipeline, empty: None })
 }
 
-/// The cost of every subject on every device, in their order. Equal pipelines are compiled once.
+/// Measures every subject on every device, in their order. Equal pipelines are compiled once.
 ///
 /// # Errors
-/// What a driver says where it refuses a pipeline, with the subject's name.
+/// The driver's message where it refuses a pipeline, with the subject's name.
 pub fn measure(
     devices: &[Device],
     subjects: &[Subject],
@@ -146,7 +146,7 @@ type Figures = Vec<(Stage, Statistics)>;
 struct Distinct<'s> {
     /// In the order of the subjects, with the first subject's name.
     pipelines: Vec<(&'s Pipeline, &'s str)>,
-    /// Places in `pipelines`.
+    /// Indices into `pipelines`.
     places: HashMap<&'s Pipeline, usize>,
 }
 
@@ -165,7 +165,7 @@ impl<'s> Distinct<'s> {
         distinct
     }
 
-    /// The figures of a stage of a pipeline, out of those of all pipelines on one GPU.
+    /// The figures of a pipeline's stage, from those of all pipelines on one GPU.
     fn figures(
         &self,
         figures: &[Figures],

@@ -1,4 +1,4 @@
-//! The permutations of a program as subjects, and what each value of an axis changes.
+//! Measures the permutations of a program, and what each value of an axis changes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,7 +33,7 @@ pub fn subjects(program: &ProgramContents, language: Language) -> Result<Vec<Sub
         .collect()
 }
 
-/// A stage in SPIR-V, and how its overrides are numbered.
+/// A stage in SPIR-V, and the numbers of its overrides.
 struct Unit {
     known: Known,
     choices: Vec<Choice>,
@@ -51,7 +51,7 @@ fn known_units(name: &str, entry: &EntryContents) -> Result<BTreeMap<Hash, Unit>
     units.map_err(|reason| format!("entry point `{name}`: {reason}"))
 }
 
-/// The stage of a key, with what the key chooses for the stage's overrides.
+/// The stage of a key, with the values that the key gives its overrides.
 fn chosen(axes: &[Axis], key: &str, unit: &Unit) -> Result<Known, String> {
     let mut known = unit.known.clone();
     let constants =
@@ -77,20 +77,20 @@ fn bits(constant: &Constant) -> Result<u32, String> {
     }
 }
 
-/// What one value of an axis changes in a stage on a GPU, against the axis's default.
+/// What one value of an axis changes in a stage on a GPU, compared with the axis's default.
 #[derive(Debug, Clone, Serialize)]
 pub struct Change {
     pub axis: String,
     pub value: String,
     pub gpu: &'static str,
     pub stage: Stage,
-    /// Pairs of permutations that differ in the axis alone.
+    /// Pairs of permutations that differ only in the axis.
     pub pairs: usize,
     /// By the figure's key.
     pub figures: BTreeMap<&'static str, Spread>,
 }
 
-/// How far a figure changes over the pairs.
+/// How much a figure changes over the pairs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Spread {
     pub least: i64,
@@ -101,7 +101,7 @@ pub struct Spread {
     pub after: i64,
 }
 
-/// The changes of every value of every axis that some pair of permutations shows.
+/// The changes of every value for which some pair of permutations exists.
 pub fn changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
     let mut by_place: BTreeMap<(&str, Stage), BTreeMap<&str, &Cost>> = BTreeMap::new();
     for cost in costs {
@@ -131,7 +131,8 @@ pub fn changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
     changes
 }
 
-/// Costs of permutations with the axis's default and with the value, alike in all else.
+/// The costs of permutations with the axis's default and with the value, which are otherwise the
+/// same.
 fn pairs<'c>(
     axis: &str,
     value: &str,

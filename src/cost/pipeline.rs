@@ -1,4 +1,4 @@
-//! What one compilation takes: the SPIR-V of its stages and what lies around them.
+//! What is compiled at once: the SPIR-V of the stages, and the state around them.
 
 use std::collections::BTreeSet;
 use std::ffi::CString;
@@ -16,7 +16,8 @@ pub struct Words {
     pub stage: Stage,
     pub entry: CString,
     pub words: Vec<u32>,
-    /// Specialisation constants: number, and the 32 bits of the value. Others have their defaults.
+    /// Specialisation constants: the number, and the 32 bits of the value. Those that are not
+    /// listed have their defaults.
     pub constants: Vec<(u32, u32)>,
 }
 
@@ -28,7 +29,7 @@ pub struct Slot {
     pub kind: Kind,
 }
 
-/// A value by its location: an attribute of a vertex, or a colour.
+/// A value at a location: a vertex attribute or a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Attribute {
     pub location: u32,
@@ -36,17 +37,17 @@ pub struct Attribute {
     pub components: u8,
 }
 
-/// A pipeline to compile. Two equal ones have equal figures.
+/// A pipeline to compile. Equal pipelines have equal figures.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Pipeline {
     pub stages: Vec<Words>,
     pub slots: Vec<Slot>,
     pub attributes: Vec<Attribute>,
-    /// By location; `None` where nothing is written to.
+    /// By location; `None` where nothing is written.
     pub colors: Vec<Option<Attribute>>,
 }
 
-/// A stage with what is known of it.
+/// A stage, with its reflection.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Known {
     pub words: Words,
@@ -60,7 +61,7 @@ impl Known {
     /// They are no words, or the entry point's name has a zero.
     pub fn new(entry: &str, bytes: &[u8], reflection: Reflection) -> Result<Self, String> {
         let (words, []) = bytes.as_chunks::<4>() else {
-            return Err(format!("{} bytes of SPIR-V are no whole words", bytes.len()));
+            return Err(format!("{} bytes of SPIR-V are not a whole number of words", bytes.len()));
         };
         let words = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
         let entry = CString::new(entry).map_err(|error| error.to_string())?;
@@ -81,11 +82,11 @@ impl Known {
 }
 
 impl Pipeline {
-    /// The pipeline of a stage and the one that goes with it. Where a vertex or a fragment stage
-    /// is alone, one is added that passes on, or uses, all that it shares with it.
+    /// The pipeline of a stage and its partner. A vertex or a fragment stage without a partner gets
+    /// one that provides, or uses, everything that passes between them.
     ///
     /// # Errors
-    /// No stage can be added, because of a type that crosses between the two.
+    /// No partner can be written for it, because of a type that passes between the two.
     pub fn new(stage: Known, other: Option<Known>) -> Result<Self, String> {
         let other = match (stage.reflection.stage, other) {
             (Stage::Compute, _) => None,
@@ -106,7 +107,7 @@ impl Pipeline {
     }
 }
 
-/// What the stages bind, each once.
+/// The resources of all stages, each once.
 fn slots(stages: &[Known]) -> Vec<Slot> {
     let bindings = stages.iter().flat_map(|known| &known.reflection.bindings);
     let slot =
@@ -115,7 +116,7 @@ fn slots(stages: &[Known]) -> Vec<Slot> {
     slots.into_iter().collect()
 }
 
-/// The values that have a location; others are built in.
+/// The values that have a location. The others are built-ins.
 fn located(values: &[Varying]) -> Result<Vec<Attribute>, String> {
     let located = values.iter().filter_map(|value| Some((value.location?, &value.ty)));
     let attribute = |(location, ty): (u32, &String)| {
@@ -161,7 +162,7 @@ fn partner(text: &str) -> Result<Known, String> {
 
 const PARTNER: &str = "lamplight_partner";
 
-/// The text of a vertex stage that gives a fragment stage its inputs, each from an attribute.
+/// The text of a vertex stage that provides the inputs of a fragment stage, each from an attribute.
 fn before(fragment: &Reflection) -> String {
     let mut members = "@builtin(position) position: vec4f,\n".to_owned();
     let (mut parameters, mut values) = (String::new(), String::new());

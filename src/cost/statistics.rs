@@ -1,11 +1,12 @@
-//! What the compiler tells of the machine code of one stage.
+//! What the compiler reports about the machine code of one stage.
 
 use serde::{Deserialize, Serialize};
 
 /// Figures of one stage, or the difference of two.
 ///
-/// Latency and inverse throughput are the compiler's own estimates, in cycles: of one wave from
-/// its first instruction to its last, and of the busiest unit for each wave.
+/// Latency and inverse throughput are estimates of the compiler, in cycles. Latency is the time of
+/// one wave from its first instruction to its last. Inverse throughput is the time of the busiest
+/// unit for each wave.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Statistics {
     pub instructions: i64,
@@ -19,7 +20,7 @@ pub struct Statistics {
     pub code_size: i64,
     /// Bytes of memory that a thread needs beside its registers.
     pub scratch: i64,
-    /// Waves that fit on one SIMD at a time: more hide more latency.
+    /// Waves that fit on one SIMD at a time. More waves hide more latency.
     pub subgroups_per_simd: i64,
     pub branches: i64,
     pub latency: i64,

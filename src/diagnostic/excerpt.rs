@@ -1,5 +1,6 @@
-//! The lines a diagnostic points to, fit to be printed: long lines cut to what is labelled, and
-//! nothing in them that would move a terminal's cursor or turn its writing around.
+//! Makes the lines that a diagnostic points to fit to be printed. Long lines are cut around the
+//! labels, and characters that would move a terminal's cursor or reverse its writing direction are
+//! replaced.
 
 use std::ops::Range;
 
@@ -8,21 +9,21 @@ use codespan_reporting::files::{Error, Files};
 use super::obeyed::is_obeyed;
 use crate::source::{SourceId, SourceSet, Span};
 
-/// Bytes of a line from which on it is cut, before the label, and in all.
+/// A line with more bytes than this is cut: the bytes that are kept before the label, and in all.
 const LONG: usize = 240;
 const BEFORE: usize = 80;
 const WINDOW: usize = 200;
 
-/// Lines around the labelled ones: as many as codespan may want to show.
+/// How many lines around the labelled ones are kept: as many as codespan may show.
 const AROUND: usize = 3;
 
-/// Characters of a message that are shown.
+/// How many characters of a message are shown.
 const MESSAGE: usize = 400;
 
-/// What stands for text that was left out.
+/// Stands for text that was left out.
 const GAP: &str = "…";
 
-/// A message without control characters, its lines no longer than is readable.
+/// A message without control characters, in lines that are short enough to read.
 pub fn tidy(message: &str) -> String {
     message.split('\n').map(tidy_line).collect::<Vec<_>>().join("\n")
 }
@@ -37,7 +38,8 @@ fn tidy_line(line: &str) -> String {
     half(MESSAGE / 2) + GAP + &tail.into_iter().rev().collect::<String>()
 }
 
-/// The texts that the labels of one diagnostic point into, by [`SourceId`], as far as they matter.
+/// The texts that the labels of one diagnostic point into, by [`SourceId`], as far as they are
+/// needed.
 pub struct Excerpts<'a> {
     sources: &'a SourceSet,
     pages: Vec<Page>,
@@ -57,9 +59,9 @@ struct Line {
     start: usize,
     /// Where it starts in the author's text.
     origin: usize,
-    /// The author's bytes of it that are shown.
+    /// Which bytes of the author's line are shown.
     shown: Range<usize>,
-    /// Bytes of the page before them: what stands for the text left out.
+    /// How many bytes of the page come before them, for text that was left out.
     lead: usize,
 }
 
@@ -130,7 +132,7 @@ impl Page {
         });
     }
 
-    /// The byte of the page for one of the author's: the nearest that is shown.
+    /// The byte of the page for a byte of the author's text: the nearest one that is shown.
     fn place(&self, byte: usize) -> usize {
         let index = self.lines.partition_point(|line| line.origin <= byte).saturating_sub(1);
         self.lines.get(index).map_or(0, |line| {
@@ -158,7 +160,7 @@ fn window(origin: usize, line: &str, ranges: &[Range<usize>]) -> Range<usize> {
     start..line.floor_char_boundary((start + WINDOW).min(line.len()))
 }
 
-/// Control characters and changes of writing direction as others of as many bytes.
+/// Replaces control characters and changes of writing direction by characters of as many bytes.
 fn harmless(character: char) -> char {
     match character {
         '\t' => character,

@@ -70,8 +70,8 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// Lines under the excerpt.
     pub notes: Vec<String>,
-    /// The item that it is about, where that was asked for by name and not in a text: whoever asked
-    /// knows the place.
+    /// The item that the diagnostic is about, if it was asked for by name and not in a text:
+    /// whoever asked knows its place.
     pub item: Option<String>,
 }
 
@@ -96,7 +96,7 @@ impl Diagnostic {
         Self { severity: Severity::Warning, ..Self::error(code, message) }
     }
 
-    /// Adds a labelled place; the first one added is where the diagnostic stands.
+    /// Adds a labelled place. The first one is the place of the diagnostic.
     pub fn at(mut self, span: Span, message: impl Into<String>) -> Self {
         self.labels.push(Label { span, message: message.into() });
         self
@@ -123,10 +123,10 @@ impl Diagnostic {
     }
 }
 
-/// Characters of a name from which on it is no slip of the finger.
+/// Longer names are not compared: they are hardly misspelt.
 const LONGEST_MISSPELT: usize = 100;
 
-/// A conversion named from the other end: `a_to_b` is `b_from_a`.
+/// A conversion is often looked for by its opposite name: `a_to_b` is `b_from_a`.
 fn converse(name: &str) -> Option<String> {
     let named = |one: &str, other: &str| {
         name.split_once(one).map(|(left, right)| format!("{right}{other}{left}"))
@@ -145,7 +145,7 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     if let Some(same) = known.iter().find(|name| Some(**name) == converse.as_deref()) {
         return Some(same);
     }
-    // A name that shares no letter with another is not a misspelling of it.
+    // A name that has no letter in common with another is not a misspelling of it.
     let allowed = (1 + length / 4).min(length.saturating_sub(1));
     known
         .into_iter()

@@ -1,6 +1,6 @@
-//! Characters that a reader's program acts on instead of showing them.
+//! Characters that a program obeys instead of showing them.
 
-/// Whether a character does something instead of being seen: controls but line ends and tabs, and
+/// Whether a program would obey a character: control characters other than line ends and tabs, and
 /// marks of writing direction. All of them have 16 bits.
 pub fn is_obeyed(character: char) -> bool {
     match character {

@@ -1,10 +1,10 @@
-//! What is said of a file that was not read.
+//! Diagnostics about files that could not be read.
 
 use super::{Diagnostic, codes};
 use crate::source::{LIMITS, ReadError, ReadFailure};
 
-/// The diagnostic has no label of the place that asked for the file, except for text that is not
-/// UTF-8, where it points to the first bad byte: add the asker's with [`Diagnostic::at`].
+/// The diagnostic has no label at the place that asked for the file; add one with
+/// [`Diagnostic::at`]. Only for text that is not UTF-8 it points to the first wrong byte.
 impl From<ReadFailure> for Diagnostic {
     fn from(failure: ReadFailure) -> Self {
         let ReadFailure { path, shown, error, place } = failure;

@@ -1,4 +1,5 @@
-//! Diagnostics as text for people, one line each, or JSON. Alone in knowing codespan-reporting.
+//! Writes diagnostics as text for people, as one line each, or as JSON. No other file knows
+//! codespan-reporting.
 
 use codespan_reporting::diagnostic as codespan;
 use codespan_reporting::term;
@@ -21,12 +22,12 @@ pub enum Form {
     Json,
 }
 
-/// Diagnostics printed in one go: what comes after says no more.
+/// How many diagnostics are printed at once, since more would not help.
 const SHOWN: usize = crate::limits::DIAGNOSTICS;
 
-/// The diagnostics in one of the forms, ending in a newline.
+/// Writes diagnostics in one of the forms; the text ends with a newline.
 ///
-/// After a hundred of them only their number is told.
+/// Of those after the first hundred, only the number is printed.
 pub fn render(sources: &SourceSet, diagnostics: &[Diagnostic], form: Form) -> String {
     let one = |diagnostic: &Diagnostic| match form {
         Form::Human => human(sources, diagnostic),
@@ -51,7 +52,7 @@ fn human(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
     let spans: Vec<Span> = diagnostic.labels.iter().map(|label| label.span).collect();
     let excerpts = Excerpts::new(sources, &spans);
     let mut text = String::new();
-    // Writing to a string fails only for spans outside the files; then the short form serves.
+    // Writing to a string fails only for spans outside of the files. Then the short form is used.
     match term::emit_to_string(
         &mut text,
         &term::Config::default(),

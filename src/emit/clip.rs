@@ -1,18 +1,18 @@
-//! What each target makes of a clip space that is asked for.
+//! The clip space of each target's outputs.
 
 use crate::bundle::{Clip, ClipSpace, FrontFace, Rows, Viewport, YAxis};
 
-/// What a target makes of each.
+/// The clip space of a target for each choice of [`Clip`].
 #[derive(Debug)]
 pub struct Spaces {
-    /// For WebGPU's conventions.
+    /// Where WebGPU's conventions are asked for.
     pub wgpu: ClipSpace,
-    /// For the API's own.
+    /// Where the API's own are asked for.
     pub native: ClipSpace,
 }
 
 impl Spaces {
-    /// The one that is asked for.
+    /// The clip space for a choice.
     pub fn of(&self, clip: Clip) -> ClipSpace {
         match clip {
             Clip::Wgpu => self.wgpu,
@@ -40,8 +40,8 @@ pub const VULKAN: Spaces = Spaces {
     native: ClipSpace { y: YAxis::Down, ..WEBGPU },
 };
 
-/// OpenGL stores the lowest row first and has depths from -1 to 1. To have the top row first, the
-/// output turns the picture over, and with it the way that triangles wind.
+/// OpenGL stores the lowest row first, and its depths go from -1 to 1. To store the top row first,
+/// the output turns the picture over. This reverses the winding of triangles too.
 pub const OPENGL: Spaces = Spaces {
     wgpu: ClipSpace { is_converted: true, front_face: FrontFace::Reversed, ..WEBGPU },
     native: ClipSpace { near: -1, rows: Rows::BottomFirst, ..WEBGPU },

@@ -11,7 +11,7 @@ use super::text::Text;
 use super::{Emitted, Source};
 use crate::bundle::{Clip, Combined, Kind, Native};
 
-/// naga's name for what WebGPU counts instances from, and OpenGL does not.
+/// The uniform that naga adds for WebGPU's first instance, which OpenGL does not count from.
 const FIRST_INSTANCE: &str = "naga_vs_first_instance";
 
 /// Writes GLSL of one version.
@@ -42,7 +42,7 @@ pub fn write(
     )
     .and_then(|mut writer| writer.write());
     let mut info = written.map_err(|error| text.explain(error))?;
-    // naga forgets the prefix of this one extension's name, without which no driver knows it.
+    // naga omits the prefix of this one extension's name, and no driver knows it without.
     let mut text = text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1);
     name_blocks(source, &mut text, &mut info);
     let mut native = reflection(source, &info, numbering);
@@ -51,8 +51,8 @@ pub fn write(
     Ok(Emitted { bytes: text.into_bytes(), native })
 }
 
-/// Words of extensions that compilers of GLSL keep whether they are asked for or not, and naga
-/// does not.
+/// Words that extensions reserve, and that compilers of GLSL refuse whether an extension is enabled
+/// or not. naga does not avoid them.
 const WORDS: &[&str] = &[
     "devicecoherent",
     "fcoopmatNV",
@@ -68,7 +68,7 @@ const WORDS: &[&str] = &[
     "workgroupcoherent",
 ];
 
-/// How types of sized numbers begin, and what follows.
+/// How the names of types with a size begin; a number of components may follow.
 const SIZED: &[&str] = &["f16", "f32", "f64", "i16", "i32", "i64", "i8", "u16", "u32", "u64", "u8"];
 const KINDS: &[&str] = &["image", "mat", "sampler", "subpass", "texture", "vec"];
 
@@ -78,8 +78,8 @@ fn is_taken(name: &str) -> bool {
         SIZED.iter().filter_map(behind).any(|rest| KINDS.iter().any(|kind| rest.starts_with(kind)));
     let number = ["uint", "int", "float"].iter().find_map(behind);
     let is_number = number.is_some_and(|bits| matches!(bits, "8_t" | "16_t" | "32_t" | "64_t"));
-    // A second one of that name would be `gl_1`.
-    // naga has such names itself, and would put `gen_` before this one.
+    // A second variable of that name would become `gl_1`. naga itself makes such names, so it would
+    // put `gen_` before this one.
     let is_nagas = name.starts_with("_group");
     is_sized || is_number || is_nagas || WORDS.contains(&name) || name.trim_end_matches('_') == "gl"
 }
@@ -107,17 +107,17 @@ fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Resul
     Ok(options)
 }
 
-/// What stands between the name of a block's type and its place.
+/// What stands between the name of a block's type and its group and binding.
 pub const BLOCK: &str = "_block_";
 
-/// The name of a block's type as the block's own name begins: browsers refuse two underscores in a
-/// row in GLSL ES, and naga ends names with one.
+/// The name of a block's type, as the block's own name begins. naga ends names with an underscore,
+/// and browsers refuse two in a row in GLSL ES.
 pub fn before_block(ty: &str) -> &str {
     ty.trim_end_matches('_')
 }
 
-/// naga numbers blocks in the order of the text; group and binding are the block's own, whatever
-/// else a permutation has.
+/// Names blocks after their group and binding. naga numbers them in the order of the text, so that
+/// a block's name would depend on what else the permutation has.
 fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo) {
     for (handle, name) in &mut info.uniforms {
         let numbered = name.rsplit_once(BLOCK).map(|(ty, number)| {
@@ -133,7 +133,8 @@ fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo
     }
 }
 
-/// Samplers vanish into the textures they are used with: only combined names have units.
+/// The reflection. Samplers are combined with the textures that they are used with, and only the
+/// combined names have units.
 fn reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Numbering) -> Native {
     let mut native = native(source, "main", numbering);
     let samplers: Vec<_> = assign(source, numbering)

@@ -1,4 +1,4 @@
-//! One entry point with only what it needs.
+//! Reduces a module to one entry point and what it needs.
 
 use naga::compact::{KeepUnused, compact};
 use naga::valid::{ValidationFlags, Validator};
@@ -21,7 +21,7 @@ fn keep(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
     let mut module = validated.module.clone();
     module.entry_points = vec![module.entry_points.swap_remove(index)];
     compact(&mut module, KeepUnused::No);
-    // The module is part of a valid one: only the analysis is needed again, not the checks.
+    // The module is part of a valid one, so only the analysis is repeated and not the checks.
     let info = Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(&module).map_err(
         |error| {
             Diagnostic::error(

@@ -1,8 +1,10 @@
-//! What naga writes in GLSL although the language does not have it, or means something else by it.
+//! Refuses what naga would write in GLSL although the language lacks it, or gives it another
+//! meaning.
 //!
-//! GLSL 3.30 and GLSL ES 3.00 are older than some functions, whose names naga writes all the same;
-//! for `frexp` it writes one of its own, by `log2`, which is wrong for negative numbers and small
-//! ones. In std140 a column of a matrix of two rows takes 16 bytes, in WGSL and in a reflection 8.
+//! GLSL 3.30 and GLSL ES 3.00 lack some newer functions, whose names naga writes all the same. For
+//! `frexp` it writes a function of its own based on `log2`, which is wrong for negative numbers and
+//! for small ones. In std140 a column of a matrix of two rows takes 16 bytes, but 8 bytes in WGSL
+//! and in the reflection.
 
 use naga::back::glsl::Version;
 use naga::{
@@ -14,7 +16,8 @@ use crate::bundle::Target;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
-/// Functions of WGSL, as GLSL calls what naga writes for them; the newest GLSL has them all.
+/// Functions of WGSL, with what GLSL calls that which naga writes for them. The newest GLSL has
+/// them all.
 const LATER: &[(MathFunction, &str)] = &[
     (MathFunction::CountOneBits, "`bitCount`"),
     (MathFunction::CountTrailingZeros, "`findLSB`"),
@@ -36,9 +39,9 @@ const LATER: &[(MathFunction, &str)] = &[
 ];
 
 const TWO_ROWS: &str =
-    "a matrix of two rows in a uniform block is laid out otherwise in GLSL: use vectors";
+    "a matrix of two rows in a uniform block has another layout in GLSL: use vectors";
 
-/// Refuses what targets do not have, in the author's places where `composed` knows them.
+/// Refuses what targets lack, at the author's places where `composed` knows them.
 ///
 /// # Errors
 /// `emit-failed` for each.
@@ -71,7 +74,7 @@ fn told(target: Target, what: &str) -> String {
     format!("target `{target}`: the language has no {what}, which is needed here")
 }
 
-/// The first thing that a version does not have.
+/// The first thing in the module that a version of GLSL lacks.
 pub fn first(module: &Module, version: Version) -> Option<String> {
     if two_rows(module).next().is_some() {
         return Some(TWO_ROWS.to_owned());
@@ -83,7 +86,7 @@ pub fn first(module: &Module, version: Version) -> Option<String> {
     Some(format!("the language has no {what}, which is needed"))
 }
 
-/// Uniform blocks with matrices of two rows.
+/// The places of uniform blocks that have matrices of two rows.
 fn two_rows(module: &Module) -> impl Iterator<Item = Span> {
     let blocks = module.global_variables.iter();
     let blocks = blocks.filter(|(_, one)| one.space == AddressSpace::Uniform);
@@ -130,7 +133,7 @@ fn arrays_of_arrays(
     })
 }
 
-/// Where a type without a name is first asked for.
+/// Where a type without a name is first used.
 fn place_of(module: &Module, ty: Handle<Type>) -> Span {
     let points = module.entry_points.iter().map(|point| &point.function);
     let functions = module.functions.iter().map(|(_, function)| function).chain(points);
@@ -153,7 +156,7 @@ fn place_of(module: &Module, ty: Handle<Type>) -> Span {
     all.find(Span::is_defined).unwrap_or_default()
 }
 
-/// What GLSL calls something that a version does not have.
+/// The name, in GLSL, of something that a version lacks.
 fn later(
     module: &Module,
     function: &Function,
@@ -197,7 +200,7 @@ fn is_depth(module: &Module, function: &Function, image: Handle<Expression>) -> 
     matches!(&module.types[ty].inner, TypeInner::Image { class, .. } if *class == depth)
 }
 
-/// Whether an entry point of GLSL ES 3.00 asks for the number of a sample.
+/// Whether an entry point uses the sample's index in GLSL ES 3.00.
 fn asks_for_sample(module: &Module, version: Version) -> bool {
     let is_it = |ty: Handle<Type>, binding: Option<&Binding>| match &module.types[ty].inner {
         TypeInner::Struct { members, .. } => {

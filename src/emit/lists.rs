@@ -1,11 +1,11 @@
-//! Constants and variables of HLSL modules, given their values as lists.
+//! Writes the initial values of constants and variables of HLSL as lists.
 //!
-//! naga calls functions that it adds, such as `ConstructPair(1.0, 2)`. fxc and dxc take that;
-//! glslang takes such a call for one of the function before it. All of them take lists.
+//! naga calls functions that it adds, such as `ConstructPair(1.0, 2)`. fxc and dxc accept that.
+//! glslang takes such a call for one of the function that stands before it. All three accept lists.
 
 use std::collections::HashMap;
 
-/// The text with lists in the place of calls where a variable of the module is given its value.
+/// The text with lists instead of calls, wherever a variable of the module is initialised.
 pub fn with_plain_constants(text: &str) -> String {
     if !text.contains(" = Construct") {
         return text.to_owned();
@@ -21,7 +21,7 @@ pub fn with_plain_constants(text: &str) -> String {
     text.split_inclusive('\n').map(line).collect()
 }
 
-/// For each structure, whether each of its members is only there to fill a gap.
+/// For each structure, whether each of its members is padding.
 type Structs<'t> = HashMap<&'t str, Vec<bool>>;
 
 fn structs(text: &str) -> Structs<'_> {
@@ -32,7 +32,7 @@ fn structs(text: &str) -> Structs<'_> {
             && let Some((members, _)) = rest.split_once("\n}")
         {
             let is_gap = |line: &str| line.contains(" _pad") || line.contains(" _end_pad");
-            // The columns of a matrix stand in one line.
+            // The columns of a matrix stand on one line.
             let members = members.split(';').filter(|member| !member.trim().is_empty());
             structs.insert(name, members.map(is_gap).collect());
         }
@@ -40,7 +40,7 @@ fn structs(text: &str) -> Structs<'_> {
     structs
 }
 
-/// `ConstructPair(a, b)` as `{ a, b }`.
+/// `ConstructPair(a, b)` written as `{ a, b }`.
 fn listed(value: &str, structs: &Structs<'_>) -> String {
     let list = call(value).and_then(|(word, arguments)| {
         let of = word.strip_prefix("Construct")?;
@@ -52,7 +52,8 @@ fn listed(value: &str, structs: &Structs<'_>) -> String {
     list.map_or_else(|| value.to_owned(), |list: Vec<String>| format!("{{ {} }}", list.join(", ")))
 }
 
-/// The values of all members. naga declares the columns of a matrix of two rows as members.
+/// The values of all members, padding included. naga declares the columns of a matrix of two rows
+/// as members.
 fn filled(members: &[bool], arguments: &[&str], structs: &Structs<'_>) -> Option<Vec<String>> {
     let mut values = Vec::new();
     for argument in arguments {
@@ -69,7 +70,7 @@ fn filled(members: &[bool], arguments: &[&str], structs: &Structs<'_>) -> Option
     values.next().is_none().then_some(list)
 }
 
-/// A value that is a call: the function, and its arguments.
+/// Reads a value that is a call: the name of the function, and its arguments.
 fn call(value: &str) -> Option<(&str, Vec<&str>)> {
     let (word, rest) = value.split_once('(')?;
     let rest = rest.strip_suffix(')')?;

@@ -1,4 +1,4 @@
-//! One output language a file, from a valid module.
+//! Writes a valid module in each output language, one file a language.
 //!
 //! Unless [`Clip::Native`] is asked for, all targets keep WebGPU's conventions, so that one
 //! host-side path serves them: NDC depth is [0, 1], NDC y points up, texture and framebuffer rows
@@ -45,11 +45,11 @@ pub struct Entry {
     pub target: Target,
     /// Of files, without the dot.
     pub extension: &'static str,
-    /// Whether the bytes are not text.
+    /// Whether the output is bytes rather than text.
     pub binary: bool,
     /// One line for listings.
     pub about: &'static str,
-    /// Who says whether its outputs are well formed.
+    /// The tool that judges whether its outputs are well formed.
     pub judge: Judge,
     /// The clip spaces of its vertex stages.
     pub clip: &'static clip::Spaces,
@@ -57,8 +57,8 @@ pub struct Entry {
     pub write: fn(&Source<'_>) -> Result<Emitted, String>,
 }
 
-/// Who judges the outputs of a target, from their bytes: there is no target without. How that is
-/// done is in `judge`.
+/// The tool that judges the outputs of a target, from their bytes. Every target has one. `judge`
+/// runs them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Judge {
     /// spirv-val, by the rules of each of these environments.
@@ -78,7 +78,7 @@ pub enum Judge {
 pub enum GlslRules {
     /// OpenGL's, or OpenGL ES's, of the version that the text names.
     Own,
-    /// Those of a later version, named in the place of the text's own.
+    /// The rules of a later version, which replaces the version in the text.
     Later(&'static str),
     /// Vulkan's, as far as texts for OpenGL can keep them.
     Vulkan,
@@ -95,7 +95,7 @@ pub mod targets {
     }
 }
 
-/// What a target writes from.
+/// What an output is written from.
 pub struct Source<'a> {
     /// A valid module without overrides.
     pub module: &'a naga::Module,
@@ -120,8 +120,8 @@ pub struct Emitted {
     pub native: Native,
 }
 
-/// Refuses what targets have no place or no word for, before anything is written: defaults of
-/// overrides that are not numbers, and functions that are newer than a target's language.
+/// Refuses what targets cannot express, before anything is written: overrides whose default is not
+/// a number, and functions that are newer than a target's language.
 ///
 /// # Errors
 /// `dependent-override`, `emit-failed`; in the author's places where `composed` knows them.
@@ -138,8 +138,8 @@ pub fn check(
 /// is chosen.
 ///
 /// # Errors
-/// `emit-failed` with the writer's words; `naga-internal` where it panicked;
-/// `unknown-entry-point`; `dependent-override`, for whose place see [`check`].
+/// `emit-failed` with the writer's message, `naga-internal` where the writer panicked,
+/// `unknown-entry-point`, and `dependent-override`, whose place [`check`] gives.
 pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
     emit_for(validated, entry, target, Clip::default())
 }
@@ -214,7 +214,7 @@ fn written(
     (writer.write)(&Source { module: &module, info: &info, index: 0, ..source }).map_err(failed)
 }
 
-/// An error of a writer has no place of its own: it is put at the entry point.
+/// Gives an error of a writer, which has no place of its own, that of the entry point.
 pub fn at_entry(error: Diagnostic, composed: &Composed, entry: &str) -> Diagnostic {
     let is_entry = |part: &&Part| {
         part.kind == PartKind::Function && part.names.iter().any(|name| name == entry)

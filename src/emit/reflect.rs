@@ -151,7 +151,7 @@ fn binding(
     Some(Binding {
         group: place.group,
         binding: place.binding,
-        // A GLSL block without an instance name is known by its own.
+        // A GLSL block without an instance name is known by the block's name.
         name: variable.name.clone().or_else(|| ty.name.clone()).unwrap_or_default(),
         kind,
         ty: type_name(module, variable.ty),

@@ -1,11 +1,11 @@
-//! Names of an author's that a writer takes for its own.
+//! Renames declarations whose names a writer uses for something else.
 
 use naga::{Function, Module, Type, TypeInner};
 
-/// The module with other names in the place of those that are taken; `None` where there are none.
-/// The name of the entry point is changed too.
+/// The module with other names for those that are taken; `None` where none is. The entry point's
+/// name is changed too.
 pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Module> {
-    // naga leaves out underscores at the end, and all but one of those that follow each other.
+    // naga drops underscores at the end, and all but one of several in a row.
     let is_taken = |name: &str| is_taken(name) || is_taken(&plain(name));
     if !names(module).any(is_taken) {
         return None;
@@ -13,7 +13,8 @@ pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Modul
     let mut module = module.clone();
     let change = |name: &mut String| {
         if is_taken(name) {
-            // As naga does where it knows better, but for two underscores in a row.
+            // naga does the same with names that it knows to be taken, but for two underscores in a
+            // row.
             name.insert_str(0, if name.starts_with('_') { "gen" } else { "gen_" });
         }
     };
@@ -25,7 +26,7 @@ pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Modul
             members.iter_mut().for_each(|member| new(&mut member.name));
         }
         let changed = Type { name, inner };
-        // naga takes a type in the place of another, and not in its own.
+        // `replace` refuses a type that equals the one it replaces.
         if module.types[handle] != changed {
             module.types.replace(handle, changed);
         }
@@ -46,7 +47,7 @@ pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Modul
     Some(module)
 }
 
-/// A name as naga writes it, but for what it adds.
+/// A name as naga writes it, without the number that it may append.
 fn plain(name: &str) -> String {
     let mut plain = String::with_capacity(name.len());
     for letter in name.trim_end_matches('_').chars() {

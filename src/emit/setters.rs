@@ -1,9 +1,10 @@
-//! naga's HLSL stores to a matrix of two rows within a structure by a function of its own, which
-//! takes the structure by value: the store is lost. Here the structure is passed to be changed.
+//! Repairs stores to matrices of two rows within structures. For these, naga's HLSL calls a
+//! function that takes the structure by value, so the store is lost. Here the structure becomes an
+//! `inout` parameter.
 
-/// How these functions begin: no name of an author's does in HLSL.
+/// How the names of these functions begin. No name of an author's begins so in HLSL.
 const START: &str = "void SetMat";
-/// The structure, in the list of parameters.
+/// The parameter with the structure.
 const OBJECT: &str = " obj, ";
 
 /// The text with structures passed by reference to the functions that change them.

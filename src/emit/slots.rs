@@ -1,4 +1,4 @@
-//! Where bindings go in each target, by fixed schemes.
+//! Numbers bindings for each target, by fixed schemes.
 
 use naga::ResourceBinding;
 

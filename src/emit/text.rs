@@ -1,7 +1,8 @@
-//! The text that a writer of naga fills: it ends with an error where no bundle would take it.
+//! The text that a writer of naga fills. Writing fails once the text is larger than a bundle
+//! allows.
 //!
-//! A few bytes of a shader can stand for a text of any length, such as a zero for each element of
-//! an array. Nothing of naga says how long; so the writer is stopped.
+//! A few bytes of a shader can become a very long text, such as a zero for each element of an
+//! array. naga has no bound for that, so the writer is stopped here.
 
 use std::fmt;
 
@@ -12,7 +13,7 @@ use crate::limits::GROUP_BYTES;
 pub struct Text(pub String);
 
 impl Text {
-    /// An error of a writer over this text, in words.
+    /// The message for an error of a writer over this text.
     pub fn explain(&self, error: impl fmt::Display) -> String {
         match self.is_full() {
             true => format!("the output has more than {} MiB", GROUP_BYTES >> 20),

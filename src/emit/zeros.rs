@@ -1,12 +1,12 @@
-//! Arrays of zeros in HLSL.
+//! Writes arrays of zeros in HLSL.
 //!
-//! naga writes an array of zeros as `(float3[9])0`. fxc and dxc take that, glslang does not. All of
-//! them take a list of elements where a variable is declared, and assignments to the elements.
+//! naga writes an array of zeros as `(float3[9])0`. fxc and dxc accept that, glslang does not. All
+//! three accept a list of elements where a variable is declared, and assignments to elements.
 
-/// Elements up to which a list is written.
+/// The most elements for which a list is written.
 const MOST_LISTED: usize = 1024;
 
-/// The text without casts of numbers to arrays.
+/// The text without casts of a number to an array.
 pub fn without_casts(text: &str) -> String {
     let line =
         |line: &str| declared(line).or_else(|| returned(line)).unwrap_or_else(|| line.to_owned());
@@ -34,7 +34,7 @@ fn declared(line: &str) -> Option<String> {
     })
 }
 
-/// `return (float3[2])0;` by way of a variable.
+/// `return (float3[2])0;` with a variable that is returned instead.
 fn returned(line: &str) -> Option<String> {
     let (indent, cast) = line.split_once("return (")?;
     let zeros = Zeros::read(cast)?;
@@ -50,7 +50,7 @@ fn returned(line: &str) -> Option<String> {
 /// An array of zeros.
 struct Zeros<'t> {
     element: &'t str,
-    /// The outermost first.
+    /// The outermost size first.
     sizes: Vec<usize>,
     /// What follows the semicolon.
     end: &'t str,
@@ -74,7 +74,8 @@ impl<'t> Zeros<'t> {
         (count <= MOST_LISTED).then(|| self.sizes.iter().rev().fold(zero, nest))
     }
 
-    /// A loop over the elements. naga gives no variable a name that ends with the number nought.
+    /// A loop that assigns to the elements. Its counter cannot clash: naga writes no name that ends
+    /// with the digit 0.
     fn assigned(&self, indent: &str, name: &str) -> String {
         let counters = |at: usize| format!("zero_{at}_0");
         let head = |(at, size): (usize, &usize)| {

@@ -1,4 +1,5 @@
-//! The register program a module is lowered to: flat instructions over slots of one memory.
+//! The program that a module is lowered to: a flat list of instructions over the slots of one
+//! memory.
 //!
 //! WGSL has no recursion, so every function's values have fixed places in that memory: calls
 //! copy arguments to them, nothing is allocated, and a pointer is the number of a slot.
@@ -10,7 +11,7 @@ pub use super::operation::{
     Binary, Compare, Convert, Geometry, Packing, Product, Ternary, Unary, Word1, Word2,
 };
 
-/// An operand: its first slot, and 0 if all components share that slot, else 1.
+/// An operand: its first slot, and a stride of 1; or 0 if all components share that slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Operand {
     pub slot: Slot,
@@ -189,9 +190,9 @@ pub enum Instruction {
         to: u32,
     },
     Return,
-    /// A loop begins another trip.
+    /// A loop begins another iteration.
     Trip,
-    /// A block is reached.
+    /// A block that coverage counts begins.
     Mark {
         point: u32,
     },
@@ -210,7 +211,7 @@ pub enum Instruction {
 }
 
 impl Instruction {
-    /// What it costs: copies cost more the longer they are.
+    /// What the instruction counts against the limit: copies count by their length.
     #[inline(always)]
     pub fn steps(&self) -> u64 {
         match *self {
@@ -224,7 +225,7 @@ impl Instruction {
         }
     }
 
-    /// Copies a value, each component into its own slot.
+    /// Copies a value so that each component has a slot of its own.
     pub fn spread(to: Slot, from: Operand, n: u32) -> Self {
         match from.stride {
             0 => Self::Fill { to, from: from.slot, n },
@@ -248,7 +249,7 @@ pub struct Table {
     pub default: u32,
 }
 
-/// How a sample chooses its level.
+/// How the level of a sample is chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Level {
     Auto,
@@ -258,7 +259,7 @@ pub enum Level {
     Gradient(Slot, Slot),
 }
 
-/// What is asked of a texture.
+/// What an access asks of a texture.
 #[derive(Debug, Clone, Copy)]
 pub enum Ask {
     Sample {
@@ -289,14 +290,14 @@ pub struct Access {
     pub layer: Option<Slot>,
     pub ask: Ask,
     pub to: Slot,
-    /// Components written; results are words if `words`.
+    /// Components of the result, which are words if `words` is set.
     pub n: u8,
     pub words: bool,
     pub depth: bool,
 }
 
 impl Access {
-    /// Whether the level follows from how the coordinates differ between neighbours.
+    /// Whether the level depends on how the coordinates differ between neighbouring fragments.
     pub fn implicit(&self) -> bool {
         matches!(self.ask, Ask::Sample { level: Level::Auto | Level::Bias(_), gather: None, .. })
     }

@@ -1,4 +1,4 @@
-//! What stops the executor, and what it notices without stopping.
+//! What stops the evaluator, and what it reports without stopping.
 
 use crate::diagnostic::{Code, codes};
 use naga::Span;
@@ -7,7 +7,7 @@ use naga::Span;
 #[derive(Debug, Clone, PartialEq)]
 #[must_use]
 pub struct Error {
-    /// What kind of error it is.
+    /// The diagnostic's code.
     pub code: &'static Code,
     /// One line.
     pub message: String,
@@ -45,28 +45,30 @@ impl std::fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// What a watched run notices.
+/// What a run reports when it looks for numeric trouble.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// A NaN came from numbers.
+    /// The result is NaN, though no operand was.
     NotANumber,
-    /// An infinity came from finite numbers.
+    /// The result is infinite, though all operands were finite.
     Infinity,
     /// A division, of floats or integers, by zero.
     DivisionByZero,
-    /// A function outside of its domain: a root of a negative, a normalised zero.
+    /// An argument outside the function's domain: the root of a negative number, a zero vector
+    /// normalised.
     Domain,
     /// A float converted to an integer type that cannot hold it.
     Conversion,
-    /// An index outside of its array; it was clamped.
+    /// An index outside its array, which was clamped.
     OutOfBounds,
-    /// A comparison or a jump nearer than the errors of its sides.
+    /// The two sides of a comparison, or an argument and a jump of the function, are closer than
+    /// their errors.
     Ambiguous,
-    /// A derivative that not all lanes of the quad reached together.
+    /// A derivative in non-uniform control flow: not all lanes of the quad reached it together.
     DivergentDerivative,
 }
 
-/// Something noticed, where and how often.
+/// Something that a run reported: where, and how often.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
     /// What was computed.

@@ -1,9 +1,9 @@
-//! How values of naga's types lie in slots, and in the bytes of buffers.
+//! The layout of naga's types in slots, and in the bytes of buffers.
 
 use super::Error;
 use naga::{ArraySize, Binding, Handle, Scalar, ScalarKind, Type, TypeInner, UniqueArena};
 
-/// Most slots one program may take: 64 MiB of `f64` for four lanes of a quad.
+/// The most slots of a program: 64 MiB of `f64` for the four lanes of a quad.
 pub const MAX_SLOTS: u32 = crate::limits::EVAL_SLOTS;
 
 /// What one slot of an argument or result holds.
@@ -23,7 +23,7 @@ pub enum Kind {
     Handle,
 }
 
-/// The kind of a scalar, if the executor has it.
+/// The kind of a scalar; `None` for scalars that the evaluator lacks.
 pub fn kind(scalar: Scalar) -> Option<Kind> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Bool, _) => Some(Kind::Bool),
@@ -35,7 +35,7 @@ pub fn kind(scalar: Scalar) -> Option<Kind> {
     }
 }
 
-/// Slots of every type of a module, by its handle; none where the executor lacks the type.
+/// The slots of each type of a module, by its handle; none for types that the evaluator lacks.
 #[derive(Debug)]
 pub struct Layout<'m> {
     pub types: &'m UniqueArena<Type>,
@@ -43,7 +43,7 @@ pub struct Layout<'m> {
 }
 
 impl<'m> Layout<'m> {
-    /// Measures every type. A runtime-sized array counts one element.
+    /// Measures every type. A runtime-sized array counts as one element.
     pub fn new(types: &'m UniqueArena<Type>) -> Self {
         let mut layout = Self { types, sizes: Vec::with_capacity(types.len()) };
         for (_, ty) in types.iter() {
@@ -88,7 +88,7 @@ impl<'m> Layout<'m> {
         Ok(())
     }
 
-    /// What each slot of an entry point's argument or result is bound to.
+    /// The binding of each slot of an entry point's argument or result.
     pub fn bindings(
         &self,
         ty: Handle<Type>,
@@ -106,7 +106,8 @@ impl<'m> Layout<'m> {
         }
     }
 
-    /// First slot of a component and its slots: member, element, column or scalar.
+    /// The first slot of a component and the number of its slots. A component is a member, an
+    /// element, a column or a scalar.
     pub fn component(&self, inner: &TypeInner, index: u32) -> Result<u32, Error> {
         match *inner {
             TypeInner::Struct { ref members, .. } => {
@@ -116,7 +117,8 @@ impl<'m> Layout<'m> {
         }
     }
 
-    /// Slots of one element, and the number of elements (none if decided at run time).
+    /// The slots of one element, and the number of elements; `None` if that is known only when the
+    /// program runs.
     pub fn element(&self, inner: &TypeInner) -> Result<(u32, Option<u32>), Error> {
         match *inner {
             TypeInner::Vector { size, .. } => Ok((1, Some(size as u32))),
@@ -161,8 +163,8 @@ impl<'m> Layout<'m> {
     }
 }
 
-/// A buffer's bytes as slots: calls `write` with the kind and the four bytes of each scalar.
-/// Bytes that are not there read as zero.
+/// Reads a buffer's bytes into slots: calls `write` with the kind and the four bytes of each
+/// scalar. Bytes that are missing read as zero.
 pub fn decode(
     types: &UniqueArena<Type>,
     ty: Handle<Type>,

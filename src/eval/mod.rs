@@ -1,8 +1,9 @@
-//! The CPU executor: runs functions of a naga module, in `f64`, in `f32`, and in value plus error.
+//! The evaluator: runs functions of a naga module on the CPU, in `f64`, in `f32`, or as a value
+//! with a bound of its error.
 //!
 //! [`Program::new`] lowers a module once; [`Machine::new`] gives it memory; [`Machine::call`] runs
-//! a function on scalars, [`Machine::quad`] on the four fragments derivatives need. Arguments and
-//! results are flattened to scalars in the order of declaration.
+//! a function on scalars, [`Machine::quad`] on the four fragments that derivatives need. Arguments
+//! and results are flattened to scalars in the order of declaration.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -16,7 +16,7 @@ pub struct Program {
     /// Slots of the memory.
     pub(super) slots: u32,
     pub(super) pool: Vec<(Slot, Constant)>,
-    /// Where constants and overrides are computed, once per machine.
+    /// Where the instructions begin that compute constants and overrides, once per machine.
     pub(super) start: u32,
     pub(super) functions: Vec<Function>,
     pub(super) tables: Vec<Table>,
@@ -37,16 +37,16 @@ impl From<Handle<naga::Function>> for FunctionId {
     }
 }
 
-/// A function as the caller sees it.
+/// What a caller needs to know of a function.
 #[derive(Debug, Clone)]
 pub struct Function {
     /// As in the module.
     pub name: String,
-    /// Kinds of the flattened arguments; for a pointer, those of what it points to.
+    /// Kinds of the flattened arguments; for a pointer, those of the type it points to.
     pub arguments: Vec<Kind>,
-    /// Kinds of the flattened result, then of what is left behind each pointer.
+    /// Kinds of the flattened result, then of the values behind pointers after the call.
     pub result: Vec<Kind>,
-    /// For entry points: the built-in or location each argument and each result slot belongs to.
+    /// For entry points, the built-in or location of each argument slot.
     pub inputs: Vec<Option<naga::Binding>>,
     /// The same for each slot of the result.
     pub outputs: Vec<Option<naga::Binding>>,
@@ -57,15 +57,15 @@ pub struct Function {
     pub(super) entry: u32,
     /// Buffers the function or its callees read, by index.
     pub(super) buffers: Vec<u32>,
-    /// Why the function cannot run, if so.
+    /// Why the function cannot be run, if it cannot.
     pub error: Option<Error>,
 }
 
-/// Where a parameter lies, and what it points to if it is a pointer.
+/// Where a parameter is, and the type that it points to if it is a pointer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parameter {
     pub slot: Slot,
-    /// Slots taken from outside: of the value, or of what the pointer points to.
+    /// How many slots the caller gives: those of the value, or of what the pointer points to.
     pub n: u32,
     pub pointee: Option<Slot>,
 }
@@ -75,7 +75,7 @@ pub(super) struct Parameter {
 pub struct Point {
     /// The function that it is in.
     pub function: FunctionId,
-    /// Which block of a statement begins there.
+    /// Which block of the statement it is.
     pub branch: Branch,
     /// All statements that run if the block is reached.
     pub span: Span,
@@ -86,9 +86,9 @@ pub struct Point {
 pub enum Branch {
     /// The body of the function.
     Entry,
-    /// What an `if` does where its condition holds.
+    /// The branch of an `if` whose condition holds.
     Accept,
-    /// What it does elsewhere.
+    /// The other branch of an `if`.
     Reject,
     /// A case of a `switch`.
     Case,
@@ -96,11 +96,11 @@ pub enum Branch {
     Body,
     /// The `continuing` block of a loop.
     Continuing,
-    /// Statements behind a branch that may have left.
+    /// The statements after a branch that may have left the function or the loop.
     After,
 }
 
-/// A value in a slot before anything runs.
+/// The value of a slot before anything runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Constant {
     Word(u32),
@@ -116,18 +116,18 @@ pub(super) struct Global {
     pub ty: Handle<Type>,
     pub slot: Slot,
     pub slots: u32,
-    /// Least size as a buffer.
+    /// The least size of a buffer for it.
     pub bytes: u32,
     pub role: Role,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
-    /// Initialised at each call from the slot, or to zero.
+    /// Initialised at each call, from the slot or with zero.
     Private(Option<Slot>),
     Buffer,
-    /// A runtime-sized array lies behind the memory: slots holding its address and length, and
-    /// the slots of one element.
+    /// A runtime-sized array behind the memory: the slots of its address and its length, and how
+    /// many slots an element has.
     Runtime {
         address: Slot,
         count: Slot,
@@ -138,8 +138,8 @@ pub(super) enum Role {
 }
 
 impl Program {
-    /// Lowers a validated module. A function that uses something unsupported keeps its error
-    /// and the others run.
+    /// Lowers a validated module. A function that uses something unsupported keeps the error; the
+    /// others can be run.
     ///
     /// # Errors
     /// `eval-too-large` if the module-scope values take too much memory.
@@ -176,7 +176,7 @@ impl Program {
         self.functions.get(id.0 as usize)
     }
 
-    /// The blocks coverage counts, in the order of `Machine::hits`.
+    /// The blocks that coverage counts, in the order of `Machine::hits`.
     pub fn points(&self) -> &[Point] {
         &self.points
     }

@@ -1,9 +1,9 @@
-//! What a module's bindings are bound to.
+//! The resources that a module's bindings are bound to.
 
 use super::code::Compare;
 use std::collections::BTreeMap;
 
-/// Values of bindings, by group and binding.
+/// The resources, by group and binding.
 #[derive(Debug, Clone, Default)]
 pub struct Resources {
     /// Uniform and storage buffers as bytes, laid out as the shader declares.
@@ -14,7 +14,7 @@ pub struct Resources {
     pub samplers: BTreeMap<(u32, u32), Sampler>,
 }
 
-/// How a texture is addressed.
+/// The dimensions of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// A row.
@@ -49,7 +49,7 @@ pub struct Level {
     pub texels: Vec<[f64; 4]>,
 }
 
-/// How coordinates outside of a texture are answered.
+/// What a sampler returns for coordinates outside of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Address {
     /// The texel at the edge.
@@ -61,7 +61,7 @@ pub enum Address {
     Mirror,
 }
 
-/// Between texels and between levels.
+/// How texels and levels are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Filter {
     /// The one texel that is nearest.
@@ -94,7 +94,7 @@ impl Texture {
         Self { shape, levels: vec![Level { width, height, layers, texels }] }
     }
 
-    /// Whether every level has the texels its size says, and a cube whole cubes.
+    /// Whether every level has as many texels as its size says, and a cube has whole cubes.
     pub(super) fn is_complete(&self) -> bool {
         let filled = |level: &Level| {
             let size = u64::from(level.width) * u64::from(level.height) * u64::from(level.layers);

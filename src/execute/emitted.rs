@@ -1,4 +1,4 @@
-//! Kernels as the files that the crate emits.
+//! Emits kernels in the languages of the targets.
 
 use naga::Module;
 use naga::valid::{ValidationFlags, Validator};
@@ -10,16 +10,16 @@ use crate::execute::kernel::{ENTRY, Kernel};
 use crate::link;
 use crate::validate::{CAPABILITIES, Validated};
 
-/// The kernel's entry point in a target's language: the one place where executors of emitted
-/// files get their bytes.
+/// Emits the kernel's entry point in a target's language. Executors of emitted files get their
+/// bytes only from here.
 ///
 /// # Errors
-/// `executor-lacks` where the target's language has no word for something in the kernel.
+/// `executor-lacks` where the target's language cannot express something in the kernel.
 pub fn emit(kernel: &Kernel, target: Target) -> Result<Emitted, Diagnostic> {
     Ok(of_module(&kernel.module, ENTRY, target)?.0)
 }
 
-/// An entry point of a module in a target's language, and the module as it was checked.
+/// Emits an entry point of a module in a target's language, with the module's analysis.
 ///
 /// # Errors
 /// Those of [`emit`].
@@ -40,7 +40,8 @@ pub fn of_module(
     }
 }
 
-/// The first of a kernel's errors; a construct that the target lacks is the executor's matter.
+/// The first of a kernel's errors. Where the target lacks a construct, the error says that the
+/// executor cannot run the kernel.
 fn refused(errors: Diagnostics, target: Target) -> Diagnostic {
     let lost = || Diagnostic::error(codes::EMIT_FAILED, format!("no output for {target}"));
     let error = errors.into_iter().next().unwrap_or_else(lost);

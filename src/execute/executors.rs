@@ -1,9 +1,9 @@
-//! Everything that can run a kernel: one file of `executors/` each.
+//! Everything that can run a kernel: one file of `executors/` for each.
 
 use super::Session;
 use crate::bundle::Target;
 
-/// An executor, closed.
+/// An executor that is not open yet.
 pub struct Entry {
     /// Name on the command line.
     pub name: &'static str,
@@ -11,22 +11,22 @@ pub struct Entry {
     pub about: &'static str,
     /// Debian packages it needs.
     pub needs: &'static [&'static str],
-    /// What must be done while the process has one thread, before the executor is opened.
+    /// What must be done before the executor is opened, while the process has only one thread.
     pub before_threads: Option<fn()>,
-    /// Places in each pixel of a picture that are averaged, where no other number is asked for;
-    /// `None` if the executor draws no frames.
+    /// How many places in each pixel of a picture are averaged, where no other number is asked for.
+    /// `None` if the executor does not draw frames.
     pub samples: Option<u32>,
     /// Opens a device.
     pub open: Open,
-    /// What it draws from the bytes of a bundle.
+    /// What it can draw from the bytes of a bundle.
     pub shipping: Option<Shipping>,
 }
 
 /// Opens a session.
 pub type Open = fn() -> Result<Box<dyn Session>, Unavailable>;
 
-/// A target, and what opens a session that draws its files as they are. Each target has an
-/// executor that does.
+/// A target, and what opens a session that draws the files of this target as they are. Every target
+/// has an executor with one.
 pub struct Shipping {
     pub target: Target,
     pub open: Open,
@@ -39,13 +39,13 @@ pub struct Unavailable {
 }
 
 impl Entry {
-    /// An open executor; the error is for someone on whose machine it is missing. Open, use and
-    /// drop it inside of [`on_thread`](super::on_thread).
+    /// Opens the executor. The error is a message for someone on whose machine it is missing. Open,
+    /// use and drop it inside of [`on_thread`](super::on_thread).
     pub fn start(&self) -> Result<Box<dyn Session>, String> {
         (self.open)().map_err(|unavailable| self.missing(&unavailable))
     }
 
-    /// What to tell someone on whose machine it is missing.
+    /// The message for someone on whose machine it is missing.
     pub fn missing(&self, unavailable: &Unavailable) -> String {
         let install = if self.needs.is_empty() {
             String::new()
@@ -56,7 +56,7 @@ impl Entry {
     }
 }
 
-/// Places in each pixel that devices average.
+/// How many places in each pixel devices average.
 #[cfg(not(target_family = "wasm"))]
 const DEVICE_SAMPLES: u32 = 4;
 
@@ -89,7 +89,7 @@ fn opened_page(api: super::web::Api) -> Result<Box<dyn Session>, Unavailable> {
 
 include!(concat!(env!("OUT_DIR"), "/executors.rs"));
 
-/// Prepares the process for executors. Call this while it has one thread.
+/// Prepares the process for executors. Call this while it has only one thread.
 pub fn prepare(entries: &[&Entry]) {
     if entries.iter().any(|entry| !entry.needs.is_empty()) {
         without_windows();
@@ -103,8 +103,8 @@ pub fn shipping(target: Target) -> impl Iterator<Item = (&'static Entry, &'stati
     all.filter(move |(_, shipping)| shipping.target == target)
 }
 
-/// Tells Mesa's layers that there is no window system, where there is none: they look for Wayland in
-/// the folder that `XDG_RUNTIME_DIR` names, and print an error where that is not set.
+/// Tells Mesa's layers that there is no window system, if there is none. They look for Wayland in
+/// the folder that `XDG_RUNTIME_DIR` names, and print an error where it is not set.
 fn without_windows() {
     let is_absolute = |name| {
         std::env::var_os(name).is_some_and(|value| std::path::Path::new(&value).is_absolute())

@@ -10,13 +10,13 @@ pub enum Fixture {
     Sampler(Sampler),
 }
 
-/// Texels of one level, in f32.
+/// The texels of one level, as f32.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     pub kind: TextureKind,
     pub width: u32,
     pub height: u32,
-    /// Row by row from the top, layer by layer (cube faces +x, -x, +y, -y, +z, -z); one value a
+    /// Row by row from the top, layer by layer (cube faces +x, -x, +y, -y, +z, -z): one value per
     /// texel for depth, four for colour.
     pub texels: Vec<f32>,
 }
@@ -31,7 +31,7 @@ pub enum TextureKind {
 }
 
 impl TextureKind {
-    /// Name in a case file, and kind.
+    /// The name in a case file, and the kind.
     pub const NAMES: &'static [(&'static str, Self)] = &[
         ("depth_2d", Self::Depth2d),
         ("depth_cube", Self::DepthCube),
@@ -39,7 +39,7 @@ impl TextureKind {
         ("color_cube", Self::ColorCube),
     ];
 
-    /// Values of a texel.
+    /// How many values a texel has.
     pub fn channels(self) -> usize {
         if self.is_depth() { 1 } else { 4 }
     }
@@ -63,7 +63,7 @@ pub struct Sampler {
     pub address: Address,
 }
 
-/// What a comparison sampler asks of `reference OP stored`.
+/// The test of a comparison sampler, `reference OP stored`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compare {
     Less,
@@ -73,7 +73,7 @@ pub enum Compare {
 }
 
 impl Compare {
-    /// Name in a case file, and function.
+    /// The name in a case file, and the function.
     pub const NAMES: &'static [(&'static str, Self)] = &[
         ("less", Self::Less),
         ("less_equal", Self::LessEqual),
@@ -92,7 +92,7 @@ impl Compare {
     }
 }
 
-/// What lies outside [0, 1].
+/// How coordinates outside of [0, 1] are treated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Address {
     Clamp,
@@ -101,11 +101,11 @@ pub enum Address {
 }
 
 impl Address {
-    /// Name in a case file, and mode.
+    /// The name in a case file, and the mode.
     pub const NAMES: &'static [(&'static str, Self)] =
         &[("clamp", Self::Clamp), ("repeat", Self::Repeat), ("mirror", Self::Mirror)];
 
-    /// The texel index that stands for `index` on an axis of `size` texels.
+    /// The index of the texel that is read for `index`, on an axis of `size` texels.
     pub fn wrap(self, index: i64, size: u32) -> u32 {
         let size = i64::from(size);
         (match self {
@@ -141,7 +141,7 @@ impl Fixture {
         }
     }
 
-    /// In words, for diagnostics.
+    /// A description for diagnostics.
     pub fn describe(&self) -> String {
         match self {
             Self::Texture(texture) => {

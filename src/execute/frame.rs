@@ -1,20 +1,23 @@
 //! Frames: what an executor that draws is given, and what it gives back.
 //!
-//! A frame's targets hold words, four a pixel, so that results are exact to the bit everywhere.
+//! The targets of a frame hold words, four for each pixel, so that results are exact to the bit on
+//! every device.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::fixture::{Fixture, Texture};
 
-/// Triangles, the attributes of their corners interleaved.
+/// Triangles. The attributes of a vertex are interleaved.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
-    /// Without any, it is one triangle that the vertex stage makes from the index.
+    /// Without attributes the mesh is one triangle, which the vertex stage makes from the vertex
+    /// index.
     pub attributes: Vec<Attribute>,
     /// Words of every vertex, attribute after attribute.
     pub words: Vec<u32>,
-    /// Three vertices for each triangle; empty where every three in order are one.
+    /// Three vertices for each triangle. If this is empty, each three vertices in order are a
+    /// triangle.
     pub indices: Vec<u32>,
 }
 
@@ -36,7 +39,7 @@ pub enum VertexFormat {
 }
 
 impl VertexFormat {
-    /// Words of 32 bits.
+    /// How many words of 32 bits it has.
     pub fn words(self) -> u32 {
         match self {
             Self::Uint32 | Self::Float32 => 1,
@@ -54,31 +57,32 @@ pub struct EntryPoint<'a> {
     pub entry: &'a str,
 }
 
-/// Bytes of uniform buffers by group and binding.
+/// The bytes of uniform buffers, by group and binding.
 pub type Buffers = BTreeMap<(u32, u32), Vec<u8>>;
 
-/// What frames are drawn with. Buffers, textures and samplers that the entry points do not use
-/// are skipped.
+/// Everything that frames are drawn with. Buffers, textures and samplers that the entry points do
+/// not use are ignored.
 #[derive(Debug)]
 pub struct Drawing<'a> {
     pub vertex: EntryPoint<'a>,
-    /// Returns four words at each of the locations 0 to `targets - 1`; `None` draws depth alone.
+    /// Returns four words at each of the locations 0 to `targets - 1`. With `None` only depth is
+    /// drawn.
     pub fragment: Option<EntryPoint<'a>>,
     pub targets: u32,
-    /// Drawn in order, all into each frame.
+    /// The meshes. All are drawn into each frame, in this order.
     pub items: &'a [Item<'a>],
-    /// One frame for each, with buffers of its own.
+    /// A frame is drawn for each view, which has buffers of its own.
     pub views: &'a [Buffers],
-    /// Uniform buffers of all frames and items.
+    /// Uniform buffers that all frames and items share.
     pub buffers: &'a Buffers,
-    /// Those uniform buffers that no texture coordinate depends on: the first to be bound otherwise
-    /// where a driver fails with as many as there are.
+    /// The uniform buffers on which no texture coordinate depends. Where a driver fails with too
+    /// many uniform buffers, these are the first to be bound as storage buffers.
     pub plain: &'a [(u32, u32)],
     /// Textures and samplers.
     pub fixtures: &'a BTreeMap<(u32, u32), Arc<Fixture>>,
-    /// Smaller levels of those textures that have them, the larger first.
+    /// The smaller levels of textures that have some, the larger ones first.
     pub levels: &'a BTreeMap<(u32, u32), Vec<Texture>>,
-    /// Pixels from left to right, and from top to bottom.
+    /// Width and height in pixels.
     pub size: [u32; 2],
     pub state: State,
 }
@@ -90,17 +94,18 @@ pub struct Item<'a> {
     pub buffers: &'a Buffers,
 }
 
-/// What the pipeline does beside its stages.
+/// The state of the pipeline.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct State {
     /// Whether nearer fragments (of smaller depth) hide others.
     pub depth_test: bool,
-    /// Whether the frame has its depth.
+    /// Whether the frame keeps its depth.
     pub keep_depth: bool,
     pub cull: Option<Side>,
-    /// Whether front faces wind clockwise in the frame: it is drawn mirrored.
+    /// Whether front faces wind clockwise in the frame, because it is drawn mirrored.
     pub mirrored: bool,
-    /// Added to depths, as of polygon offset: a share of the slope, and smallest steps.
+    /// Polygon offset: the factor of the slope, and the number of smallest steps that are added to
+    /// depths.
     pub offset: [f32; 2],
 }
 
@@ -112,14 +117,14 @@ pub enum Side {
 }
 
 /// What was drawn.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Frame {
-    /// The words of each target, four a pixel, row by row from the top; pixels that nothing
+    /// The words of each target: four per pixel, row by row from the top. Pixels that nothing
     /// covers hold [`SENTINEL`](crate::execute::kernel::SENTINEL).
     pub targets: Vec<Vec<u32>>,
-    /// Of each pixel, 1 where nothing is; empty unless it was to be kept.
+    /// The depth of each pixel, 1 where nothing was drawn; empty unless it was to be kept.
     pub depth: Vec<f32>,
-    /// What was done otherwise than asked for, since the driver would have failed.
+    /// What was done differently from what was asked for, since the driver would have failed.
     pub detour: Option<&'static str>,
 }
 
@@ -132,7 +137,7 @@ impl Mesh {
         self.attributes.iter().map(|attribute| 4 * u64::from(attribute.format.words())).sum()
     }
 
-    /// Vertices.
+    /// How many vertices there are.
     pub fn vertices(&self) -> u32 {
         if self.attributes.is_empty() {
             3
@@ -141,7 +146,7 @@ impl Mesh {
         }
     }
 
-    /// Each attribute with its place in a vertex, in bytes.
+    /// Each attribute with its offset in a vertex, in bytes.
     pub fn layout(&self) -> Vec<(Attribute, u64)> {
         let offsets = self.attributes.iter().scan(0, |offset, attribute| {
             Some(std::mem::replace(offset, *offset + 4 * u64::from(attribute.format.words())))
@@ -151,7 +156,7 @@ impl Mesh {
 }
 
 impl Drawing<'_> {
-    /// The buffer of a binding: the view's, the item's, or that of all.
+    /// The buffer of a binding: that of the view or the item, or else the shared one.
     pub fn buffer<'b>(
         &'b self,
         view: &'b Buffers,

@@ -1,4 +1,4 @@
-//! Kernels on the crate's own interpreter, in any of its numbers.
+//! Runs kernels on the crate's own evaluator, with any of its kinds of numbers.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -13,7 +13,7 @@ use naga::{Module, ScalarKind};
 pub struct Interpreter {
     program: Program,
     function: FunctionId,
-    /// What each slot of the arguments takes.
+    /// What each slot of the arguments is filled with.
     slots: Vec<Slot>,
     resources: Resources,
     /// Steps of all calls so far, and how many there may be.
@@ -30,7 +30,7 @@ enum Slot {
     Handle(u32),
 }
 
-/// Memory for a kernel's calls in one kind of number.
+/// Calls of a kernel with one kind of number, and the memory for them.
 pub struct Calls<'p, N> {
     interpreter: &'p Interpreter,
     /// The machine, for its findings and limits.
@@ -39,7 +39,7 @@ pub struct Calls<'p, N> {
 }
 
 impl Interpreter {
-    /// Validates and lowers the kernel's module.
+    /// Validates the kernel's module and lowers it.
     pub fn new(kernel: &Kernel) -> Result<Self, Diagnostic> {
         Self::of(kernel, &kernel.module)
     }
@@ -68,7 +68,7 @@ impl Interpreter {
         &self.program
     }
 
-    /// Memory to call it with; the calls of one thread.
+    /// The memory for the calls of one thread.
     pub fn calls<N: Number>(&self) -> Result<Calls<'_, N>, Diagnostic> {
         let mut machine = Machine::new(&self.program).map_err(failed)?;
         machine.bind(self.resources.clone()).map_err(failed)?;
@@ -77,7 +77,7 @@ impl Interpreter {
 }
 
 impl<N: Number> Calls<'_, N> {
-    /// The flattened result of one row of words.
+    /// Calls the function with one row of words, and returns its flattened result.
     pub fn call(&mut self, row: &[u32]) -> Result<&[N], Diagnostic> {
         let mut words = row.iter().copied();
         self.arguments.clear();
@@ -104,7 +104,7 @@ fn number<N: Number>(word: u32, kind: ScalarKind) -> N {
     }
 }
 
-/// A slot as the number it stands for.
+/// The number in a slot.
 pub fn value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
     match kind {
         ScalarKind::Float => slot.value(),
@@ -112,7 +112,7 @@ pub fn value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
     }
 }
 
-/// A slot as the word that f32 and integers have for it.
+/// The word that represents a slot's value as f32 or as an integer.
 pub fn word_of<N: Number>(slot: N, kind: ScalarKind) -> u32 {
     match kind {
         ScalarKind::Float => slot.bits(),
@@ -188,7 +188,8 @@ impl From<Sampler> for eval::Sampler {
     }
 }
 
-/// The text naga read is the kernel's, not the author's: no place is given.
+/// The error as a diagnostic without a place, since naga read the kernel's text and not the
+/// author's.
 pub fn failed(error: eval::Error) -> Diagnostic {
     Diagnostic::error(error.code, error.message)
 }

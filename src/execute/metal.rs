@@ -1,4 +1,5 @@
-//! The emitted MSL on the CPU, compiled by clang: kernels in batches, frames by our own rasterizer.
+//! Runs the emitted MSL on the CPU, compiled by clang. Kernels are run in batches; frames are drawn
+//! by our own rasterizer.
 
 use std::collections::HashMap;
 
@@ -19,16 +20,16 @@ use crate::metal::request::{Bound, Format, Fragment, Image, ImageLevel};
 use crate::metal::{Missing, Program, version};
 use crate::validate::on_large_stack;
 
-/// A session: programs, each of many kernels.
+/// A session. It holds programs, each of which has many kernels.
 pub struct Metal {
     compiler: String,
     programs: Vec<Program>,
-    /// The program and the text of each kernel, and where it binds what; or why there is none.
+    /// For each kernel its program, its text and its bindings; or why it could not be compiled.
     kept: HashMap<u64, Result<Kept, Diagnostic>>,
     runs: u32,
 }
 
-/// Where a kernel is.
+/// A kernel within a program.
 struct Kept {
     program: usize,
     text: usize,
@@ -45,7 +46,7 @@ impl Metal {
         Ok(Self { compiler, programs: Vec::new(), kept: HashMap::new(), runs: 0 })
     }
 
-    /// Compiles those of the kernels that are new, all at once.
+    /// Compiles the kernels that are new, all of them at once.
     fn compile(&mut self, kernels: &[&Kernel]) {
         let new: Vec<&Kernel> =
             kernels.iter().copied().filter(|kernel| !self.kept.contains_key(&kernel.id)).collect();
@@ -161,7 +162,7 @@ fn quad(x: u32, y: u32) -> [Fragment; 4] {
     })
 }
 
-/// The inputs and the fixtures of a kernel, where its text has them.
+/// Binds the inputs and the fixtures of a kernel, where its text has them.
 fn bound(kernel: &Kernel, native: &Native, texels: Vec<u32>) -> Bound {
     let mut bound = Bound::default();
     let fixture = |binding: u32| kernel.resources().find(|resource| resource.binding == binding);

@@ -43,21 +43,23 @@ pub fn on_thread<T: Send>(run: impl FnOnce() -> T + Send) -> Option<T> {
     })
 }
 
-/// An open executor: runs kernels and draws frames until it is dropped.
+/// An open executor. It runs kernels and draws frames until it is dropped.
 pub trait Session: Send {
-    /// The device's name, driver and version: what a golden value carries.
+    /// The device's name, driver and version, which are recorded with golden values.
     fn adapter(&self) -> String;
 
-    /// Told of all kernels before the first of them runs: whoever compiles many at once does it here.
+    /// Called with all kernels before the first one runs. An executor that compiles many at once
+    /// does it here.
     fn prepare(&mut self, _: &[&Kernel]) {}
 
-    /// The result words of every invocation whose argument words are given one after another.
+    /// Runs the kernel once for each row of argument words in `inputs`; returns the result words.
     ///
-    /// Errors are the executor's, never the function's: rejected shaders, lost devices, targets
-    /// that were not written as laid out.
+    /// Errors are about the executor and never about the function: a rejected shader, a lost
+    /// device, a target that was not written as intended.
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic>;
 
-    /// Draws a frame for each view. Executors whose entry says so draw; the others refuse.
+    /// Draws a frame for each view. Only executors whose entry has `samples` draw; the others
+    /// refuse.
     ///
     /// # Errors
     /// The device's, and those of shaders it refuses.
@@ -65,12 +67,13 @@ pub trait Session: Send {
         Err(draws_none())
     }
 
-    /// Draws with stages as they are shipped, in the place of those that the drawing names.
-    /// Targets hold the bits of what the fragment stage returns at each of its locations.
-    /// Executors that [`executors::shipping`] names draw so; the others refuse.
+    /// Draws with shipped stages instead of those that the drawing names. Targets hold the bits of
+    /// what the fragment stage returns at each of its locations. Only executors from
+    /// [`executors::shipping`] can do so; the others refuse.
     ///
     /// # Errors
-    /// Those of [`Self::draw_frames`]; `executor-lacks` for what the driver cannot be given.
+    /// Those of [`Self::draw_frames`]; `executor-lacks` for a stage that cannot be drawn on this
+    /// executor.
     fn draw_shipped(&self, _: Pair<'_>, _: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         Err(draws_none())
     }

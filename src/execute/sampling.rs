@@ -1,4 +1,4 @@
-//! Lookups in the texels of fixtures, in f64: what references take for a texture.
+//! Looks up texels of fixtures, in f64, for references that read textures.
 //!
 //! The rules are those of the Vulkan specification, "Texel Input Operations", for one level.
 

@@ -6,7 +6,7 @@ use crate::bundle::{Kind, Native, Reflection, Stage, Target, Varying};
 use crate::diagnostic::Diagnostic;
 use crate::emit::{self, Emitted};
 
-/// One stage as it is shipped: its bytes in a target, and what is said of them.
+/// A stage as it is shipped: its bytes in a target, and its reflection.
 #[derive(Debug, Clone)]
 pub struct Shipped {
     pub target: Target,
@@ -15,7 +15,7 @@ pub struct Shipped {
     pub reflection: Reflection,
 }
 
-/// What a colour target of a shipped stage holds.
+/// What the colour target of a shipped stage holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     /// Bits of floats.
@@ -24,10 +24,10 @@ pub(super) enum Format {
 }
 
 impl Shipped {
-    /// An entry point as it would be shipped.
+    /// Compiles an entry point as a bundle would hold it.
     ///
     /// # Errors
-    /// `executor-lacks` where the target's language has no word for something in it.
+    /// `executor-lacks` where the target's language cannot express something in it.
     pub fn of(stage: EntryPoint<'_>, target: Target) -> Result<Self, Diagnostic> {
         let (emitted, validated) = emitted::of_module(stage.module, stage.entry, target)?;
         let Emitted { bytes, native } = emitted;
@@ -35,15 +35,15 @@ impl Shipped {
         Ok(Self { target, bytes, native, reflection })
     }
 
-    /// Its bytes as text; of a binary target, not what anyone wants to read.
+    /// Its bytes as text. Not meant for binary targets.
     pub fn text(&self) -> std::borrow::Cow<'_, str> {
         String::from_utf8_lossy(&self.bytes)
     }
 
-    /// What it draws into, by location.
+    /// The colour targets that it needs, by location.
     ///
     /// # Errors
-    /// In words: a type that no target is made for.
+    /// A message about a type that no target exists for.
     pub(super) fn targets(&self) -> Result<Vec<Format>, String> {
         if self.reflection.stage != Stage::Fragment {
             return Ok(Vec::new());
@@ -62,7 +62,7 @@ impl Shipped {
         Ok((0..count).map(|location| format(location).map_or(Format::Float, |one| one.1)).collect())
     }
 
-    /// What WebGPU cannot do with a fragment stage and the targets that are made here.
+    /// What of a fragment stage WebGPU does not support with the targets that are used here.
     pub fn lacks_of_webgpu(&self) -> Option<&'static str> {
         let outputs = &self.reflection.outputs;
         let is_small = |one: &Varying| one.location.is_some() && !one.ty.starts_with("vec4");

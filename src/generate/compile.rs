@@ -1,16 +1,16 @@
-//! Texts to every target, once each.
+//! Compiles texts for every target, each text once.
 
 use rayon::prelude::*;
 
+use super::compositions::Text;
 use super::entry::Entry;
 use super::sink::Sink;
-use super::weave::Text;
 use crate::bundle::{Clip, Digest, Target};
 use crate::cache::{Cache, Job, Made};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::{self, Linker, Reason};
 
-/// What is left of [`Made`] when the unit has gone to the sink.
+/// What remains of [`Made`] once the unit has gone to the sink.
 #[derive(Debug)]
 pub struct Compiled {
     pub digest: Digest,
@@ -18,7 +18,7 @@ pub struct Compiled {
     pub whole: Vec<(Target, Reason)>,
 }
 
-/// Compiles texts, all for the same targets, and passes on what comes of them.
+/// Compiles texts for the same targets, and passes the units on.
 pub struct Compiler<'a> {
     pub targets: &'a [Target],
     pub clip: Clip,
@@ -28,8 +28,8 @@ pub struct Compiler<'a> {
 }
 
 impl Compiler<'_> {
-    /// Makes every text of a batch, unless the cache knows what comes of it, and gives the units to
-    /// the sink.
+    /// Compiles every text of a batch that the cache does not know, and gives the units to the
+    /// sink.
     pub fn make(&self, batch: &[(&Text, &Entry)]) -> Vec<Result<Compiled, Diagnostics>> {
         let made = batch.par_iter().map(|(text, entry)| self.make_one(text, entry)).collect();
         self.linker.forget();
@@ -69,7 +69,8 @@ impl Compiler<'_> {
     }
 }
 
-/// Whether another machine, or this one at another time, might do what this one could not.
+/// Whether the failure is one of this machine, now: another machine, or this one later, might
+/// succeed.
 fn is_of_this_machine(made: &Result<Made, Diagnostics>) -> bool {
     let is_exhausted = |error: &Diagnostic| error.code == codes::NAGA_EXHAUSTED;
     made.as_ref().is_err_and(|errors| errors.iter().any(is_exhausted))

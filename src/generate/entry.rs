@@ -1,4 +1,4 @@
-//! The entry points of a program, in each language, ready to be composed.
+//! The entry points of a program in each language, ready to be composed.
 
 use std::sync::Arc;
 
@@ -18,18 +18,18 @@ pub struct Entry {
     pub language: Language,
     /// Name in the source: `main` in GLSL.
     pub name: String,
-    /// Name in the bundle: a GLSL stage is called as its WESL twin, so that languages can be
-    /// exchanged; without a twin, as its stage.
+    /// Name in the bundle. A GLSL stage has the name of its WESL twin, so that engines can change
+    /// the language; without a twin it has the name of its stage.
     pub label: String,
     pub stage: naga::ShaderStage,
-    /// The graph that has it; languages with an entry point a file have one graph for each.
+    /// The graph that has it. GLSL has one entry point in a file, so one graph for each.
     pub graph: Arc<Graph>,
     pub options: Options,
 }
 
 /// Every entry point of a program: those of the WESL root, then one for each GLSL stage.
 ///
-/// Entry points are those that the composition of `point` has.
+/// The entry points of the WESL root are those that its composition for `point` has.
 pub fn entries(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -58,10 +58,11 @@ fn of_file(
         .map_err(|errors| named_by(errors, file))?;
     let graph = Arc::new(graph);
     let here = |errors| of_permutation(graph.traced(errors), program, point);
-    // Errors of the composer bring their chain of imports along.
+    // Errors of the composer have their chain of imports already.
     let composed = compose::compose(&graph, &program.space.settings(point), &Options::default())
         .map_err(|errors| of_permutation(errors, program, point))?;
-    // As it is compiled; the text as its author wrote it tells what is wrong.
+    // The lean text is what will be compiled. If it is not valid, the author's text shows what is
+    // wrong.
     let validated = validate(&compose::lean(&composed)).or_else(|_| every(&composed));
     let points = validated.map_err(here)?.module.entry_points;
     if points.is_empty() {
@@ -98,7 +99,8 @@ impl Entry {
     }
 }
 
-/// A root that cannot be found is a mistake of the manifest.
+/// Adds the manifest's place to the error about a root that cannot be found, since the manifest
+/// names it.
 fn named_by(errors: Diagnostics, file: &File) -> Diagnostics {
     let one = |error: Diagnostic| {
         if error.labels.is_empty() { error.at(file.span, "named here") } else { error }

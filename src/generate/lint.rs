@@ -1,10 +1,11 @@
-//! What only a whole run can tell: axes that nobody asks for, conditions that decide nothing.
+//! Lints that need a whole run: axes that no entry point asks for, and conditions that never decide
+//! anything.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::EntryResult;
 use super::entry::Entry;
-use super::weave::Woven;
 use crate::compose::Decision;
 use crate::compose::wesl::lint::{self, Outcomes};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -13,7 +14,7 @@ use crate::permute::{Assignment, Program, cover};
 use crate::resolve::Graph;
 use crate::source::{SourceSet, Span};
 
-/// A place by its file's name: programs that share a file read it once each.
+/// A place, by the name of its file, since programs that share a file each read it.
 type Place = (String, u32, u32);
 
 /// What has been seen of the programs so far.
@@ -21,7 +22,7 @@ type Place = (String, u32, u32);
 pub struct Lints {
     /// How many programs have a condition.
     conditions: BTreeMap<Place, usize>,
-    /// How often a condition was found to decide nothing, by what is said of it.
+    /// For each message, how often a condition was found to decide nothing.
     constant: BTreeMap<(Place, String), (usize, Diagnostic)>,
     found: Diagnostics,
 }
@@ -63,7 +64,8 @@ impl Lints {
             }
             outcomes.see(&program.space.settings(point));
         }
-        // What only the lists made constant decides something as soon as they are longer.
+        // A condition that is constant only because of the lists decides something as soon as they
+        // have more entries.
         if program.space.count() < program.space.valid_count() {
             for point in cover::pairwise(&program.space).points {
                 if outcomes.is_settled() {
@@ -78,28 +80,29 @@ impl Lints {
         outcomes.warnings().for_each(|warning| self.constant(sources, warning));
     }
 
-    /// Looks at what the compositions of a program asked for, and what the answers decided.
-    pub fn see_woven(
+    /// Looks at what the compositions of a program asked for, and at how their conditions came out.
+    pub fn see_results(
         &mut self,
         sources: &SourceSet,
         program: &Program,
         entries: &[Entry],
-        woven: &[Woven],
+        results: &[EntryResult],
     ) {
-        for (entry, woven) in entries.iter().zip(woven) {
-            for span in woven.decided.places() {
+        for (entry, result) in entries.iter().zip(results) {
+            for span in result.decided.places() {
                 *self.conditions.entry(place(sources, span)).or_default() += 1;
             }
-            // GLSL's conditions are known from what was composed: of a part, too little.
+            // GLSL's conditions are known only from what was composed, which is too little where
+            // lists left permutations out.
             let is_part = program.space.count() < program.space.valid_count();
-            let decided = if is_part { Vec::new() } else { woven.decided.warnings() };
+            let decided = if is_part { Vec::new() } else { result.decided.warnings() };
             entry
                 .graph
                 .own(decided)
                 .into_iter()
                 .for_each(|warning| self.constant(sources, warning));
         }
-        self.see_reads(program, entries, woven);
+        self.see_reads(program, entries, results);
     }
 
     fn constant(&mut self, sources: &SourceSet, warning: Diagnostic) {
@@ -109,9 +112,9 @@ impl Lints {
         }
     }
 
-    fn see_reads(&mut self, program: &Program, entries: &[Entry], woven: &[Woven]) {
-        let read = |name: &String| woven.iter().any(|woven| woven.reads.contains(name));
-        // The number of such an axis is left open, so that no composition asks for it.
+    fn see_reads(&mut self, program: &Program, entries: &[Entry], results: &[EntryResult]) {
+        let read = |name: &String| results.iter().any(|result| result.reads.contains(name));
+        // The number of such an axis stays open, so no composition asks for it.
         let is_open = |axis: &Axis| {
             axis.mode == Mode::Spec && entries.iter().any(|entry| entry.graph.may_ask(&axis.name))
         };
@@ -128,7 +131,8 @@ impl Lints {
         }));
     }
 
-    /// Everything found: a condition only if it decides nothing wherever it is.
+    /// All warnings. A condition is among them only if it decides nothing in every program that has
+    /// it.
     pub fn finish(self) -> Diagnostics {
         let Self { conditions, constant, mut found } = self;
         let everywhere = constant
@@ -139,7 +143,7 @@ impl Lints {
     }
 }
 
-/// How the conditions of one entry point's GLSL came out, over all its compositions.
+/// How the conditions of one entry point's GLSL came out in all its compositions.
 #[derive(Debug, Default)]
 pub struct Decided {
     outcomes: BTreeMap<Span, Ways>,
@@ -149,7 +153,8 @@ pub struct Decided {
 struct Ways {
     held: bool,
     failed: bool,
-    /// The last branch of a chain may cover all that is left: it only has to hold once.
+    /// Whether it may be the last branch of a chain, which covers all that is left: such a branch
+    /// only has to hold once.
     later: bool,
 }
 
@@ -175,7 +180,7 @@ impl Decided {
     }
 }
 
-/// Warnings without those that another program gave already, in the order of their places.
+/// The warnings that no other program gave already, in the order of their places.
 pub fn distinct(sources: &SourceSet, warnings: Diagnostics) -> Diagnostics {
     let mut known = BTreeSet::new();
     let key = |warning: &Diagnostic| {

@@ -8,6 +8,7 @@
 //! [`ReadTree`]: crate::permute::ReadTree
 
 mod compile;
+mod compositions;
 mod entry;
 mod lint;
 mod permutation;
@@ -16,7 +17,6 @@ mod shard;
 mod sink;
 mod summary;
 mod trace;
-mod weave;
 
 pub use permutation::{Named, Permutation, permutation};
 pub use shader::{Root, Shader};
@@ -37,24 +37,24 @@ use crate::resolve::Packages;
 use crate::source::SourceSet;
 use crate::validate::on_large_stack;
 use compile::{Compiled, Compiler};
+use compositions::{EntryResult, Text};
 use entry::Entry;
 use lint::Lints;
 use summary::Outputs;
-use weave::Text;
 
-/// Diagnostics of one entry point after which no more are looked for.
+/// Once an entry point has so many diagnostics, no more are looked for.
 const REPORTED: usize = 20;
 
-/// What to generate of a manifest; the default is all of it.
+/// What of a manifest to generate; by default all of it.
 #[derive(Debug, Clone, Default)]
 pub struct Request {
     /// Only this program.
     pub program: Option<String>,
     /// Only this permutation, by its key.
     pub only: Option<Quoted>,
-    /// Only these targets; those of each program where there are none.
+    /// Only these targets; each program's own targets where none are given.
     pub targets: Vec<Target>,
-    /// Clip space of all programs, in the place of what each declares.
+    /// The clip space of all programs, instead of what each declares.
     pub clip: Option<Clip>,
     /// Only this part of each program's permutations.
     pub shard: Option<Shard>,
@@ -71,28 +71,28 @@ impl Request {
     }
 }
 
-/// What a run works with.
+/// What a run uses.
 pub struct Tools<'a> {
     /// Where units go.
     pub sink: &'a dyn Sink,
     /// Where results are kept between runs, and looked up.
     pub cache: Option<&'a Cache>,
-    /// Told how far the run is.
+    /// Called with how far the run is.
     pub progress: &'a (dyn Fn(Progress) + Sync),
 }
 
 /// How far a run is.
 #[derive(Debug, Clone)]
 pub struct Progress {
-    /// The program and the entry point at work.
+    /// The program and the entry point that are compiled now.
     pub stage: String,
-    /// Permutations done, of how many.
+    /// Permutations that are done.
     pub done: usize,
     /// Permutations of that entry point.
     pub total: usize,
 }
 
-/// Programs, keys and the account of how they came about.
+/// The programs, their keys, and a summary of the run.
 #[derive(Debug)]
 pub struct Generated {
     /// Keys refer to units that the sink has: the entry points themselves have none.
@@ -135,20 +135,17 @@ pub fn generate(
             linker: Linker::for_clip(&targets, clip),
         };
         let make = |batch: &[(&Text, &Entry)]| compiler.make(batch);
-        let woven = on_large_stack(|| {
-            weave::weave(&entries, &program.space, points, &make, tools.progress)
+        let results = on_large_stack(|| {
+            compositions::compose_all(&entries, &program.space, points, &make, tools.progress)
         })?;
-        // One permutation says nothing about the others, a part of them not enough, and none at all
-        // has been told of.
+        // Lints of unused axes and constant conditions need all permutations. A program without any
+        // was warned of already.
         if request.only.is_none() && request.shard.is_none() && !points.is_empty() {
             lints.see(sources, program, &entries, points);
-            lints.see_woven(sources, program, &entries, &woven);
+            lints.see_results(sources, program, &entries, &results);
         }
-        outputs.add(&targets, &woven);
-        generated.summary.add_reasons(&program.name, &woven);
-        generated.summary.programs.push(summary::program(&program.name, points.len(), &woven));
-        generated.warnings.extend(woven.iter().flat_map(|woven| woven.warnings.iter().cloned()));
-        generated.contents.programs.insert(program.name.clone(), contents(program, points, &woven));
+        outputs.add(&targets, &results);
+        generated.add(program, points, &results);
     }
     generated.warnings.extend(lints.finish());
     generated.warnings = lint::distinct(sources, generated.warnings);
@@ -161,7 +158,7 @@ pub fn generate(
 /// A program with its permutations and its entry points.
 type Prepared<'a> = (&'a Program, Vec<Assignment>, Vec<Entry>);
 
-/// Every program that is asked for: what is wrong with one does not hide what is wrong with another.
+/// Every program that is asked for. Errors of one do not hide errors of another.
 fn prepared<'a>(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -171,7 +168,7 @@ fn prepared<'a>(
     let (mut programs, mut errors) = (Vec::new(), Diagnostics::new());
     for program in chosen(manifest, request)? {
         let points = points(program, request).map_err(|errors| {
-            // A key is of one program.
+            // A key belongs to one program.
             let help = format!("of program `{}`; `--program` names another", program.name);
             let named = manifest.programs.len() > 1 && request.program.is_none();
             errors
@@ -210,8 +207,8 @@ pub fn in_memory(
     Ok(generated)
 }
 
-/// Composes every permutation asked for and compiles none: how many texts there are, and which
-/// axes each entry point sees.
+/// Composes every permutation asked for and compiles none: tells how many texts there are, and
+/// which axes each entry point asks for.
 ///
 /// # Errors
 /// As of [`generate`], of composing.
@@ -231,12 +228,22 @@ pub fn survey(
         })
     };
     let nothing = |batch: &[(&Text, &Entry)]| batch.iter().map(|_| one()).collect();
-    let woven =
-        on_large_stack(|| weave::weave(&entries, &program.space, &points, &nothing, progress))?;
-    Ok(summary::program(&program.name, points.len(), &woven))
+    let results = on_large_stack(|| {
+        compositions::compose_all(&entries, &program.space, &points, &nothing, progress)
+    })?;
+    Ok(summary::program(&program.name, points.len(), &results))
 }
 
-fn contents(program: &Program, points: &[Assignment], woven: &[weave::Woven]) -> ProgramContents {
+impl Generated {
+    fn add(&mut self, program: &Program, points: &[Assignment], results: &[EntryResult]) {
+        self.summary.add_reasons(&program.name, results);
+        self.summary.programs.push(summary::program(&program.name, points.len(), results));
+        self.warnings.extend(results.iter().flat_map(|result| result.warnings.iter().cloned()));
+        self.contents.programs.insert(program.name.clone(), contents(program, points, results));
+    }
+}
+
+fn contents(program: &Program, points: &[Assignment], results: &[EntryResult]) -> ProgramContents {
     let axes = program.space.axes().iter().map(|axis| Axis {
         name: axis.name.clone(),
         values: axis.value_names(),
@@ -244,12 +251,12 @@ fn contents(program: &Program, points: &[Assignment], woven: &[weave::Woven]) ->
         mode: axis.mode.name().to_owned(),
     });
     let mut contents = ProgramContents { axes: axes.collect(), languages: BTreeMap::new() };
-    for woven in woven {
-        let unit_of = woven.text_of.iter().map(|text| woven.made[*text as usize].unit);
+    for result in results {
+        let unit_of = result.text_of.iter().map(|text| result.made[*text as usize].unit);
         let keys =
             points.iter().map(|point| program.space.key(point).to_string()).zip(unit_of).collect();
         let entry = EntryContents { units: BTreeMap::new(), keys };
-        contents.languages.entry(woven.language).or_default().insert(woven.label.clone(), entry);
+        contents.languages.entry(result.language).or_default().insert(result.label.clone(), entry);
     }
     contents
 }

@@ -1,4 +1,5 @@
-//! One entry point of one permutation, composed again: to show its author what came of it.
+//! Composes one entry point of one permutation again, to show its author where something in an
+//! output comes from.
 
 use std::sync::Arc;
 

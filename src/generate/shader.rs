@@ -1,4 +1,4 @@
-//! One root file under one choice of settings, outside of any manifest: the bytes are those that
+//! Compiles one root file for one choice of settings, without a manifest. The bytes are those that
 //! a run over a manifest gives for the same settings.
 
 use crate::bundle::{Clip, Language, Target};
@@ -20,7 +20,7 @@ pub struct Shader {
     pub made: Made,
 }
 
-/// The entry points of a graph's root, by `options` its whole text, in the order of the source.
+/// A root file with all that its entry points are composed from.
 #[derive(Debug)]
 pub struct Root<'a> {
     /// The modules that its file reaches.
@@ -42,13 +42,14 @@ impl Root<'_> {
         &self,
         composed: &Composed,
     ) -> Result<Vec<(String, naga::ShaderStage)>, Diagnostics> {
-        // As it is compiled; the text as its author wrote it tells what is wrong.
+        // The lean text is what will be compiled. If it is not valid, the author's text shows what
+        // is wrong.
         let validated = validate(&lean(composed)).or_else(|_| every(composed))?;
         let points = validated.module.entry_points.into_iter();
         Ok(points.map(|point| (point.name, point.stage)).collect())
     }
 
-    /// Compiles entry points, each from a text of its own as `gen` does.
+    /// Compiles entry points, each from a text of its own, as `gen` does.
     ///
     /// # Errors
     /// What is wrong with any of them, each mistake once.
@@ -60,7 +61,8 @@ impl Root<'_> {
         self.compile_with(entries, &Linker::for_clip(targets, self.clip))
     }
 
-    /// As [`Self::compile`], with functions that were translated before: the bytes are the same.
+    /// As [`Self::compile`], with a linker that may have translated some functions before. The
+    /// bytes are the same.
     ///
     /// # Errors
     /// What is wrong with any of them, each mistake once.
@@ -97,7 +99,8 @@ impl Root<'_> {
     }
 }
 
-/// What a text of one entry point keeps: in GLSL an entry point is a file.
+/// What the text of one entry point keeps. In GLSL that is the whole file, since a file has one
+/// entry point.
 pub fn kept(graph: &Graph, options: &Options, entry: &str) -> Keep {
     match (language(graph), &options.keep) {
         (_, Keep::All) => Keep::All,

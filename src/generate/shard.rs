@@ -2,8 +2,9 @@
 
 use std::str::FromStr;
 
-/// The `index`th of `count` parts, from 1. Parts are runs of neighbouring permutations, which
-/// share most: of `n` permutations the part begins at `n * (index - 1) / count`.
+/// The `index`th of `count` parts, from 1. A part is a run of neighbouring permutations, since
+/// those share the most texts and functions. Of `n` permutations it begins at `n * (index - 1) /
+/// count`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     index: usize,

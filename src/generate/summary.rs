@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::weave::Woven;
+use super::EntryResult;
 use crate::bundle::{Hash, Language, Target};
 use crate::link::Reason;
 
@@ -16,21 +16,23 @@ pub struct Summary {
     pub programs: Vec<ProgramSummary>,
     /// By name.
     pub targets: Vec<TargetSummary>,
-    /// Texts whose results came from the cache; all others were compiled.
+    /// Texts whose results came from the cache. All others were compiled.
     pub cached: usize,
-    /// What was compiled as a whole, and not from functions that are translated once.
+    /// The texts that were compiled as a whole, and not from functions that are each translated
+    /// once.
     #[serde(default)]
     pub whole: Vec<WholeSummary>,
-    /// Where the outputs were judged.
+    /// How many outputs were judged, if any were.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judged>,
-    /// Whether nothing was done, since neither the inputs nor the bundle changed since they were made.
+    /// Whether there was nothing to do, since neither the inputs nor the bundle changed since the
+    /// last run.
     pub up_to_date: bool,
     /// Time of the whole run.
     pub seconds: f64,
 }
 
-/// Outputs that the judges of their targets took.
+/// How many outputs the judges of their targets accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Judged {
     /// In this run.
@@ -61,7 +63,7 @@ pub struct EntrySummary {
     pub compositions: usize,
     /// Distinct texts among them, each compiled once.
     pub unique: usize,
-    /// Axes that the stage can see.
+    /// Axes that its compositions asked for.
     pub axes: Vec<String>,
 }
 
@@ -94,24 +96,24 @@ pub struct TargetSummary {
     pub bytes: u64,
 }
 
-pub(super) fn program(name: &str, permutations: usize, woven: &[Woven]) -> ProgramSummary {
-    let entries = woven.iter().map(|woven| EntrySummary {
-        entry: woven.label.clone(),
-        language: woven.language,
-        compositions: woven.compositions,
-        unique: woven.made.len(),
-        axes: woven.reads.iter().cloned().collect(),
+pub(super) fn program(name: &str, permutations: usize, results: &[EntryResult]) -> ProgramSummary {
+    let entries = results.iter().map(|result| EntrySummary {
+        entry: result.label.clone(),
+        language: result.language,
+        compositions: result.compositions,
+        unique: result.made.len(),
+        axes: result.reads.iter().cloned().collect(),
     });
     ProgramSummary { name: name.to_owned(), permutations, entries: entries.collect() }
 }
 
-/// Counts the distinct outputs of each target; a program's woven entry points come with its targets.
+/// Counts the distinct outputs of each target; `results` are those of one program, with its targets.
 #[derive(Debug, Default)]
 pub(super) struct Outputs(BTreeMap<Target, BTreeMap<Hash, u32>>);
 
 impl Outputs {
-    pub fn add(&mut self, targets: &[Target], woven: &[Woven]) {
-        for digest in woven.iter().flat_map(|woven| &woven.made) {
+    pub fn add(&mut self, targets: &[Target], results: &[EntryResult]) {
+        for digest in results.iter().flat_map(|result| &result.made) {
             for (target, (blob, length)) in targets.iter().zip(&digest.blobs) {
                 self.0.entry(*target).or_default().insert(*blob, *length);
             }
@@ -130,13 +132,13 @@ impl Outputs {
 
 impl Summary {
     /// Adds what a program's entry points compiled as a whole.
-    pub(super) fn add_reasons(&mut self, program: &str, woven: &[Woven]) {
-        for woven in woven {
+    pub(super) fn add_reasons(&mut self, program: &str, results: &[EntryResult]) {
+        for result in results {
             let whole =
-                woven.whole.iter().map(|((reason, target), (texts, example))| WholeSummary {
+                result.whole.iter().map(|((reason, target), (texts, example))| WholeSummary {
                     program: program.to_owned(),
-                    entry: woven.label.clone(),
-                    language: woven.language,
+                    entry: result.label.clone(),
+                    language: result.language,
                     target: target.name().to_owned(),
                     reason: *reason,
                     texts: *texts,

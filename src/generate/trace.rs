@@ -1,4 +1,5 @@
-//! What a whole run read and what came of it: if nothing of it changed, nothing is to do.
+//! Remembers what a whole run read and what it wrote. If none of that changed, the next run has
+//! nothing to do.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,15 +15,15 @@ use crate::input;
 use crate::resolve::Packages;
 use crate::source::{Files, Package, ReadError, SourceSet};
 
-/// A package and a question to its files.
+/// A package, and what was asked of its files.
 type Question = (String, String);
 
-/// Packages that remember what they were asked.
+/// Makes packages that record what is asked of them.
 #[derive(Debug, Clone, Default)]
 pub struct Observer(Arc<Mutex<BTreeMap<Question, String>>>);
 
 impl Observer {
-    /// The same packages, observed.
+    /// The same packages, with their questions recorded.
     pub fn observe(&self, packages: Packages) -> Packages {
         let observed = |package: Package| Package {
             files: Box::new(Observed {
@@ -38,7 +39,7 @@ impl Observer {
         }
     }
 
-    /// Whether files answer now as they did; asks each file once.
+    /// Whether the files still give the same answers. Each file is asked once.
     pub fn is_current(&self, packages: &Packages) -> bool {
         is_current(&self.answers(), packages)
     }
@@ -58,22 +59,23 @@ impl Observer {
 /// A run that succeeded.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Trace {
-    /// Package, question, answer.
+    /// Packages, questions and answers.
     reads: Vec<(String, String, String)>,
-    /// Of the bundle that was written.
+    /// The hash of the bundle that was written.
     output: String,
     /// The summary of the run that made the bundle.
     pub summary: Summary,
-    /// What that run said.
+    /// The warnings of that run.
     pub told: Told,
 }
 
-/// What a run said of the author's texts, which are not read when nothing is to do.
+/// The warnings of a run. They are kept as text, since the author's files are not read when there
+/// is nothing to do.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Told {
-    /// As the manifest was named: files are named in the same way.
+    /// The manifest as it was named on the command line, since warnings name files in the same way.
     manifest: String,
-    /// In each of [`FORMS`].
+    /// The warnings in each of [`FORMS`].
     texts: Vec<String>,
 }
 
@@ -88,7 +90,7 @@ impl Told {
         Self { manifest: manifest.to_string_lossy().into_owned(), texts: texts.into() }
     }
 
-    /// In one form.
+    /// The warnings in one form.
     pub fn text(&self, form: Form) -> &str {
         FORMS
             .iter()
@@ -97,13 +99,13 @@ impl Told {
             .map_or("", |(_, text)| text)
     }
 
-    /// Whether it is what the run said that named the manifest so.
+    /// Whether the warnings are right for a run that names the manifest so.
     fn is_of(&self, manifest: &Path) -> bool {
         self.texts.iter().all(String::is_empty) || Path::new(&self.manifest) == manifest
     }
 }
 
-/// A run that may already have been made.
+/// A run that may have been made before.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
     /// The manifest's file.
@@ -119,7 +121,7 @@ pub struct Run<'a> {
 }
 
 impl Trace {
-    /// The trace of what was recorded; `None` where no bundle is.
+    /// The trace of a run whose packages `observer` watched; `None` where there is no bundle.
     pub fn new(observer: &Observer, out: &Path, summary: Summary, told: Told) -> Option<Self> {
         let reads = observer
             .answers()
@@ -128,8 +130,8 @@ impl Trace {
         Some(Self { reads: reads.collect(), output: output(out)?, summary, told })
     }
 
-    /// Finds the trace of an equal run if all that it read is the same, and the bundle is what
-    /// came of it.
+    /// Finds the trace of an equal run, if everything that it read is the same and the bundle is
+    /// the one that it wrote.
     pub fn find(cache: &Cache, run: Run<'_>) -> Option<Self> {
         let trace: Self =
             serde_json::from_slice(&cache.get("runs", key(run.declared, run.request))?).ok()?;
@@ -163,7 +165,8 @@ fn is_current(reads: &BTreeMap<Question, String>, packages: &Packages) -> bool {
     })
 }
 
-/// Asks again what was asked: a list of files starts with `*.`, anything else is a path.
+/// Asks the files again. A question that starts with `*.` asks for a list of files, any other for
+/// the file at that path.
 fn ask(files: &dyn Files, question: &str) -> String {
     match question.strip_prefix("*.") {
         Some(extensions) => listed(&files.list(&extensions.split(',').collect::<Vec<_>>())),
@@ -211,11 +214,12 @@ impl Files for Observed {
     }
 }
 
-/// Bytes of an output that is compared with an earlier one.
+/// A larger output is not compared with an earlier one.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// What a bundle is: the hash of its file, or of its manifest and the names of its blobs. That
-/// blobs are what they are named after, and whole, is what writing them by renaming is for.
+/// The hash of a bundle: of its file, or of its manifest and the names of its blobs. The content of
+/// blobs is not read: a blob has the name of its content, and was renamed to it only once it was
+/// complete.
 fn output(out: &Path) -> Option<String> {
     if !out.is_dir() {
         return Some(hex(&short(&blake3::hash(&input::read(out, MOST_BYTES).ok()?))));

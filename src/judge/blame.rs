@@ -1,4 +1,4 @@
-//! Which of the author's lines an output was refused for.
+//! Finds the author's lines for which an output was refused.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -12,13 +12,13 @@ use crate::permute::Manifest;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 
-/// Refusals after which no more are told.
+/// How many refusals are reported.
 const REPORTED: usize = 20;
 
-/// Lines of a judge's words after which no more are told.
+/// How many lines of a judge's message are shown.
 const LINES: usize = 6;
 
-/// What made the outputs.
+/// What the outputs were made from.
 pub struct Made<'a> {
     /// Where the sources are.
     pub packages: &'a Packages,
@@ -28,7 +28,8 @@ pub struct Made<'a> {
     pub contents: &'a Contents,
 }
 
-/// Refusals as diagnostics in the author's text, each with the first permutation that shows it.
+/// Turns refusals into diagnostics about the author's text, each with the first permutation that
+/// shows it.
 pub fn blame(sources: &mut SourceSet, made: &Made<'_>, refusals: &[Refusal]) -> Diagnostics {
     let mut told: Diagnostics = Vec::new();
     for refusal in refusals {
@@ -68,7 +69,7 @@ fn one(sources: &mut SourceSet, made: &Made<'_>, refusal: &Refusal) -> Diagnosti
     let Some(named) = shader(made.contents, &refusal.output) else { return vec![error] };
     match permutation(sources, made.packages, made.manifest, named) {
         Ok(Some(permutation)) => permutation.named(vec![placed(error, &permutation, line)]),
-        // It was composed before: this cannot be.
+        // It was composed before, so this cannot happen.
         Ok(None) | Err(_) => {
             vec![error.note(format!("in permutation `{}` of {}", named.key, named.program))]
         }
@@ -103,7 +104,7 @@ fn line(refusal: &Refusal) -> Option<Line> {
     Some((name, (*line).to_owned()))
 }
 
-/// What a line that begins a declaration declares: such lines are not indented.
+/// The name that a line declares. Only lines that begin a declaration are not indented.
 fn declares(line: &str, target: Target) -> Option<String> {
     if !line.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
         return None;
@@ -119,7 +120,7 @@ fn declares(line: &str, target: Target) -> Option<String> {
     self::words(head).last().map(|word| (*word).to_owned())
 }
 
-/// The error in the author's line, or at the entry point.
+/// Puts the error at the author's line, or at the entry point.
 fn placed(error: Diagnostic, permutation: &Permutation, line: Option<Line>) -> Diagnostic {
     let composed = &permutation.composed;
     let (name, text) = line.map_or((None, None), |(name, text)| (name, Some(text)));
@@ -133,7 +134,7 @@ fn placed(error: Diagnostic, permutation: &Permutation, line: Option<Line>) -> D
     }
 }
 
-/// The author's declaration of a name that naga may have written with something behind it.
+/// The author's declaration of a name to which naga may have appended something.
 fn part<'p>(parts: &'p [Part], name: &str) -> Option<&'p Part> {
     let plain = name.trim_end_matches('_');
     let bare = plain.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
@@ -147,8 +148,8 @@ fn part<'p>(parts: &'p [Part], name: &str) -> Option<&'p Part> {
     find(name).or_else(|| find(plain)).or_else(|| find(bare))
 }
 
-/// The line of a declaration that has most of the words of a line of the output: writers keep the
-/// author's names. The first line with code where none has any.
+/// The line of a declaration that shares most words with a line of the output, since writers keep
+/// the author's names. If no line shares a word, the first line with code.
 fn nearest(text: &str, part: &Part, output: &str) -> Range<usize> {
     let wanted: BTreeSet<&str> = words(output).into_iter().collect();
     let mut best: Option<(usize, Range<usize>)> = None;

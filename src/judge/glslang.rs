@@ -1,8 +1,8 @@
 //! GLSL and HLSL: glslangValidator.
 //!
-//! To start it costs more than to read a text, so it is given many. Where it makes SPIR-V, it
-//! links all that it is given, which has no meaning here: what it says of that is left out, and
-//! the outputs that have something new in them ([`novel`]) are compiled to SPIR-V one by one.
+//! Starting it takes longer than reading a text, so it gets many texts at once. When it makes
+//! SPIR-V it links all of them, which makes no sense here, so its messages about linking are
+//! ignored. Outputs with something new in them ([`novel`]) are compiled to SPIR-V one by one.
 
 use std::path::Path;
 use std::process::Output as Said;
@@ -49,8 +49,8 @@ pub fn glsl<'w>(
                 }));
             }
             GlslRules::Vulkan => {
-                // Relaxed rules know OpenGL's names of built-in variables, and loose uniforms, which
-                // get bindings of their own.
+                // The relaxed rules accept OpenGL's names of built-in variables. They also accept
+                // uniforms outside of blocks, which get bindings.
                 let more = ["-V", "-R", "--amb", "-o", "/dev/null"];
                 works.extend(compiled(group, [&own[..], &more].concat())?);
             }
@@ -66,7 +66,7 @@ pub fn hlsl<'w>(group: &'w [&'w Output]) -> Result<Vec<Work<'w>>, String> {
     compiled(group, vec!["-D", "-V", "-S", stage, "-e", &first.entry, "-o", "/dev/null"])
 }
 
-/// Each text is read; those with something new in them are compiled.
+/// Reads each text, and compiles those with something new in them.
 fn compiled<'w>(group: &'w [&'w Output], arguments: Vec<&'w str>) -> Result<Vec<Work<'w>>, String> {
     let alone = arguments.clone();
     let mut works = parts(group, BATCH, move |outputs| read(&arguments, outputs));
@@ -95,7 +95,7 @@ fn one(arguments: &[&str], output: &Output) -> Found {
     Ok(refusal(output, &output.file, &run(arguments, [&*output.file])?).into_iter().collect())
 }
 
-/// The same with another version in the first line.
+/// Judges texts with another version in their first line.
 fn later(arguments: &[&str], outputs: &[&Output], version: &str, scratch: &Scratch) -> Found {
     let mut files = Vec::new();
     for output in outputs {
@@ -110,13 +110,13 @@ fn later(arguments: &[&str], outputs: &[&Output], version: &str, scratch: &Scrat
         if !said.status.success() {
             refusals.extend(refusal(output, file, &run(arguments, [&**file])?));
         }
-        // What stays is removed with the folder.
+        // A file that cannot be removed now is removed with the folder.
         let _ = std::fs::remove_file(file);
     }
     Ok(refusals)
 }
 
-/// Reads texts by the rules of Vulkan. What fails is linking, which always does.
+/// Reads texts by the rules of Vulkan. Linking always fails, and that is ignored.
 fn read(arguments: &[&str], outputs: &[&Output]) -> Found {
     let said = run(arguments, outputs.iter().map(|output| &*output.file))?;
     let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");

@@ -1,4 +1,4 @@
-//! What passed before.
+//! Remembers which outputs passed.
 
 use std::collections::BTreeSet;
 
@@ -7,11 +7,11 @@ use crate::cache::{Cache, hash};
 
 const KIND: &str = "judged";
 
-/// Names after which only those of the last run are kept: a bundle that changes often would
-/// collect them for ever.
+/// With more names than this, only those of the last run are kept. Otherwise a bundle that changes
+/// often would collect them for ever.
 const MOST: usize = 200_000;
 
-/// Outputs of one target that passed, by their names, which are those of their content.
+/// The outputs of one target that passed, by their names, which are hashes of their content.
 pub struct Known {
     key: Hash,
     before: usize,
@@ -19,7 +19,7 @@ pub struct Known {
 }
 
 impl Known {
-    /// What judges of these versions took.
+    /// The outputs that judges of these versions accepted.
     pub fn load(cache: Option<&Cache>, target: Target, versions: &str) -> Self {
         let key = hash(&[KIND, target.name(), versions]);
         let text = cache.and_then(|cache| cache.get(KIND, key)).unwrap_or_default();
@@ -31,7 +31,7 @@ impl Known {
         Self { key, before: names.len(), names }
     }
 
-    /// Remembers them, if there are more than there were.
+    /// Stores them, if there are new ones.
     pub fn keep(&self, cache: Option<&Cache>) {
         let lines: Vec<&str> = self.names.iter().map(String::as_str).collect();
         if self.names.len() != self.before

@@ -1,9 +1,9 @@
-//! Whether outputs are well formed: the judge of each target over the bytes of a bundle.
+//! Judges whether the outputs in a bundle are well formed, with the judge of each target.
 //!
 //! `files of a bundle -> outputs -> verdict (those that passed before are known) -> blame (the author's places)`
 //!
-//! Each target names its judge in the table of targets, so that none is without. Programs are
-//! started for batches of outputs; whatever a batch refuses is judged again one by one.
+//! Each target names its judge in the table of targets, so no target is without one. Programs are
+//! started for batches of outputs. If a batch is refused, its outputs are judged again one by one.
 
 mod blame;
 mod glslang;
@@ -46,7 +46,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// Of its content, so that what passed once passes always.
+    /// A name for its content, so that an output which passed once is not judged again.
     fn name(&self) -> String {
         self.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
@@ -75,16 +75,16 @@ pub fn outputs(files: impl IntoIterator<Item = BlobFile>) -> Result<Vec<Output>,
     files.into_iter().map(one).collect()
 }
 
-/// An output that its judge does not take.
+/// An output that its judge refuses.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Refusal {
     /// The output.
     pub output: Output,
-    /// What refuses it.
+    /// The judge that refuses it.
     pub judge: &'static str,
-    /// The first line at fault, where the judge tells it.
+    /// The first line at fault, if the judge gives a line.
     pub line: Option<u32>,
-    /// What the judge says.
+    /// The judge's message.
     pub words: String,
 }
 
@@ -103,7 +103,7 @@ impl fmt::Display for Missing {
     }
 }
 
-/// The programs that a judge consists of.
+/// The programs that a judge needs.
 fn tools(judge: Judge) -> &'static [Tool] {
     match judge {
         Judge::SpirvVal(_) => &[SPIRV_VAL],
@@ -117,7 +117,7 @@ fn judge_of(target: Target) -> Option<Judge> {
     targets::find(target).map(|entry| entry.judge)
 }
 
-/// What the judges of some targets lack here, each once.
+/// What the judges of some targets need and this machine lacks, each once.
 pub fn missing(targets: &[Target], tint: &Tint) -> Vec<Missing> {
     let one = |target: &Target| {
         let judge = judge_of(*target)?;
@@ -134,7 +134,7 @@ pub fn missing(targets: &[Target], tint: &Tint) -> Vec<Missing> {
     found
 }
 
-/// What judges call themselves: others judge anew.
+/// The versions of a target's judges. Outputs are judged again when they change.
 fn versions(target: Target, tint: &Tint) -> String {
     let Some(judge) = judge_of(target) else { return String::new() };
     let programs: String = tools(judge).iter().map(|tool| tool.version()).collect();
@@ -146,7 +146,7 @@ fn versions(target: Target, tint: &Tint) -> String {
     format!("{judge:?} {programs} {own}")
 }
 
-/// What the judges say of outputs.
+/// The result of judging outputs.
 #[derive(Debug, Default)]
 pub struct Verdict {
     /// How many were judged now.
@@ -164,7 +164,7 @@ pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 /// the cache by their content, and by the versions of their judges.
 ///
 /// # Errors
-/// In words, where a judge cannot be run.
+/// A message, if a judge cannot be run.
 pub fn verdict(
     mut outputs: Vec<Output>,
     cache: Option<&Cache>,
@@ -197,7 +197,7 @@ pub fn verdict(
     Ok(verdict)
 }
 
-/// Something to do for a judgement, for so many outputs.
+/// A piece of work for a judgement, and the number of outputs that it covers.
 struct Work<'w> {
     outputs: usize,
     run: Box<dyn Fn() -> Found + Send + Sync + 'w>,
@@ -206,10 +206,10 @@ struct Work<'w> {
 /// Refusals, or why a judge could not be run.
 type Found = Result<Vec<Refusal>, String>;
 
-/// Judges every output; without Tint, WGSL by naga alone.
+/// Judges every output. Without Tint, WGSL is judged by naga alone.
 ///
 /// # Errors
-/// In words, where a judge cannot be run.
+/// A message, if a judge cannot be run.
 pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: Progress<'_>) -> Found {
     let mut sorted: Vec<&Output> = outputs.iter().collect();
     sorted.sort();
@@ -231,7 +231,7 @@ pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: Progress<'_>) ->
         });
         let mut refusals: Vec<Refusal> = found.collect::<Result<Vec<_>, _>>()?.concat();
         refusals.sort();
-        // One is enough, though several rules may be broken.
+        // One refusal for an output is enough, even if it breaks several rules.
         refusals.dedup_by(|one, other| one.output == other.output);
         Ok(refusals)
     })
@@ -254,7 +254,7 @@ fn plan<'w>(
     }
 }
 
-/// Works that do the same for parts of a group.
+/// Divides a group into works that do the same.
 fn parts<'w>(
     group: &'w [&'w Output],
     size: usize,

@@ -1,19 +1,19 @@
-//! Which texts have something in them that no text before them had.
+//! Finds texts that have something in them which no text before them had.
 
 use std::collections::HashSet;
 
 use super::Output;
 
-/// The outputs that have two neighbouring tokens which no output before them had next to each
-/// other. Whatever a compiler cannot do with a text of this kind, it cannot do with one of these:
-/// operations, types and the values that they are given stand next to each other.
+/// The outputs with two neighbouring tokens that no output before them had next to each other. If a
+/// compiler cannot handle some construct in texts of this kind, it fails on one of these outputs
+/// too, since operations, types and their operands are neighbours.
 pub fn novel<'o>(outputs: &[&'o Output]) -> Result<Vec<&'o Output>, String> {
     let (mut lines, mut pairs) = (HashSet::new(), HashSet::new());
     let mut found = Vec::new();
     for output in outputs {
         let text = output.text()?;
         let mut is_new = false;
-        // Most lines are those of other outputs.
+        // Most lines also occur in other outputs.
         for line in text.lines().map(str::trim) {
             if !lines.contains(line) {
                 lines.insert(line.to_owned());
@@ -39,7 +39,7 @@ fn add(line: &str, pairs: &mut HashSet<(String, String)>) -> bool {
     is_new
 }
 
-/// Words, other characters, and all numbers as one.
+/// The tokens of a line: words, other characters, and a common token for all numbers.
 fn tokens(line: &str) -> Vec<&str> {
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let (mut rest, mut found) = (line, Vec::new());

@@ -1,4 +1,4 @@
-//! SPIR-V: spirv-val, which takes one file.
+//! SPIR-V: spirv-val, which takes one file at a time.
 
 use super::{Found, Output, Refusal, Work, parts};
 use crate::tools::{SPIRV_VAL, words};
@@ -15,14 +15,14 @@ pub fn plan<'w>(group: &'w [&'w Output], environments: &'static [&'static str]) 
     })
 }
 
-/// Of the first environment that does not take it.
+/// The refusal of the first environment that does not accept it.
 fn refusal(output: &Output, environments: &[&str]) -> Found {
     for environment in environments {
         let said = SPIRV_VAL.run(&["--target-env", environment], [&output.file]);
         let said = said.map_err(|error| error.to_string())?;
         if !said.status.success() {
             let words = format!("for {environment}: {}", words(&said));
-            // Its lines count instructions: they say nothing about the author's text.
+            // Its line numbers count instructions, so they say nothing about the author's text.
             return Ok(vec![Refusal {
                 output: output.clone(),
                 judge: "spirv-val",

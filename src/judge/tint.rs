@@ -1,4 +1,4 @@
-//! Tint, the compiler of WGSL in Dawn and Chromium, by way of its package for node.
+//! Tint, the WGSL compiler of Dawn and Chromium, used through its npm package.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::Missing;
 use crate::tools::NODE;
 
-/// The npm package, in the one version that judges.
+/// The npm package, in the only version that is used.
 const PACKAGE: &str = "webgpu";
 const VERSION: &str = "0.6.2";
 
@@ -22,7 +22,7 @@ pub struct Tint {
 /// A mistake that Tint finds.
 #[derive(Debug, Deserialize)]
 pub struct Said {
-    /// Of the text, in the order given.
+    /// Index of the text, in the order given.
     pub index: usize,
     pub line: u32,
     pub column: u32,
@@ -41,12 +41,12 @@ struct Package {
 }
 
 impl Tint {
-    /// Tint as it is, or would be, installed in a folder.
+    /// Tint, installed in a folder or not yet.
     pub fn at(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into() }
     }
 
-    /// Beside a cache folder.
+    /// Tint in a folder beside a cache folder.
     pub fn beside(cache: &Path) -> Self {
         Self::at(cache.with_file_name("lamplight-tint"))
     }
@@ -59,7 +59,7 @@ impl Tint {
             .map(str::to_owned)
     }
 
-    /// What to do where it is not there.
+    /// What is missing, and how to install it, if it is not there.
     pub(super) fn missing(&self) -> Option<Missing> {
         (self.version() != VERSION).then(|| Missing {
             what: format!("Tint (npm package `{PACKAGE}` {VERSION})"),
@@ -77,7 +77,7 @@ impl Tint {
     /// The first mistake of each text that has one.
     ///
     /// # Errors
-    /// In words, where it cannot be run.
+    /// A message, if it cannot be run.
     pub(super) fn judge(&self, files: &[&Path]) -> Result<Vec<Said>, String> {
         if let Some(missing) = self.missing() {
             return Err(missing.to_string());

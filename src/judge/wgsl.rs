@@ -1,4 +1,4 @@
-//! WGSL: naga, which is here, and Tint.
+//! WGSL: naga, which is part of this program, and Tint.
 
 use naga::front::wgsl;
 use naga::valid::{ValidationFlags, Validator};
@@ -6,7 +6,7 @@ use naga::valid::{ValidationFlags, Validator};
 use super::{Found, Output, Refusal, Tint, Work, parts};
 use crate::validate::{CAPABILITIES, guard};
 
-/// Texts for naga, and for each start of node.
+/// How many texts naga gets at once, and how many each start of node.
 const BATCH: usize = 64;
 const TINT_BATCH: usize = 512;
 

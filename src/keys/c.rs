@@ -9,7 +9,7 @@ use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language = Language { name: "c", about: "a header for C99 and C++", write };
 
-/// Keywords of both languages that an axis may be called.
+/// Keywords of both languages that are valid names of axes.
 const KEYWORDS: &[&str] = &[
     "and",
     "asm",
@@ -99,7 +99,7 @@ fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
     text
 }
 
-/// A name of its own for each manifest: that of its programs, as a number of fixed length.
+/// An include guard of its own for each manifest, from a hash of its programs' names.
 fn guard(manifest: &Manifest) -> String {
     let names: Vec<&str> = manifest.programs.iter().map(|program| program.name.as_str()).collect();
     let hash = blake3::hash(names.join("\n").as_bytes()).to_hex();
@@ -218,7 +218,7 @@ fn longest(axes: &[Named<'_>]) -> usize {
 
 fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String {
     let mut text = format!(
-        "\n/* Writes the canonical key into {bytes} bytes; its length. A value that is no value counts as the default. */\n"
+        "\n/* Writes the canonical key into {bytes} bytes; its length. A value that the axis does not have counts as the default. */\n"
     );
     let _ = writeln!(
         text,
@@ -266,7 +266,7 @@ fn append(named: &Named<'_>) -> String {
 /// The function from a key to its number.
 fn to_ordinal(name: &str, function: &str, axes: &[Named<'_>], ordinals: &Ordinals) -> String {
     let mut text = String::from(
-        "\n/* The number in the lock file: it stays what it is when axes and values are added. A value that is no value counts as the default. */\n",
+        "\n/* The number in the lock file: it stays what it is when axes and values are added. A value that the axis does not have counts as the default. */\n",
     );
     let _ = writeln!(text, "static inline uint64_t {function}(const {name} *key)\n{{");
     let _ = writeln!(text, "    uint64_t number = UINT64_C({});", ordinals.constant);
@@ -290,7 +290,7 @@ fn to_ordinal(name: &str, function: &str, axes: &[Named<'_>], ordinals: &Ordinal
 fn added(named: &Named<'_>, adds: &[u64]) -> (Vec<u64>, String) {
     let field = &named.field;
     match named.axis.kind {
-        // Its values are in the order of the manifest, which may be either.
+        // The manifest may list its values in either order.
         Kind::Bool => {
             let of = |value| named.axis.ordinal(&Setting::Bool(value)).map_or(0, |at| adds[at]);
             (vec![of(false), of(true)], format!("key->{field} ? 1 : 0"))

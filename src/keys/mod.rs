@@ -1,10 +1,10 @@
-//! Typed keys: a manifest's programs as types of an engine's language, so that a key that is no
-//! key does not compile.
+//! Typed keys: a manifest's programs as types of an engine's language, so that a wrong key does not
+//! compile.
 //!
-//! Every language gets an enum an axis and a structure a program, whose text is the canonical
-//! key. The text leaves out defaults, so code that is generated today names the same permutations
-//! after axes and values are added. Dynamic axes are left out: permutations do not differ in them.
-//! With a lock file, keys become its numbers and numbers keys.
+//! Every language gets an enum for each axis and a structure for each program, which can be written
+//! as the canonical key. That leaves out defaults, so code that was generated before axes and
+//! values were added still names the same permutations. Dynamic axes are left out: permutations do
+//! not differ in them. With a lock file, keys become its numbers and numbers keys.
 
 mod c;
 mod names;
@@ -38,8 +38,8 @@ pub fn is_written(head: &[u8]) -> bool {
     head.windows(MARK.len()).take(16).any(|window| window == MARK)
 }
 
-/// One source file with the keys of every program; with a lock that has all of their values, also
-/// their numbers. The same manifest and lock give the same bytes.
+/// One source file with the keys of every program. With a lock that has all of their values, it has
+/// their numbers too. The same manifest and lock give the same bytes.
 pub fn write(manifest: &Manifest, lock: Option<&Lock>, language: &Language) -> String {
     (language.write)(manifest, lock)
 }
@@ -49,7 +49,7 @@ fn axes(program: &Program) -> impl Iterator<Item = &Axis> {
     program.space.axes().iter().filter(|axis| axis.mode != Mode::Dynamic)
 }
 
-/// The part of a key that sets the axis, with which no default is ever written.
+/// The part of a key that sets the axis. It is only written for a value that is not the default.
 fn part(axis: &Axis, value: &Setting) -> String {
     match value {
         Setting::Bool(true) => axis.name.clone(),

@@ -20,7 +20,7 @@ pub fn lower_camel(name: &str) -> String {
     camel[..length].to_ascii_lowercase() + &camel[length..]
 }
 
-/// A value as a part of an identifier: numbers get a letter, and a word for their sign.
+/// A value as a part of an identifier. A number gets a letter before it, and a word for its sign.
 pub fn value(value: &Setting) -> String {
     match value {
         Setting::Int(number) if *number < 0 => format!("minus_{}", number.unsigned_abs()),
@@ -29,13 +29,13 @@ pub fn value(value: &Setting) -> String {
     }
 }
 
-/// Gives out identifiers, each once; later ones that are taken get underscores, which no
-/// earlier name loses by.
+/// Gives out identifiers, each once. If one is taken, the later one gets underscores and the
+/// earlier one keeps its name.
 #[derive(Default)]
 pub struct Taken(Vec<String>);
 
 impl Taken {
-    /// With names that are not to be given out.
+    /// Names that must not be given out.
     pub fn new(reserved: &[&str]) -> Self {
         Self(reserved.iter().map(|name| (*name).to_owned()).collect())
     }
@@ -51,8 +51,8 @@ impl Taken {
 
 /// Lines of a comment, one for each of the text's.
 pub fn comment(prefix: &str, text: &str) -> String {
-    // Each of these ends a comment of one line somewhere; a lone carriage return is an error in
-    // Rust's.
+    // Each of these characters ends a line comment in some language. A lone carriage return is an
+    // error in a comment of Rust.
     let text = text.replace("\r\n", "\n").replace(['\r', '\u{2028}', '\u{2029}'], "\n");
     text.lines()
         .map(|line| line.replace(|c: char| c.is_control() && c != '\t', "?"))

@@ -1,10 +1,10 @@
-//! Numbers of permutations as a lock file has them, in a form that code can be written from.
+//! The numbers of permutations from a lock file, in a form from which code can be written.
 
 use crate::permute::{Axis, Lock, Mode, Program};
 
 /// How the keys of a program become numbers and back.
 pub struct Ordinals {
-    /// What axes add that keys leave out.
+    /// The sum of what the axes add that keys leave out.
     pub constant: u64,
     /// For each axis of keys, what each of its values adds.
     pub of_values: Vec<Vec<u64>>,
@@ -17,18 +17,18 @@ pub struct Digit {
     pub radix: u64,
     /// Index of the axis among those of keys.
     pub axis: usize,
-    /// What each value of the digit says.
+    /// The meaning of each value of the digit.
     pub says: Vec<Says>,
 }
 
-/// What a digit says of its axis.
+/// What a digit says about its axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Says {
     /// The axis has the value of that index.
     Value(usize),
-    /// Another digit of the axis says it.
+    /// Another digit has the value of the axis.
     Nothing,
-    /// A value that the manifest has no longer.
+    /// A value that the manifest no longer has.
     Gone,
 }
 
@@ -56,7 +56,7 @@ pub fn ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinals> {
     if range > u128::from(most) {
         return None;
     }
-    // Dynamic axes are digits too, and always at their defaults.
+    // Dynamic axes have digits too, which are always those of their defaults.
     let of_axes: u64 = axes.iter().zip(&of_values).map(|(axis, values)| values[axis.default]).sum();
     let constant = u64::try_from(default).ok()?.checked_sub(of_axes)?;
     debug_assert!(space.axes().iter().any(|axis| axis.mode == Mode::Dynamic) || constant == 0);

@@ -10,7 +10,7 @@ use crate::permute::{Axis, Kind, Lock, Manifest, Program};
 pub const LANGUAGE: Language =
     Language { name: "rust", about: "a module a program, for any edition", write };
 
-/// Keywords that an axis, which WGSL allows, may be called; `r#` would not do for all of them.
+/// Keywords that are valid names of axes. `r#` would not work for all of them.
 const KEYWORDS: &[&str] = &[
     "Self", "abstract", "as", "async", "await", "become", "box", "crate", "do", "dyn", "enum",
     "extern", "final", "gen", "impl", "in", "macro", "match", "mod", "move", "mut", "priv", "pub",

@@ -1,4 +1,4 @@
-//! Keys for TypeScript: types that erase, so that a runtime which only strips them will do.
+//! Keys for TypeScript: types that can be erased, so that it is enough if a runtime strips them.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
 pub const LANGUAGE: Language =
     Language { name: "ts", about: "a TypeScript module of erasable types", write };
 
-/// What every object has: a field of that name would not be left out by leaving it out.
+/// Members of every object. A field with such a name would not be undefined where it is left out.
 const INHERITED: &[&str] = &[
     "constructor",
     "hasOwnProperty",
@@ -34,7 +34,7 @@ function keyText(key: object, axes: readonly (readonly [string, Value])[]): stri
 }
 ";
 
-/// What keys as numbers need beside it; `from` is undefined where the lock has a value that is gone.
+/// What numbers of keys need. `from` is undefined where the lock has a value that no longer exists.
 const NUMBERS: &str = "
 /** A field with its default, and what each of its values adds to a number. */
 type Field = readonly [string, Value, readonly (readonly [Value, number])[]];
@@ -60,7 +60,7 @@ function numberKey(number: number, digits: readonly Digit[]): Record<string, Val
 }
 ";
 
-/// Integers that a number of the language holds.
+/// Integers below this are exact as a number of the language.
 const MOST: u64 = 1 << 53;
 
 fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
@@ -157,7 +157,7 @@ fn numbers(
     text
 }
 
-/// The key with the names of axes for fields that are called otherwise.
+/// The key, with the names of axes instead of fields that have other names.
 fn renamed(program: &Program, fields: &[String]) -> String {
     let differing = axes(program).zip(fields).filter(|(axis, field)| axis.name != **field);
     let names: Vec<String> = differing

@@ -2,7 +2,7 @@
 //! depends on other functions of the program.
 //!
 //! A callee is a stub: its signature, and in place of its body only what its callers can notice
-//! ([`Summary`]). An entry point that does nothing is added, since writers write for one.
+//! ([`Summary`]). An entry point that does nothing is added, since naga's writers need one.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -19,13 +19,13 @@ use crate::compose::PartKind;
 /// The name of the entry point that does nothing.
 pub const IDLE: &str = "lamplight_idle";
 
-/// The function that names GLSL's own variables.
+/// The function that names GLSL's built-in variables, such as `gl_FragCoord`.
 pub const BUILT_INS: &str = "lamplight_built_ins";
 
-/// The variable of a stub's result.
+/// The local variable in which a stub returns its result.
 const RESULT: &str = "lamplight_result";
 
-/// What is translated.
+/// What a canonical text is made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UnitId {
     Function(usize),
@@ -33,24 +33,25 @@ pub enum UnitId {
     Entry,
 }
 
-/// What a unit's text is made of: declarations, by index.
+/// What a canonical text is made of: indices of declarations.
 #[derive(Debug)]
 pub struct Recipe<'s> {
     pub unit: UnitId,
-    /// The function that is kept as it is.
+    /// The function that keeps its body. `None` for a GLSL entry point: there `main` is a stub, and
+    /// naga adds the function around it.
     pub function: Option<usize>,
-    /// Structures and constants in the order of the text.
+    /// Structures, constants and assertions, in the order of the text.
     others: Vec<usize>,
-    /// Variables in an order of their own: the order of Metal's arguments.
+    /// Variables, sorted by name, since Metal passes them as arguments in their order.
     variables: Vec<usize>,
-    /// Stubs, with what they show.
+    /// The callees, each with the summary that its stub must show.
     pub stubs: Vec<(usize, &'s Summary)>,
-    /// The entry point that does nothing returns this structure: HLSL writes the structures that
-    /// an entry point returns in another way.
+    /// The structure that the entry point which does nothing returns. HLSL writes a structure in
+    /// another way where an entry point returns it.
     interface: Option<usize>,
 }
 
-/// Collects what a unit needs. `summaries` has those of all functions before it.
+/// Collects what a unit needs. `summaries` has the summary of every function that comes before it.
 pub fn recipe<'s>(
     outline: &Outline<'_>,
     unit: UnitId,
@@ -95,7 +96,7 @@ pub fn recipe<'s>(
     Ok(Recipe { unit, function, others, variables, stubs, interface })
 }
 
-/// All declarations but functions that some reach, in the order of the text.
+/// All that `open` names, itself or through others, but functions; in the order of the text.
 fn closure(outline: &Outline<'_>, mut open: Vec<usize>) -> BTreeSet<usize> {
     let mut reached = BTreeSet::new();
     while let Some(index) = open.pop() {
@@ -107,13 +108,13 @@ fn closure(outline: &Outline<'_>, mut open: Vec<usize>) -> BTreeSet<usize> {
     reached
 }
 
-/// Whether GLSL declares a variable itself.
+/// Whether GLSL declares the variable itself.
 fn is_built_in(name: &str) -> bool {
     name.starts_with("gl_")
 }
 
 impl Recipe<'_> {
-    /// Covers every byte of the text and every fact that is added to its module.
+    /// A hash of every byte of the text, and of every fact that is added to its module.
     pub fn key(&self, outline: &Outline<'_>) -> Key {
         let declared = |index: &usize| &outline.declarations[*index].hash[..];
         let unit = match self.unit {
@@ -146,7 +147,7 @@ impl Recipe<'_> {
         whole.map(|index| outline.declarations[*index].text.len()).chain(heads).sum()
     }
 
-    /// The text.
+    /// Writes the canonical text.
     pub fn text(&self, outline: &Outline<'_>) -> Result<String, Reason> {
         let mut text = outline.header.clone();
         if outline.language == Language::Glsl && !text.ends_with('\n') {
@@ -171,8 +172,9 @@ impl Recipe<'_> {
         Ok(text)
     }
 
-    /// GLSL's own variables enter a module where they are first named: a function that names them
-    /// puts those of this text into an order of their own.
+    /// Writes a function that names this text's built-in variables of GLSL in a fixed order. They
+    /// enter a module in the order in which its text first names them, and Metal passes them along
+    /// in that order.
     fn built_ins(&self, outline: &Outline<'_>) -> String {
         let text = self.function.map_or("", |function| outline.declarations[function].text);
         let named = words(text).filter(|word| word.before != b'.').map(|word| word.text);
@@ -208,7 +210,7 @@ impl Recipe<'_> {
     }
 }
 
-/// A function's signature with a body that does what its callers can notice.
+/// A function's signature, with a body that does what callers can notice of the function.
 fn write_stub(outline: &Outline<'_>, stub: usize, summary: &Summary) -> Result<String, Reason> {
     let declaration = &outline.declarations[stub];
     let head = declaration.head;
@@ -299,7 +301,7 @@ fn sample(language: Language, shape: Shape, texture: &str, sampler: &str) -> Opt
             let words = coordinates + u8::from(arrayed) + u8::from(compares);
             match (depth, compares) {
                 (true, true) => {
-                    // The level of an array or a cube cannot be given with a comparison.
+                    // A lookup that compares cannot be given the level of an array or a cube.
                     let combined = format!("sampler{kind}{array}Shadow({texture},{sampler})");
                     match (cube, arrayed) {
                         (true, true) => format!("texture({combined},vec4(0.0),0.0);"),

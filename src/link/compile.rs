@@ -1,4 +1,4 @@
-//! One text in every target: linked where it can be, as a whole where not.
+//! Compiles one text for every target: linked from functions where possible, as a whole elsewhere.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,26 +11,27 @@ use crate::emit::{self, targets};
 use crate::limits::GROUP_BYTES;
 use crate::validate::{self, Validated, on_large_stack, validate, validate_rehearsed};
 
-/// A text as its author reads it, for errors, and without comments and layout, to compile.
+/// One text in two forms: as its author reads it, for errors; and without comments and layout,
+/// which is what is compiled.
 #[derive(Debug, Clone, Copy)]
 pub struct Text<'a> {
     pub composed: &'a Composed,
     pub lean: &'a Composed,
 }
 
-/// What comes of a text: a unit, and what its author can mend.
+/// What compiling a text gives: a unit, and the warnings for its author.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Made {
     pub unit: Unit,
     pub warnings: Diagnostics,
-    /// Why targets were compiled as a whole instead of from separate functions.
+    /// Targets that were compiled as a whole instead of from separate functions, with the reason.
     pub whole: Vec<(Target, Reason)>,
 }
 
-/// A text in every target. This is the one way to the bytes that ship, for every command.
+/// Compiles a text for every target. Every command gets the bytes that ship from here.
 ///
 /// # Errors
-/// What naga finds wrong with the text, in its author's places.
+/// What naga finds wrong with the text, at the places in its author's files.
 pub fn compile(
     text: &Text<'_>,
     entry: &str,
@@ -65,7 +66,8 @@ pub fn compile(
     Ok(Made { unit, warnings, whole })
 }
 
-/// Validates a text once it is known that naga survives it, in all that is asked for.
+/// Validates a text after a rehearsal: a large text first goes through everything that is asked for
+/// in another process, which shows that naga survives it.
 fn rehearsed(
     text: &Text<'_>,
     entry: &str,
@@ -78,10 +80,10 @@ fn rehearsed(
         Some(validate::Outputs { entry: entry.to_owned(), targets, clip })
     };
     match validate::rehearse(text.lean, text.composed, outputs) {
-        // The lean text is quick to read; the whole one knows where its mistakes are.
+        // The lean text is validated faster. Only the whole text has places for its mistakes.
         Ok(()) => validate_rehearsed(text.lean).or_else(|_| validate(text.composed)),
         Err(error) if error.code == codes::NAGA_EXHAUSTED => Err(vec![error]),
-        // Aliases that are written out can be too large where the text is not.
+        // Expanded aliases can make the lean text too large where the author's text is not.
         Err(_) => {
             let tried = validate::rehearse(text.composed, text.composed, outputs);
             tried.map_err(|error| vec![error])?;
@@ -90,8 +92,8 @@ fn rehearsed(
     }
 }
 
-/// Does what [`compile`] and [`validate()`] would do over a large text, in a process of its own.
-/// What comes of it does not matter, only that the process survives.
+/// Does what [`compile`] and [`validate()`] would do with a large text. It is called in a process
+/// of its own, and its result does not matter: only that the process survives.
 pub fn perform(job: &validate::Job) {
     let composed = Composed::of_text(job.language, job.stage, job.text.clone());
     let Some(outputs) = &job.outputs else {
@@ -105,7 +107,7 @@ pub fn perform(job: &validate::Job) {
     let _ = on_large_stack(|| compile_whole(&text, &outputs.entry, &targets, &linker));
 }
 
-/// Refuses an output that no bundle takes.
+/// Refuses an output that is larger than a bundle allows.
 fn bounded(unit: &Unit) -> Result<(), Diagnostic> {
     match unit.targets.iter().find(|(_, artifact)| artifact.bytes.len() > GROUP_BYTES) {
         None => Ok(()),
@@ -137,7 +139,7 @@ fn compile_whole(
         .or_else(|_| emit::check(text.composed, &whole()?, targets))?;
     let unit = unit(text, &validated, entry, targets, linker)
         .map_err(|error| vec![emit::at_entry(error, text.composed, entry)])?;
-    // The lean text has no places to tell of.
+    // Lints are looked for in the author's text, since the lean text has no places.
     let warnings = if validate::has_lints(&validated) { lint(text)? } else { Vec::new() };
     Ok((unit, warnings))
 }
@@ -159,7 +161,8 @@ fn unit(
     Ok(Unit { reflection, targets })
 }
 
-/// A writer tells no place: the function that it has no words for, or else the entry point.
+/// Gives an error of a writer its place: the function that the target has no words for, or else the
+/// entry point.
 fn placed(
     error: Diagnostic,
     text: &Text<'_>,

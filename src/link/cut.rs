@@ -1,4 +1,4 @@
-//! An output of a canonical text, divided: what is the unit's own, and what it shares.
+//! Divides the output of a canonical text into what belongs to its unit and what units share.
 
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{Hash, Hasher};
@@ -14,20 +14,21 @@ use super::words::words;
 pub struct Wanted<'a> {
     /// The author's name of the function; `None` for the entry point.
     pub function: Option<&'a str>,
-    /// What the output calls its entry point.
+    /// The name of the entry point in the output.
     pub entry: &'a str,
-    /// The author's names by the number of their mark.
+    /// The author's names, indexed by the number of their mark.
     pub names: &'a [String],
 }
 
-/// An output of one unit.
+/// The output of one unit, divided.
 #[derive(Debug, Default)]
 pub struct Cut {
     /// The lines before all declarations.
     pub header: String,
-    /// Types, constants and functions of the writer's own, each after what it names.
+    /// Types, constants and functions that the writer made. Each comes after those that it names.
     pub shared: Vec<Shared>,
-    /// What is bound, and what enters and leaves the stage: the entry point has all of it.
+    /// Bound variables, and those that enter and leave the stage: the entry point's output has all
+    /// of them.
     pub globals: Vec<Fragment>,
     pub body: Fragment,
 }
@@ -37,37 +38,38 @@ pub struct Cut {
 pub struct Shared {
     pub fragment: Fragment,
     pub kind: text::Kind,
-    /// What it is called: another of the same name and head would be declared twice.
+    /// Its name. Two declarations of one name and head cannot stand in one text.
     pub declares: Fragment,
-    /// Places in the list of what it names.
+    /// Indices into [`Cut::shared`] of the declarations that it names.
     pub uses: Vec<usize>,
 }
 
-/// A part of an output. References to the author's declarations are apart from all other text.
+/// A part of an output, with the references to the author's declarations kept apart from all other
+/// text.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Fragment {
-    /// The text, with nothing in the places of the references.
+    /// The text without the references.
     pub text: String,
-    /// In the order of their places.
+    /// The references, in the order of their places.
     pub references: Vec<Reference>,
-    /// Identifiers that are no references, and that the function declares.
+    /// Identifiers that the function declares itself; references are not among them.
     pub locals: Vec<String>,
 }
 
-/// Nearly all that differ do so in their text.
+/// The text alone is hashed: nearly all fragments that differ do so in their text.
 impl Hash for Fragment {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.text.hash(state);
     }
 }
 
-/// A name of the author's.
+/// A reference to one of the author's declarations.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reference {
-    /// Where it stands in the text.
+    /// Where it belongs in the text.
     pub at: usize,
     pub name: String,
-    /// A variable that the writer calls after the declaration, in small letters.
+    /// Whether it is a variable that the writer named after a declaration, in lower case.
     pub small: bool,
 }
 
@@ -103,7 +105,8 @@ pub fn cut(text: &str, wanted: &Wanted<'_>) -> Result<Cut, Reason> {
     if bodies == 1 { Ok(cut) } else { Err(Reason::Shape) }
 }
 
-/// The shared declarations that the roots name, each after what it names itself.
+/// The shared declarations that the roots name, themselves or through others. Each comes after
+/// those that it names.
 fn share(
     declared: &[Declared<'_>],
     shared: &[usize],
@@ -128,11 +131,13 @@ fn share(
         reached.iter().enumerate().map(|(place, index)| (*index, place)).collect();
     let one = |index: &usize| {
         let Declared { kind, name, text } = declared[*index];
-        // Without its entry point, what is bound is not there.
+        // Only an entry point's output declares the bound variables. A shared declaration that uses
+        // one could not stand anywhere else.
         if !bound.is_empty() && words(text).any(|word| bound.contains(word.text)) {
             return Err(Reason::Shape);
         }
-        // A declaration names others that come before it. Functions of one name are apart.
+        // A declaration can only name earlier ones. Functions of the same name are overloads, not
+        // uses of each other.
         let uses = named(text).into_iter().filter(|used| used < index);
         let uses = uses.filter(|used| declared[*used].name != name).map(|used| places[&used]);
         Ok(Shared {
@@ -176,7 +181,7 @@ fn role(declaration: &Declared<'_>, wanted: &Wanted<'_>) -> Result<Role, Reason>
 }
 
 impl Fragment {
-    /// Takes the marks out of a text.
+    /// Replaces the marks of a text by references.
     pub fn read(text: &str, names: &[String]) -> Result<Self, Reason> {
         let mut fragment = Self { text: String::with_capacity(text.len()), ..Self::default() };
         let mut at = 0;
@@ -192,7 +197,7 @@ impl Fragment {
         Ok(fragment)
     }
 
-    /// Identifiers that have nothing of a reference, but for members.
+    /// Identifiers without any reference in them, members left out.
     pub fn words(&self) -> impl Iterator<Item = &str> {
         let mut references = self.references.iter().map(|reference| reference.at).peekable();
         let mut last = 0;
@@ -202,7 +207,8 @@ impl Fragment {
                 last = at;
             }
             let is_plain = references.peek().is_none_or(|at| *at > end);
-            // A member follows its dot, with no reference in between.
+            // A member follows its dot directly; a reference in between would make it something
+            // else.
             let after_dot = || self.text[..word.at].trim_end().len();
             let is_member = word.before == b'.' && last < after_dot();
             (is_plain && !is_member).then_some(word.text)
@@ -211,7 +217,7 @@ impl Fragment {
 }
 
 impl Fragment {
-    /// Writes a name in the place of all references in small letters to a declaration.
+    /// Replaces all lower-case references to a declaration by a name.
     pub fn settle(&mut self, declaration: &str, name: &str) {
         let (mut text, mut at) = (String::with_capacity(self.text.len() + name.len()), 0);
         let mut kept = Vec::with_capacity(self.references.len());
@@ -231,9 +237,9 @@ impl Fragment {
 }
 
 impl Cut {
-    /// Tells the identifiers apart that the unit's function declares: `bases` are the author's
-    /// names, which naga writes with an underscore or a number behind them. The entry point is no
-    /// local, even where one is called like it.
+    /// Notes which identifiers the unit's function declares itself. `bases` are names that the
+    /// author gave inside it; naga may append an underscore or a number to them. The entry point's
+    /// name does not count as a local, even where a local has the same name.
     pub fn add_locals(&mut self, bases: &BTreeSet<&str>, entry: &str) {
         let is_local = |word: &&str| {
             if *word == entry {

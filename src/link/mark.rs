@@ -1,13 +1,13 @@
 //! Marks: the names that the author's declarations have while naga writes them.
 //!
 //! A mark holds the number of a declaration and nothing of its name. No keyword, built-in or name
-//! of a writer's own looks like one, so that each mark in an output is a reference to the author's
-//! declaration, and everything else is none. Writers put marks into longer names, such as
-//! `ConstructMARK`, and one writes them in small letters for a variable of that type.
+//! of a writer's own looks like one, so each mark in an output is a reference to one of the
+//! author's declarations, and nothing else is. Writers put marks into longer names, such as
+//! `ConstructMARK`, and one writer uses them in lower case for a variable of that type.
 
 use std::fmt::Write;
 
-/// What stands for nothing that is wanted: stubs' arguments, entry points made up.
+/// The number for names that no output keeps: arguments of stubs, and entry points that were added.
 pub const SCRATCH: u32 = 0;
 
 /// A mark within a text.
@@ -16,12 +16,12 @@ pub struct Mark {
     pub start: usize,
     pub end: usize,
     pub number: u32,
-    /// In small letters: a variable that is called after the declaration.
+    /// In lower case: a variable that the writer named after the declaration.
     pub small: bool,
 }
 
-/// The mark of a declaration. It ends with a letter, since naga adds to names that end with a
-/// digit, and has no underscore, which naga takes away.
+/// The mark of a declaration. It ends with a letter, since naga appends to names that end with a
+/// digit. It has no underscore, since naga removes some of those.
 pub fn mark(number: u32) -> String {
     let mut mark = "Zq".to_owned();
     for digit in format!("{number:x}").chars() {

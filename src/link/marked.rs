@@ -32,7 +32,7 @@ pub fn mark_module(
 struct Names(Vec<String>);
 
 impl Names {
-    /// The mark of one name more.
+    /// The mark of the next name.
     fn mark(&mut self, name: &str) -> String {
         self.0.push(name.to_owned());
         mark::mark(self.0.len() as u32 - 1)
@@ -60,7 +60,7 @@ fn mark_types(
             _ => continue,
         };
         let inner = found.inner.clone();
-        // Two names of one type: the text has an alias that could not be replaced.
+        // The same type has two names: the text has an alias that could not be expanded.
         if marked.types.get(&Type { name: name.clone(), inner: inner.clone() }).is_some() {
             return Err(Reason::Declaration);
         }
@@ -85,7 +85,7 @@ fn mark_values(marked: &mut Module, names: &mut Names) {
     }
 }
 
-/// Marks functions; what is named within a stub is nobody's.
+/// Marks functions. Names inside a stub all get the scratch mark, since no output keeps them.
 fn mark_functions(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
@@ -110,7 +110,8 @@ fn mark_functions(
     }
 }
 
-/// Languages without arrays by value need a name for each: it tells what the array holds.
+/// Some languages have no arrays by value, so writers give each array type a name. This name tells
+/// what the array holds.
 fn array_name(module: &Module, found: &Type) -> Option<String> {
     let TypeInner::Array { base, size, stride } = found.inner else { return None };
     let size = match size {

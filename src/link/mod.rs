@@ -79,31 +79,31 @@ use pool::{Parts, Pool, Unit};
 use summary::Summary;
 use translate::translate;
 
-/// Bytes of units after which all are forgotten. What is forgotten is translated again, to the
-/// same bytes.
+/// Bytes of units after which the pool is emptied. A unit that is needed again is translated again,
+/// to the same bytes.
 const SIZE: usize = 96 << 20;
 
-/// The same bound where more than a quarter of the units were new: units that no other text uses
-/// are not worth keeping.
+/// The bound where more than a quarter of the units were new: units that no other text uses are not
+/// worth keeping.
 const SIZE_UNSHARED: usize = 2 << 20;
 
-/// Functions in some targets, each translated once.
+/// Keeps functions in some targets, each translated once.
 pub struct Linker<'a> {
     targets: &'a [Target],
     clip: Clip,
     pool: RwLock<Pool>,
-    /// Units asked for since the last batch, and those of them that were new.
+    /// Units asked for since the last batch, and how many of them were new.
     asked: AtomicUsize,
     new: AtomicUsize,
 }
 
-/// A text in the targets that could be linked.
+/// A text, linked in the targets where that is possible.
 pub struct Linked {
     pub reflection: Arc<Reflection>,
     /// For each target its output, or why it has to be compiled as a whole.
     pub targets: Vec<Result<Artifact, Reason>>,
-    /// A derivative may be taken where neighbouring fragments took different branches: the lint of
-    /// the whole text decides.
+    /// Whether a derivative may be taken in non-uniform control flow. The lint of the whole text
+    /// decides whether it is.
     pub suspect: bool,
 }
 
@@ -112,18 +112,18 @@ impl<'a> Linker<'a> {
         Self::for_clip(targets, Clip::default())
     }
 
-    /// For outputs in a clip space.
+    /// A linker whose outputs use the given clip space.
     pub fn for_clip(targets: &'a [Target], clip: Clip) -> Self {
         let (asked, new) = (AtomicUsize::new(0), AtomicUsize::new(0));
         Self { targets, clip, pool: RwLock::new(Pool::new(targets)), asked, new }
     }
 
-    /// The targets it translates to.
+    /// The targets that it translates to.
     pub fn targets(&self) -> &'a [Target] {
         self.targets
     }
 
-    /// Puts a lean text together from its functions; those that are new are translated first.
+    /// Links a lean text from its functions. New functions are translated first.
     ///
     /// # Errors
     /// The reason why all targets of the text are compiled as a whole. It depends on the text
@@ -135,14 +135,15 @@ impl<'a> Linker<'a> {
         if outline.language == Language::Wesl {
             functions.pop();
         }
-        // What several functions name is read once for each of them.
+        // A declaration that several functions name is read once for each of them, so all of them
+        // count.
         let mut left = LINKED_BYTES;
         for function in &functions {
             let unit = canonical::UnitId::Function(*function);
             units[*function] = Some(self.unit(&outline, unit, &units, &mut left)?);
         }
         let entry = self.unit(&outline, canonical::UnitId::Entry, &units, &mut left)?;
-        let suspect = entry.summary.parted;
+        let suspect = entry.summary.derives_non_uniformly;
         let reflection = entry.reflection.clone().ok_or(Reason::EntryPoint)?;
         let named = functions.iter().filter_map(|function| {
             Some((outline.declarations[*function].name(), units[*function].clone()?))
@@ -155,8 +156,8 @@ impl<'a> Linker<'a> {
         Ok(Linked { reflection, targets, suspect })
     }
 
-    /// The author's name of the function that a target has no words for: of those that are refused
-    /// by themselves the first, callees before callers.
+    /// The author's name of the function that a target cannot express. Of several it is the first,
+    /// callees before callers.
     pub fn culprit(&self, lean: &Composed, entry: &str, target: Target) -> Option<String> {
         let outline = Outline::read(lean, entry).ok()?;
         let index = self.targets.iter().position(|known| *known == target)?;
@@ -177,8 +178,8 @@ impl<'a> Linker<'a> {
         None
     }
 
-    /// A unit, translated now if it never was. `left` is how many bytes may still be read, whether
-    /// or not they were read before.
+    /// The unit, translated now if the pool lacks it. `left` is how many bytes may still be read,
+    /// whether or not they were read before.
     fn unit(
         &self,
         outline: &Outline<'_>,
@@ -213,8 +214,8 @@ impl<'a> Linker<'a> {
         pool.keep(key, translated, function, &callees)
     }
 
-    /// Bounds what is kept. No output depends on it. Call it between batches only: a text that is
-    /// being put together needs the pool that its units came from.
+    /// Keeps the pool within its bound; no output depends on this. Call it between batches only: a
+    /// text that is being linked needs the pool that its units came from.
     pub fn forget(&self) {
         let (asked, new) =
             (self.asked.swap(0, Ordering::Relaxed), self.new.swap(0, Ordering::Relaxed));

@@ -1,5 +1,5 @@
-//! A module that was made and not written, such as a kernel around a function: it becomes a text,
-//! and goes the way of every text.
+//! Compiles modules that were built in memory, such as a kernel around a function. The module is
+//! written as a text, which is then compiled as every other text is.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::validate::Validated;
 
 const FILE: &str = "module.wgsl";
 
-/// The output of a module's entry point as it would ship.
+/// The output of a module's entry point, as a bundle would hold it.
 ///
 /// # Errors
 /// As of [`compile()`]; places are those of the text that the module became.

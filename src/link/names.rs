@@ -1,7 +1,8 @@
-//! What the author's names become in one target.
+//! Chooses what the author's names are called in the outputs of one target.
 //!
-//! A name becomes what naga makes of it in a module by itself: a keyword gets an underscore behind
-//! it. Where the text has the same identifier with another meaning, the name is numbered.
+//! The *usual* form of a name is what naga makes of it in a module with nothing else; a keyword,
+//! for example, gets an underscore at its end. Where the text has that identifier with another
+//! meaning, the name gets a number instead.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -18,26 +19,27 @@ use crate::bundle::Language;
 use crate::emit::emit;
 use crate::validate::{CAPABILITIES, Validated};
 
-/// Names and identifiers of a target, by number.
+/// The names and identifiers of a target, each with a number.
 #[derive(Default)]
 pub struct Names {
     target: Option<Target>,
     numbers: HashMap<String, u32>,
-    /// What naga calls each name, and the number of that as a word.
+    /// For each name: the author's form, its usual form, and the number of the usual form as a
+    /// word.
     usual: Vec<(String, String, u32)>,
     words: HashMap<String, u32>,
 }
 
-/// What the names of a text become.
+/// The forms that the names of one text get.
 pub struct Chosen {
     pub renames: Renames,
-    /// The names that have others than usual.
+    /// The names that do not have their usual form.
     pub renamed: Bits,
-    /// By the number of an identifier: whether a name has it as usual.
+    /// For each identifier, by number: whether a name has it as its usual form.
     taken: Bits,
 }
 
-/// Names that a text cannot have as usual, with what they are instead.
+/// The names that a text cannot have in their usual form, with what they are called instead.
 pub type Renames = BTreeMap<u32, String>;
 
 impl Names {
@@ -45,7 +47,7 @@ impl Names {
         Self { target: Some(target), ..Self::default() }
     }
 
-    /// The number of an author's name, new or known.
+    /// The number of an author's name; a new name gets the next one.
     pub fn number(&mut self, name: &str) -> Result<u32, Reason> {
         if let Some(number) = self.numbers.get(name) {
             return Ok(*number);
@@ -58,7 +60,7 @@ impl Names {
         Ok(number)
     }
 
-    /// The number of an identifier, new or known.
+    /// The number of an identifier; a new identifier gets the next one.
     pub fn word(&mut self, word: &str) -> u32 {
         if let Some(number) = self.words.get(word) {
             return *number;
@@ -68,24 +70,24 @@ impl Names {
         number
     }
 
-    /// What naga calls a name.
+    /// The usual form of a name.
     pub fn usual(&self, number: u32) -> &str {
         self.usual.get(number as usize).map_or("", |(_, usual, _)| usual)
     }
 
-    /// The number of what naga calls a name.
+    /// The number, as a word, of a name's usual form.
     pub fn usual_word(&self, number: u32) -> u32 {
         self.usual.get(number as usize).map_or(u32::MAX, |(_, _, word)| *word)
     }
 
-    /// What a reference nearly always is.
+    /// The usual form of a reference.
     pub fn usual_of(&self, reference: &Reference) -> &str {
         let small = reference.small.then(|| reference.name.to_lowercase());
         let name = small.as_ref().unwrap_or(&reference.name);
         self.numbers.get(name).map_or("", |number| self.usual(*number))
     }
 
-    /// The names of a text that cannot be as usual.
+    /// Finds the names that cannot have their usual form in a text, and numbers those.
     pub fn choose(&self, fragments: &[&Ready]) -> Result<Chosen, Reason> {
         let mut words = Bits::new(self.words.len());
         let mut names = Bits::new(self.usual.len());
@@ -105,7 +107,7 @@ impl Names {
                 wanted_twice.push(word);
             }
         }
-        // Numbers depend on what was met before; names do not.
+        // Sorted by name: numbers depend on the order in which names were met, names do not.
         let author = |name: &usize| &self.usual[*name].0;
         wanted_twice.sort_unstable();
         wanted_twice.dedup();
@@ -121,7 +123,7 @@ impl Names {
         Ok(Chosen { renames, renamed, taken })
     }
 
-    /// Numbers some names, so that each is new in the text.
+    /// Appends a number to each of some names, so that each is new in the text.
     fn numbered(
         &self,
         open: &[usize],
@@ -161,7 +163,7 @@ impl Names {
     }
 }
 
-/// What naga calls a declaration of that name in a module by itself.
+/// What naga calls a declaration of that name in a module with nothing else.
 fn plain_name(name: &str, target: Target) -> Option<String> {
     let text = written(&trivial(name)?, target)?;
     let (_, declared) = text::split(&text).ok()?;
@@ -176,7 +178,7 @@ fn written(module: &Validated, target: Target) -> Option<String> {
 
 const ENTRY: &str = "lamplight_entry";
 
-/// A stage that does nothing, beside a constant of the given name.
+/// A module with an entry point that does nothing, and a constant of the given name.
 fn trivial(name: &str) -> Option<Validated> {
     let text = format!("@fragment fn {ENTRY}() {{}}");
     let mut module: Module = naga::front::wgsl::parse_str(&text).ok()?;

@@ -15,10 +15,10 @@ use crate::compose::{Composed, Part, PartKind};
 /// Identifies content.
 pub type Key = [u8; 16];
 
-/// Declarations after which a text is compiled as a whole.
+/// A text with more declarations is compiled as a whole.
 const DECLARATIONS: usize = 2048;
 
-/// Calls within each other after which a text is compiled as a whole.
+/// A text whose calls nest deeper is compiled as a whole.
 const DEPTH: usize = 64;
 
 /// One declaration.
@@ -27,16 +27,17 @@ pub struct Declaration<'a> {
     pub kind: PartKind,
     pub names: &'a [String],
     pub text: &'a str,
-    /// Of a function: its text before the body. Of others: all of it.
+    /// The text before a function's body; the whole text of any other declaration.
     pub head: &'a str,
-    /// Declarations that it names; of a function those of its head alone.
+    /// The declarations that it names.
     pub uses: Vec<usize>,
+    /// Those that a function's head names.
     pub head_uses: Vec<usize>,
     pub hash: Key,
 }
 
 impl Declaration<'_> {
-    /// The name; the first of several.
+    /// Its name, or the first of several.
     pub fn name(&self) -> &str {
         self.names.first().map_or("", String::as_str)
     }
@@ -50,12 +51,12 @@ pub struct Outline<'a> {
     /// Directives.
     pub header: String,
     pub declarations: Vec<Declaration<'a>>,
-    /// Indices of the functions, each after those that it calls. The last is the entry point: in
-    /// GLSL `main`, which naga wraps into a function of its own.
+    /// Indices of the functions, each after those that it calls. The last one is the entry point;
+    /// in GLSL that is `main`, which naga wraps in a function of its own.
     pub functions: Vec<usize>,
-    /// The structure that the entry point returns.
+    /// The structure that the entry point returns, if it returns one.
     pub interface: Option<usize>,
-    /// All but functions by their names.
+    /// All declarations but functions, by name.
     named: FxHashMap<&'a str, usize>,
 }
 
@@ -94,7 +95,7 @@ impl<'a> Outline<'a> {
         self.functions.last().copied().unwrap_or_default()
     }
 
-    /// Functions that a function calls, or may call, in the order of the text.
+    /// The functions that a function calls or may call, in the order of the text.
     pub fn callees(&self, function: usize) -> impl Iterator<Item = usize> {
         let declaration = &self.declarations[function];
         declaration.uses.iter().copied().filter(move |used| {
@@ -207,8 +208,8 @@ fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
     Ok(declared)
 }
 
-/// What stands in a head is told by its words: a parameter that has the name of a declaration
-/// counts as a use too, and changes no more than the key.
+/// Finds what each function's head names, by comparing words. A parameter with the name of a
+/// declaration counts as a use of it too: that only adds something to the function's key.
 fn find_head_uses(declared: &mut [Declaration<'_>]) {
     for index in 0..declared.len() {
         if declared[index].kind == PartKind::Function {
@@ -221,7 +222,7 @@ fn find_head_uses(declared: &mut [Declaration<'_>]) {
     }
 }
 
-/// What an alias that is no more stands for: the declarations that it names.
+/// An expanded alias stands for the declarations that it named.
 fn all_of(lean: &Composed, alias: u32, numbers: &[usize]) -> Vec<usize> {
     let (mut open, mut seen, mut found) = (vec![alias], BTreeSet::new(), Vec::new());
     while let Some(part) = open.pop() {
@@ -234,10 +235,10 @@ fn all_of(lean: &Composed, alias: u32, numbers: &[usize]) -> Vec<usize> {
     found
 }
 
-/// Refuses a text for any of its declarations.
+/// Refuses a text with a declaration that cannot be separated from the others.
 fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
     let mut functions: FxHashSet<&String> = FxHashSet::default();
-    // Few texts have any, so that most need not look for it in each declaration.
+    // Few texts ask for their line, so one search spares most texts the search in each declaration.
     let asks_line = lean.language == Language::Glsl && lean.text.contains("__LINE__");
     for (_, part) in kept {
         let text = &lean.text[part.range.clone()];
@@ -253,7 +254,7 @@ fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
     Ok(())
 }
 
-/// Declarations with which no text is taken apart.
+/// Refuses the kinds of declaration that cannot be separated.
 fn refuse(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
     let is_storage = |text: &str| match language {
         Language::Wesl => {
@@ -269,7 +270,7 @@ fn refuse(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
         PartKind::Override => Err(Reason::Override),
         PartKind::Prototype => Err(Reason::Overload),
         PartKind::Other => Err(Reason::Declaration),
-        // An alias is left only where it could not be expanded.
+        // Aliases were expanded already: this one could not be.
         PartKind::Alias => Err(Reason::Declaration),
         PartKind::Variable if is_storage(text) => Err(Reason::StorageBuffer),
         PartKind::Variable if text.contains("binding_array") => Err(Reason::BindingArray),
@@ -277,7 +278,7 @@ fn refuse(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
     }
 }
 
-/// Variables are put in an order of their own, so none may need another.
+/// Variables are sorted by name, so none may need another for its initial value.
 fn initialised_by_variables(declared: &[Declaration<'_>]) -> bool {
     let is_variable = |index: &usize| declared[*index].kind == PartKind::Variable;
     let early = |declaration: &&Declaration<'_>| {
@@ -329,7 +330,7 @@ impl Walk<'_, '_> {
     }
 }
 
-/// 128 bits over parts that cannot run into each other.
+/// 128 bits of a hash. Each part is hashed with its length, so parts cannot run into each other.
 pub fn hash<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> Key {
     let mut bytes = Vec::with_capacity(512);
     for part in parts {

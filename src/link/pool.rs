@@ -1,4 +1,4 @@
-//! Units in every target, each once, and texts put together from them.
+//! Keeps each unit once in every target, and links texts from units.
 
 use rustc_hash::FxHashMap;
 use std::collections::{BTreeSet, HashMap};
@@ -14,17 +14,17 @@ use super::translate::{Translated, Written};
 use crate::bundle::{Artifact, Native, Reflection, Target};
 use crate::emit::targets;
 
-/// What is kept.
+/// The units that are kept.
 pub struct Pool {
     units: HashMap<Key, Result<Arc<Unit>, Reason>>,
-    /// In the order of the targets.
+    /// What the targets share, in the order of the targets.
     texts: Vec<Texts>,
     words: spirv::Pool,
     /// Bytes of all units, roughly.
     size: usize,
 }
 
-/// A unit that was translated.
+/// A translated unit.
 pub struct Unit {
     pub summary: Summary,
     pub reflection: Option<Arc<Reflection>>,
@@ -37,7 +37,8 @@ enum Piece {
     Words { piece: spirv::Piece, native: Arc<Native> },
 }
 
-/// One text to put together: the units of its functions, callees first, then of its entry point.
+/// What one text is linked from: the units of its functions, callees first, and that of its entry
+/// point.
 pub struct Parts<'p> {
     /// The author's names of the functions.
     pub functions: Vec<(&'p str, Arc<Unit>)>,
@@ -63,7 +64,7 @@ impl Pool {
         self.size
     }
 
-    /// Keeps a unit; `function` is its author's name, if it is no entry point. `callees` are the
+    /// Keeps a unit. `function` is its author's name, `None` for an entry point; `callees` are the
     /// names of the functions that it may call.
     pub fn keep(
         &mut self,
@@ -97,7 +98,7 @@ impl Pool {
         unit
     }
 
-    /// One target of a text. `text` is room to write in.
+    /// Links one target of a text. `text` is a buffer that is used again.
     ///
     /// # Errors
     /// The reason why this target of the text is compiled as a whole.
@@ -143,7 +144,7 @@ impl Pool {
 }
 
 impl Unit {
-    /// Whether a target has no words for it.
+    /// Whether the target cannot express the unit.
     pub fn is_refused(&self, index: usize) -> bool {
         matches!(self.targets.get(index), Some(Err(Reason::Refused)))
     }
@@ -156,7 +157,7 @@ fn piece(unit: &Unit, index: usize) -> Result<&Piece, Reason> {
     }
 }
 
-/// Callees first, the entry point last.
+/// The pieces of a text: callees first, the entry point last.
 fn text_pieces<'p>(parts: &'p Parts<'_>, index: usize) -> Result<Vec<&'p TextPiece>, Reason> {
     let units = parts.functions.iter().map(|(_, unit)| unit).chain([&parts.entry]);
     let text = |unit: &'p Arc<Unit>| match piece(unit, index)? {

@@ -1,5 +1,5 @@
-//! What is written of a fragment: its text with the names that naga would choose, and the places
-//! where a text can have others.
+//! A fragment, ready to be written: its text has the usual names, and it knows the places where a
+//! text may need others.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use super::reason::Reason;
 use super::words::words;
 use crate::emit::glsl;
 
-/// A text whose references have their usual names.
+/// A text in which every reference has its usual name.
 pub struct Template {
     pub text: String,
     spots: Vec<Spot>,
@@ -25,7 +25,7 @@ struct Spot {
 }
 
 impl Template {
-    /// A reference in small letters keeps its usual name.
+    /// Makes a template. A reference in lower case always keeps its usual name.
     pub fn new(fragment: &Fragment, names: &mut Names) -> Result<Self, Reason> {
         for reference in &fragment.references {
             names.number(&reference.name)?;
@@ -49,7 +49,7 @@ impl Template {
         Ok(Self { text, spots })
     }
 
-    /// Whether it has references.
+    /// Whether it has no references.
     pub fn is_plain(&self) -> bool {
         self.spots.is_empty()
     }
@@ -58,7 +58,7 @@ impl Template {
         self.spots.iter().any(|spot| renames.contains_key(&spot.name))
     }
 
-    /// Appends the text, with names in the places of some that it usually has.
+    /// Appends the text, with the renamed names in the places of their usual ones.
     pub fn write(&self, renames: &Renames, out: &mut String) {
         self.write_part(0..self.text.len(), &self.spots, renames, out);
     }
@@ -76,21 +76,21 @@ impl Template {
     }
 }
 
-/// A fragment with numbers for names and identifiers.
+/// A template, with its names and identifiers as numbers.
 pub struct Ready {
     pub template: Template,
-    /// The author's names it has.
+    /// The author's names that it refers to.
     pub names: Numbers,
-    /// Names that it cannot have as they are: it declares the same itself.
+    /// Names that it cannot refer to by their usual form, since it declares that identifier itself.
     pub captured: Vec<u32>,
-    /// Identifiers that are neither references nor its own.
+    /// Identifiers that are neither references nor declared by the fragment itself.
     pub words: Numbers,
-    /// Identifiers that it declares within itself.
+    /// Identifiers that the fragment declares itself.
     pub locals: Vec<u32>,
     derived: Vec<Derived>,
 }
 
-/// A set of numbers, as bits: sets are put together often, and their numbers are neighbours.
+/// A set of numbers as blocks of bits. Sets are united often, and their numbers lie close together.
 pub struct Numbers(Vec<(u32, u64)>);
 
 impl Numbers {
@@ -107,12 +107,12 @@ impl Numbers {
         Self(blocks)
     }
 
-    /// Whether any is in `bits`, which has room for them.
+    /// Whether the sets share a number. `bits` must have room for all of its own.
     pub fn meets(&self, bits: &Bits) -> bool {
         self.0.iter().any(|(block, own)| bits.0[*block as usize] & own != 0)
     }
 
-    /// Adds all to `bits`, which has room for them.
+    /// Adds its numbers to `bits`, which must have room for them.
     pub fn add_to(&self, bits: &mut Bits) {
         for (block, more) in &self.0 {
             bits.0[*block as usize] |= more;
@@ -132,14 +132,14 @@ impl Bits {
         self.0[number / 64] & 1 << (number % 64) != 0
     }
 
-    /// Whether it was there already.
+    /// Adds a number; whether it was there already.
     pub fn insert(&mut self, number: usize) -> bool {
         let had = self.has(number);
         self.0[number / 64] |= 1 << (number % 64);
         had
     }
 
-    /// All, in order.
+    /// All numbers, in order.
     pub fn numbers(&self) -> impl Iterator<Item = usize> {
         self.0.iter().enumerate().flat_map(|(block, bits)| {
             let mut left = *bits;
@@ -152,9 +152,9 @@ impl Bits {
     }
 }
 
-/// An identifier of the writer's own that holds references.
+/// An identifier of the writer's own with references in it, such as `ConstructMaterial`.
 struct Derived {
-    /// As it usually is.
+    /// Its number, with all names in their usual form.
     word: u32,
     place: Range<usize>,
     spots: Range<usize>,
@@ -174,7 +174,7 @@ impl Ready {
         let is_captured = |name: &u32| is_local(&names.usual_word(*name));
         let captured = named.iter().copied().filter(is_captured).collect();
         let derived = derived(&template, names);
-        // Names with a reference in them are words too, as they nearly always are.
+        // Identifiers with references in them count as words too, in their usual form.
         let all = words(&template.text).map(|word| names.word(word.text)).collect();
         let mut known: Vec<u32> = sorted(all);
         known.retain(|word| !is_local(word) && usual.binary_search(word).is_err());
@@ -184,7 +184,7 @@ impl Ready {
         Ok(Self { template, names, captured, words, locals, derived })
     }
 
-    /// Appends the text, with names in the places of some that it usually has.
+    /// Appends the text, with the names that were chosen for it.
     pub fn write(&self, chosen: &Chosen, out: &mut String) {
         if self.names.meets(&chosen.renamed) {
             self.template.write(&chosen.renames, out);
@@ -193,7 +193,7 @@ impl Ready {
         }
     }
 
-    /// The identifiers that hold references, in a text with some other names.
+    /// Its identifiers with references in them, where other names were chosen for some.
     pub fn derived(&self, renames: &Renames) -> impl Iterator<Item = Identifier> {
         self.derived.iter().map(|derived| {
             let spots = &self.template.spots[derived.spots.clone()];
@@ -208,21 +208,21 @@ impl Ready {
     }
 }
 
-/// An identifier of a text.
+/// An identifier of a text that may be new to the target.
 pub enum Identifier {
-    /// By its number.
+    /// Known, by its number.
     Usual(u32),
     Text(String),
 }
 
-/// Each once.
+/// Sorted, each once.
 fn sorted(mut numbers: Vec<u32>) -> Vec<u32> {
     numbers.sort_unstable();
     numbers.dedup();
     numbers
 }
 
-/// The identifiers of which references are a part.
+/// Finds the identifiers that have references in them.
 fn derived(template: &Template, names: &mut Names) -> Vec<Derived> {
     let bytes = template.text.as_bytes();
     let is_part = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
@@ -244,7 +244,8 @@ fn derived(template: &Template, names: &mut Names) -> Vec<Derived> {
     derived
 }
 
-/// Names the variables that a writer calls after a declaration: they belong to the function.
+/// Gives their final names to the variables that the writer named after a declaration: they are
+/// locals of the function.
 fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Reason> {
     let small = fragment.references.iter().filter(|reference| reference.small);
     let small: BTreeSet<String> = small.map(|reference| reference.name.clone()).collect();
@@ -284,8 +285,8 @@ mod tests {
         assert!(bits.insert(63) && !bits.insert(2) && bits.has(2));
     }
 
-    /// A reference within a longer identifier is renamed with it; an identifier that the fragment
-    /// declares itself cannot be a name's.
+    /// A reference within a longer identifier is renamed too. A name cannot be an identifier that
+    /// the fragment declares itself.
     #[test]
     fn a_fragment_is_written_with_other_names() {
         let mut names = Names::new(Target::WGSL);

@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A closed set: each is told in the summary of a run with an example.
+/// Each reason is told in the summary of a run, with an example.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
     /// The text was not written by the composer, which tells its declarations.
     NoParts,
-    /// Not one entry point, or a compute shader.
+    /// There is not exactly one entry point, or it is a compute shader.
     EntryPoint,
     Override,
-    /// A storage buffer: writers pass lengths along with it.
+    /// A storage buffer: writers pass the lengths of its arrays to the functions that need them.
     StorageBuffer,
     /// An array of bindings: writers ask whether its index is uniform.
     BindingArray,
@@ -21,32 +21,33 @@ pub enum Reason {
     Declaration,
     /// GLSL: a variable whose initial value names another variable.
     Initialiser,
-    /// An identifier looks like the marks that references are written as.
+    /// An identifier has the form of a mark.
     MarkedName,
     /// Functions call each other in a circle, or are nested too deeply.
     Recursion,
-    /// Functions name so much, or are so large, that reading each by itself takes longer.
+    /// A function is very large or names very much: translating each by itself would take longer
+    /// than the whole.
     Large,
-    /// naga refused a function by itself: the whole text tells what is wrong.
+    /// naga refused a function by itself. The whole text shows what is wrong.
     Refused,
-    /// A stub does not show its callers what the function does.
+    /// naga's analysis finds something else in a stub than in its function.
     Stub,
     /// A texture is sampled in a way that no stub can repeat.
     Sampling,
-    /// The stage has no such operation: the whole text tells what is wrong.
+    /// The stage lacks an operation that is used. The whole text shows what is wrong.
     Stage,
-    /// An output has a shape that is not understood.
+    /// naga wrote an output in a form that this crate does not know.
     Shape,
-    /// Outputs begin with lines that cannot be put together.
+    /// The lines before the declarations of two outputs cannot be merged.
     Header,
     /// Two functions need different declarations of one name.
     Clash,
-    /// A SPIR-V module has instructions that are not understood.
+    /// A SPIR-V module has instructions that this crate does not know.
     Spirv,
 }
 
 impl Reason {
-    /// One line for the summary.
+    /// One line for the summary of a run.
     pub fn about(self) -> &'static str {
         match self {
             Self::NoParts => "the text does not come from the composer",

@@ -1,4 +1,4 @@
-//! What the callers of a function can notice of it, beside its signature.
+//! What callers can notice of a function beside its signature.
 
 use std::collections::BTreeSet;
 
@@ -10,21 +10,21 @@ use naga::{
 
 use super::outline::{Key, hash};
 
-/// Facts that writers, the reflection and the lints take from a callee.
+/// Facts about a callee that writers, the reflection and the lints use.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Summary {
-    /// Names of the module's variables that it uses, itself or through its callees: Metal passes
-    /// them along.
+    /// Names of the module's variables that it uses, itself or through its callees. Metal passes
+    /// them as arguments.
     pub globals: BTreeSet<String>,
-    /// Textures and samplers that it uses together: GLSL combines them.
+    /// Textures and samplers that it uses together. GLSL combines them.
     pub pairs: BTreeSet<Pair>,
-    /// It takes derivatives, or samples with a level that depends on them.
+    /// It takes derivatives, or samples with a level that derivatives choose.
     pub derives: bool,
-    /// It does so where fragments may have taken different branches.
-    pub parted: bool,
+    /// It does so in non-uniform control flow.
+    pub derives_non_uniformly: bool,
     /// It cannot be called in a vertex stage.
     pub only_fragments: bool,
-    /// Of all of the above.
+    /// A hash of all of the above.
     pub key: Key,
 }
 
@@ -40,7 +40,7 @@ pub struct Pair {
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Place {
     Global(String),
-    /// The argument of that number.
+    /// The argument at that index.
     Argument(u32),
 }
 
@@ -56,7 +56,7 @@ pub struct Shape {
     pub compares: bool,
 }
 
-/// The name by which a variable's declaration is found: a GLSL block without an instance name is
+/// The name by which a variable's declaration is found. A GLSL block without an instance name is
 /// found by its first member.
 pub fn name_of(module: &Module, variable: &GlobalVariable) -> Option<String> {
     match (&variable.name, &module.types[variable.ty].inner) {
@@ -72,8 +72,8 @@ pub fn globals(module: &Module, info: &FunctionInfo) -> Option<BTreeSet<String>>
     used.map(|(_, variable)| name_of(module, variable)).collect()
 }
 
-/// Summarises a function. `callee` knows the summaries of those that it calls. `None` where a
-/// texture or a sampler comes from somewhere else than a variable or an argument.
+/// Summarises a function. `callee` gives the summaries of the functions that it calls. `None` where
+/// a texture or a sampler comes neither from a variable nor from an argument.
 pub fn summarise<'s>(
     module: &Module,
     info: &FunctionInfo,
@@ -91,7 +91,7 @@ pub fn summarise<'s>(
             summary.pairs.insert(Pair { texture, sampler, shape });
         }
     }
-    let mut walk = Walk { module, function, callee, summary, parted: false };
+    let mut walk = Walk { module, function, callee, summary, has_diverged: false };
     walk.block(&function.body, false)?;
     let mut summary = walk.summary;
     summary.key = hash([format!("{summary:?}").as_bytes()]);
@@ -142,14 +142,14 @@ fn shape(
     Some(Shape { coordinates, cube: dim == ImageDimension::Cube, arrayed, depth, compares })
 }
 
-/// Follows a function's statements.
+/// Walks over a function's statements.
 struct Walk<'w, 's> {
     module: &'w Module,
     function: &'w Function,
     callee: &'w dyn Fn(Handle<Function>) -> Option<&'s Summary>,
     summary: Summary,
-    /// Some fragments may have left the function or a loop.
-    parted: bool,
+    /// Some fragments may have left the function or a loop, so control flow is no longer uniform.
+    has_diverged: bool,
 }
 
 impl Walk<'_, '_> {
@@ -158,12 +158,12 @@ impl Walk<'_, '_> {
     }
 
     fn statement(&mut self, statement: &Statement, inside: bool) -> Option<()> {
-        let parted = inside || self.parted;
+        let is_non_uniform = inside || self.has_diverged;
         match statement {
             Statement::Emit(range) => {
                 let mut emitted = range.clone();
                 let is_derived = |handle| derives(&self.function.expressions[handle]);
-                self.summary.parted |= parted && emitted.any(is_derived);
+                self.summary.derives_non_uniformly |= is_non_uniform && emitted.any(is_derived);
             }
             Statement::Block(block) => self.block(block, inside)?,
             Statement::If { accept, reject, .. } => {
@@ -179,13 +179,13 @@ impl Walk<'_, '_> {
             }
             Statement::Kill => {
                 self.summary.only_fragments = true;
-                self.parted = true;
+                self.has_diverged = true;
             }
             Statement::Return { .. } | Statement::Break | Statement::Continue => {
-                self.parted |= inside;
+                self.has_diverged |= inside;
             }
             Statement::Call { function, arguments, .. } => {
-                self.call(*function, arguments, parted)?;
+                self.call(*function, arguments, is_non_uniform)?;
             }
             _ => {}
         }
@@ -196,11 +196,12 @@ impl Walk<'_, '_> {
         &mut self,
         function: Handle<Function>,
         arguments: &[Handle<Expression>],
-        parted: bool,
+        is_non_uniform: bool,
     ) -> Option<()> {
         let callee = (self.callee)(function)?;
         self.summary.derives |= callee.derives;
-        self.summary.parted |= callee.parted || parted && callee.derives;
+        self.summary.derives_non_uniformly |=
+            callee.derives_non_uniformly || is_non_uniform && callee.derives;
         self.summary.only_fragments |= callee.only_fragments;
         for pair in &callee.pairs {
             let at_call = |place: &Place| match place {

@@ -1,4 +1,4 @@
-//! A text that naga wrote, by its declarations.
+//! Divides a text that naga wrote into declarations.
 
 use super::words::{begins_word, end, words};
 use crate::emit::is_header_line;
@@ -9,7 +9,7 @@ pub enum Kind {
     Type,
     Constant,
     Function,
-    /// What is bound, or enters and leaves the stage.
+    /// A bound variable, or one that enters or leaves the stage.
     Global,
 }
 
@@ -21,10 +21,10 @@ pub struct Declared<'a> {
     pub text: &'a str,
 }
 
-/// What comes before all declarations, and the declarations.
+/// The text before all declarations, and the declarations.
 ///
 /// # Errors
-/// Where something is not understood.
+/// Where the text has a form that this crate does not know.
 pub fn split(text: &str) -> Result<(&str, Vec<Declared<'_>>), String> {
     let header = header(text);
     let (mut rest, mut declared) = (text[header..].trim_start(), Vec::new());
@@ -37,14 +37,14 @@ pub fn split(text: &str) -> Result<(&str, Vec<Declared<'_>>), String> {
     Ok((text[..header].trim_end(), declared))
 }
 
-/// Bytes of the lines that begin a text of its language.
+/// Length of the lines before the first declaration.
 fn header(text: &str) -> usize {
     text.split_inclusive('\n').take_while(|line| is_header_line(line)).map(str::len).sum()
 }
 
-/// Bytes of the declaration that a text begins with, the semicolon after its brackets too.
+/// Length of the declaration at the start of the text, with the semicolon after its brackets.
 fn length(text: &str) -> Option<usize> {
-    // The name of a structure without one of its own stands behind its brackets.
+    // A structure without a tag is named after its brackets.
     let names_what_it_holds = text.starts_with("typedef ");
     let mut depth = 0_usize;
     for (at, byte) in text.bytes().enumerate() {
@@ -71,7 +71,7 @@ fn length(text: &str) -> Option<usize> {
 
 fn declaration(text: &str) -> Result<Declared<'_>, String> {
     let head = head(text);
-    // Where the name comes last, it may be a word of another language.
+    // Where the name comes last, it may be any word, a keyword of another language too.
     let (last, before) =
         head.words.split_last().map_or((None, &[][..]), |(last, all)| (Some(*last), all));
     let has = |word: &str| before.contains(&word);
@@ -83,7 +83,7 @@ fn declaration(text: &str) -> Result<Declared<'_>, String> {
         b'{' if has("typedef") => (Kind::Type, words(text).last().map(|word| word.text)),
         _ if has("typedef") || has("alias") => (Kind::Type, last),
         b'(' => (Kind::Function, last),
-        // A block of uniforms is called by the name of its instance.
+        // A uniform block is known by the name of its instance.
         b'{' if has("uniform") || has("buffer") => {
             (Kind::Global, words(text).last().map(|word| word.text))
         }
@@ -100,7 +100,7 @@ fn declaration(text: &str) -> Result<Declared<'_>, String> {
     Ok(Declared { kind, name, text })
 }
 
-/// The words before a declaration's value, its arguments or its content.
+/// The words before a declaration's value, arguments or content.
 struct Head<'a> {
     words: Vec<&'a str>,
     /// The character that ended them.
@@ -118,7 +118,8 @@ fn head(text: &str) -> Head<'_> {
             b'<' => at += text[at..].find('>').map_or(0, |found| found + 1),
             b':' if bytes.get(at) == Some(&b':') => at += 1,
             b'(' | b'{' | b'=' | b'[' | b';' | b':' => return Head { words, stop: byte },
-            // Attributes of WGSL, and layouts of GLSL, have arguments of their own.
+            // Attributes of WGSL and layouts of GLSL have arguments of their own, which are
+            // skipped.
             b'@' => {
                 at += text[at..]
                     .find(|character: char| !character.is_ascii_alphanumeric() && character != '_')

@@ -1,4 +1,4 @@
-//! What the functions of one target share, and its texts put together.
+//! What the functions of one target share, and how texts of that target are put together.
 
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -10,31 +10,32 @@ use super::reason::Reason;
 use super::text::Kind;
 use crate::bundle::{Native, Target};
 
-/// All of one target.
+/// Everything that is kept for one target.
 #[derive(Default)]
 pub struct Texts {
     names: Names,
     headers: Vec<String>,
     declarations: Vec<Declared>,
     places: HashMap<(Fragment, Vec<u32>), u32>,
-    /// The declarations in the order in which texts have them.
+    /// The declarations, in the order in which a text writes them.
     order: Vec<u32>,
-    /// Of each declaration its place in that order; those that are alike have the same.
+    /// For each declaration its rank in that order. Declarations that are written alike have the
+    /// same rank.
     ranks: Vec<u32>,
-    /// By name and head: a text has one of each.
+    /// Declarations of the same name and head have the same number: a text can have one of them.
     twins: HashMap<(String, String), u32>,
 }
 
 /// A unit in one target.
 pub struct TextPiece {
-    /// The number of the lines before all declarations.
+    /// The number of its header, the lines before all declarations.
     header: u32,
-    /// Numbers of what it needs of what is shared, sorted.
+    /// Numbers of the shared declarations that it needs, sorted.
     shared: Vec<u32>,
     globals: Vec<Ready>,
     body: Ready,
     native: Arc<Native>,
-    /// The native names as text, where they have names of the author's in them.
+    /// The native names as a template, where names of the author's are among them.
     template: Option<Template>,
 }
 
@@ -43,9 +44,10 @@ struct Declared {
     ready: Ready,
     declares: Template,
     twin: u32,
-    /// No less than that of anything it uses: declarations are written in this order,
+    /// Texts write declarations by kind first. A declaration's kind is at least that of all it
+    /// uses,
     kind: Kind,
-    /// and then in this one, more than that of anything it uses.
+    /// and then by height, which is greater than that of all it uses. So each comes after those.
     height: u32,
 }
 
@@ -54,7 +56,7 @@ impl Declared {
         (self.kind, self.height, &self.ready.template.text)
     }
 
-    /// What tells functions of one name apart.
+    /// What distinguishes functions of one name from each other.
     fn head(&self) -> &str {
         head(self.kind, &self.ready)
     }
@@ -98,7 +100,7 @@ impl Texts {
         }) as u32
     }
 
-    /// The number of what is shared; it is kept once.
+    /// The number of a shared declaration, which is kept once.
     fn share(&mut self, shared: Shared, numbers: &[u32]) -> Result<u32, Reason> {
         let uses: Vec<u32> = shared.uses.iter().map(|place| numbers[*place]).collect();
         let key = (shared.fragment, uses);
@@ -121,7 +123,7 @@ impl Texts {
         Ok(number)
     }
 
-    /// Finds the last declaration's place in the order.
+    /// Finds the place of the newest declaration in the order.
     fn rank(&mut self, number: u32) {
         let of = |number: &u32| self.declarations[*number as usize].order();
         let place = self.order.partition_point(|other| of(other) < of(&number));
@@ -138,15 +140,16 @@ impl Texts {
         self.order.insert(place, number);
     }
 
-    /// What the output calls things; with the text of it, where that has names of the author's.
+    /// The native names of an entry point, with their template where names of the author's are
+    /// among them.
     fn native(&mut self, native: Fragment) -> Result<(Arc<Native>, Option<Template>), Reason> {
         let template = Template::new(&native, &mut self.names)?;
         let native = serde_json::from_str(&template.text).map_err(|_| Reason::Shape)?;
         Ok((Arc::new(native), (!template.is_plain()).then_some(template)))
     }
 
-    /// Header, what is shared, what is bound, the functions, the entry point, which is the last of
-    /// the pieces. What is in `text` is lost.
+    /// Writes a text: header, shared declarations, bound variables, functions, and at last the
+    /// entry point, which is the last of the pieces. `text` is a buffer whose content is replaced.
     pub fn link(&self, pieces: &[&TextPiece], text: &mut String) -> Result<Arc<Native>, Reason> {
         let entry = pieces.last().ok_or(Reason::Header)?;
         let shared = self.shared(pieces);
@@ -173,7 +176,7 @@ impl Texts {
         named(entry, renames)
     }
 
-    /// What the pieces share, in the order to declare it in.
+    /// The shared declarations that the pieces need, in the order in which a text writes them.
     fn shared(&self, pieces: &[&TextPiece]) -> Vec<&Declared> {
         let mut seen = vec![false; self.declarations.len()];
         let mut found: Vec<(u32, &Declared)> = Vec::new();
@@ -187,7 +190,7 @@ impl Texts {
         found.into_iter().map(|(_, declared)| declared).collect()
     }
 
-    /// Two declarations of one name are one too many, unless their heads tell them apart.
+    /// Refuses two declarations of one name, unless their heads distinguish them.
     fn refuse_twins(&self, shared: &[&Declared], renames: &Renames) -> Result<(), Reason> {
         let mut seen = vec![false; self.twins.len()];
         let mut others = BTreeSet::new();
@@ -211,7 +214,8 @@ impl Texts {
         Ok(())
     }
 
-    /// A numbered name makes names that hold it others too: none may be a name of the author's.
+    /// Refuses a text where a numbered name, within a longer identifier, gives the name of another
+    /// declaration.
     fn refuse_derived(&self, all: &[&Ready], chosen: &Chosen) -> Result<(), Reason> {
         if chosen.renames.is_empty() {
             return Ok(());
@@ -223,7 +227,7 @@ impl Texts {
         }
     }
 
-    /// The lines before all declarations: those that every piece has, and extensions of some.
+    /// Writes the header: the lines that all pieces have, and the extensions that some need.
     fn write_header(&self, pieces: &[&TextPiece], text: &mut String) -> Result<(), Reason> {
         let headers: BTreeSet<u32> = pieces.iter().map(|piece| piece.header).collect();
         let headers: Vec<&str> =
@@ -244,7 +248,7 @@ impl Texts {
         }
         let extra: BTreeSet<&str> =
             headers.iter().flat_map(|header| header.lines()).filter(is_extra).collect();
-        // `#version` comes first in GLSL, and WGSL has no other lines.
+        // GLSL's `#version` must come first. WGSL's headers have no other lines.
         let first = common.iter().take(1).map(String::as_str);
         let rest = common.iter().skip(1).map(String::as_str);
         let lines: Vec<&str> = first.chain(extra).chain(rest).collect();
@@ -253,7 +257,7 @@ impl Texts {
     }
 }
 
-/// What the output calls things, where some names are others than usual.
+/// The native names of an entry point, where some of the author's names were renamed.
 fn named(entry: &TextPiece, renames: &Renames) -> Result<Arc<Native>, Reason> {
     let Some(template) = entry.template.as_ref().filter(|text| text.is_renamed(renames)) else {
         return Ok(entry.native.clone());

@@ -1,4 +1,5 @@
-//! One unit in every target: naga writes its canonical text, and what is its own is cut out.
+//! Translates one unit for every target: naga writes its canonical text, of which the unit's own
+//! part is kept.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -23,25 +24,26 @@ use crate::validate::{CAPABILITIES, Validated, guard, is_bounded, is_calm, on_la
 /// A unit in every target.
 pub struct Translated {
     pub summary: Summary,
-    /// In the order of the targets; a target that cannot be cut stays whole, and no other.
+    /// One result for each target, in their order. Where one output cannot be cut, only that target
+    /// is compiled as a whole.
     pub targets: Vec<Result<Written, Reason>>,
-    /// Of an entry point.
+    /// The reflection, for an entry point.
     pub reflection: Option<Arc<Reflection>>,
 }
 
 /// A unit in one target.
 pub enum Written {
-    /// The author's names are references; what the output calls things is JSON.
+    /// Text, with references for the author's names; `native` is the native names as JSON.
     Text { cut: Cut, native: Option<Fragment> },
-    /// A SPIR-V module with names as they are.
+    /// A SPIR-V module, in which names stay as they are.
     Words { words: Vec<u32>, native: Native },
 }
 
-/// The declarations of a canonical text, as naga knows them.
+/// The module of a canonical text.
 struct Parsed {
     validated: Validated,
     entry: String,
-    /// The author's names by the number of their mark.
+    /// The author's names, indexed by the number of their mark.
     names: Vec<String>,
     marked: Validated,
 }
@@ -110,7 +112,7 @@ fn parse(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
     }
 }
 
-/// The summary of the unit, once every stub shows what its function does.
+/// The summary of the unit. Before that it is checked that every stub shows what its function does.
 fn summary(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
@@ -181,7 +183,7 @@ fn write(
     Ok(Written::Text { cut, native })
 }
 
-/// Names that the author gave within the unit's function: naga may number them.
+/// Names that the author gave within the unit's function, to which naga may append numbers.
 fn locals<'m>(recipe: &Recipe<'_>, module: &'m Module, name: Option<&str>) -> BTreeSet<&'m str> {
     let function = match recipe.unit {
         UnitId::Entry => module.entry_points.first().map(|point| &point.function),

@@ -1,5 +1,5 @@
-//! naga leaves out what nothing uses: here stubs use what their functions use, and the entry point
-//! calls the unit's function.
+//! Adds uses to a module: naga leaves out what nothing uses. Stubs are made to use what their
+//! functions use, and the entry point to call the unit's function.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,8 +14,8 @@ use super::reason::Reason;
 use super::summary::name_of;
 use crate::bundle::Language;
 
-/// Makes stubs use the variables that their functions use: a named expression is a use of which
-/// nothing is written.
+/// Makes each stub use the variables that its function uses. A named expression counts as a use,
+/// and writers write nothing for it.
 pub fn show_stubs(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
@@ -46,8 +46,8 @@ pub fn show_stubs(
     Ok(())
 }
 
-/// Makes the idle entry point call the function: writers leave out what an entry point does not
-/// reach. GLSL's `main` is called already.
+/// Makes the entry point that does nothing call the function, since writers leave out what no entry
+/// point reaches. GLSL's `main` is called already.
 pub fn call_function(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
@@ -86,7 +86,8 @@ pub fn call_function(
     Ok(())
 }
 
-/// Something to pass for a parameter, and whether it has to be loaded: what it is does not matter.
+/// An expression to pass for a parameter, and whether it has to be loaded first. Its value does not
+/// matter.
 fn argument(
     module: &mut Module,
     point: &mut Function,
@@ -122,7 +123,7 @@ fn argument(
     }
 }
 
-/// A binding that every target can number.
+/// A binding that is free, and that every target can number.
 fn free_binding(module: &Module) -> Option<ResourceBinding> {
     let taken: BTreeSet<_> = module
         .global_variables

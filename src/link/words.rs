@@ -1,4 +1,4 @@
-//! Identifiers of a shading language's text: WGSL, or one of the C family, without comments.
+//! The identifiers in a text of WGSL or of a language of the C family, without comments.
 
 /// An identifier.
 #[derive(Debug, Clone, Copy)]
@@ -6,11 +6,11 @@ pub struct Word<'a> {
     pub text: &'a str,
     /// Where it starts.
     pub at: usize,
-    /// The last byte before it that is not blank; a blank at the start of the text.
+    /// The last byte before it that is not white space; a blank where there is none.
     pub before: u8,
 }
 
-/// Every identifier or keyword; the letters of a number are none.
+/// Every identifier and keyword. Letters within a number, such as an exponent, do not count.
 pub fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
     let bytes = text.as_bytes();
     let (mut at, mut before) = (0, b' ');
@@ -32,7 +32,7 @@ pub fn begins_word(byte: u8) -> bool {
     byte.is_ascii_alphabetic() || byte == b'_'
 }
 
-/// Where the word, the number or the other character ends that starts here.
+/// The end of the word, the number or the character that starts at `start`.
 pub fn end(bytes: &[u8], start: usize) -> usize {
     let first = bytes[start];
     let belongs = |byte: &u8| match first {

@@ -1,12 +1,12 @@
-//! Flags of conditions that nothing declares.
+//! Reports flags in conditions that nothing declares.
 
 use super::Request;
 use crate::diagnostic::{Diagnostics, Severity};
 use crate::permute::Settings;
 use crate::resolve::Graph;
 
-/// An error for each flag of the package's own conditions that no axis and no option gives a
-/// value, unless it was said what such flags are.
+/// An error for each flag of the package's own conditions that neither an axis nor an option gives
+/// a value, unless a value for undeclared features was chosen.
 pub fn undeclared(graph: &Graph, request: &Request<'_>) -> Diagnostics {
     let mut known = request.settings.clone();
     for program in request.manifest.iter().flat_map(|manifest| &manifest.programs) {

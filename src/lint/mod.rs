@@ -1,5 +1,5 @@
-//! A whole package, whether anything reaches a declaration or not: every module is composed with
-//! all that it declares, and naga looks at it.
+//! Checks a whole package, whether or not anything reaches a declaration: every module is composed
+//! with everything that it declares, and validated by naga.
 
 mod flags;
 mod settings;
@@ -14,13 +14,13 @@ use crate::resolve::{self, Graph, Packages};
 use crate::source::SourceSet;
 use crate::validate;
 
-/// What to look at, and under which settings.
+/// What to check, and with which settings.
 pub struct Request<'a> {
     /// The package and what it may import.
     pub packages: &'a Packages,
     /// The package's manifest, whose axes have values.
     pub manifest: Option<&'a Manifest>,
-    /// What is chosen beside the manifest's axes.
+    /// The settings that are chosen in addition to the manifest's axes.
     pub settings: &'a Settings,
     /// Paths below the package's root.
     pub paths: &'a [String],
@@ -44,7 +44,7 @@ pub fn language(path: &str) -> Option<Language> {
     }
 }
 
-/// Endings of modules.
+/// Extensions of modules.
 pub const EXTENSIONS: &[&str] = &["wesl", "wgsl", "glsl", "vert", "frag", "comp"];
 
 /// Looks at modules of the root package.
@@ -64,7 +64,7 @@ pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Linted {
     let included = included(sources, &graphs);
     for (path, graph) in &graphs {
         found.extend(flags::undeclared(graph, request));
-        // What a GLSL file is included for is seen where it is included.
+        // A GLSL file that others include is checked where it is included.
         if !included.contains(&request.packages.root.files.display(path)) {
             found.extend(module(graph, request, path));
         }
@@ -86,7 +86,7 @@ fn included(sources: &SourceSet, graphs: &BTreeMap<String, Graph>) -> BTreeSet<S
     graphs.values().flat_map(of).collect()
 }
 
-/// A module under each of the settings that matter to it.
+/// Checks a module with each of the settings that matter to it.
 fn module(graph: &Graph, request: &Request<'_>, path: &str) -> Diagnostics {
     let mut found = Diagnostics::new();
     let mut texts = BTreeSet::new();
@@ -107,14 +107,14 @@ fn module(graph: &Graph, request: &Request<'_>, path: &str) -> Diagnostics {
     found
 }
 
-/// What is wrong with the items of a module that cannot be composed as a whole.
+/// Checks the items of a module one by one, if it cannot be composed as a whole.
 fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
     let mut found = Diagnostics::new();
     for name in graph.root_items() {
         let options = Options { keep: Keep::Items(vec![name]), ..Options::default() };
         match compose::compose(graph, settings, &options) {
             Ok(composed) => found.extend(graph.traced(text(graph, &composed))),
-            // What was asked for by name has no place where it is missing.
+            // An item that was asked for by name has no place if it is missing.
             Err(errors) => {
                 found.extend(errors.into_iter().filter(|error| !error.labels.is_empty()))
             }
@@ -123,7 +123,8 @@ fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
     found
 }
 
-/// All that a WESL module declares; of GLSL also what it includes, since only that shows it whole.
+/// Options that keep everything a WESL module declares. For GLSL they also keep what it includes,
+/// since that is needed to see the whole file.
 pub fn options(graph: &Graph, path: &str) -> Options {
     let stem = path.strip_suffix(".glsl").unwrap_or(path);
     let has_stage = [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending));
@@ -134,7 +135,7 @@ pub fn options(graph: &Graph, path: &str) -> Options {
     Options { keep, ..Options::default() }
 }
 
-/// What is wrong with a composed text: the warnings it was composed with, then what naga says.
+/// The warnings from composing a text, then what naga finds in it.
 pub fn text(graph: &Graph, composed: &Composed) -> Diagnostics {
     let warnings = graph.own(composed.warnings.clone());
     match validate::every(composed) {
@@ -146,7 +147,8 @@ pub fn text(graph: &Graph, composed: &Composed) -> Diagnostics {
     }
 }
 
-/// Each diagnostic once, in the order of places: modules are read anew for each that reaches them.
+/// Each diagnostic once, in the order of places. A module is read again for each one that reaches
+/// it.
 fn distinct(sources: &SourceSet, found: Diagnostics) -> Diagnostics {
     let key = |diagnostic: &Diagnostic| {
         let place = diagnostic.labels.first().map(|label| {

@@ -1,4 +1,4 @@
-//! The settings under which a module is looked at.
+//! Chooses the settings with which a module is checked.
 
 use super::Request;
 use crate::permute::axis::Mode;
@@ -6,11 +6,12 @@ use crate::permute::space::{Lists, Space};
 use crate::permute::{Program, Settings, cover};
 use crate::resolve::Graph;
 
-/// Permutations of one program that a module is looked at in.
+/// In how many permutations of one program a module is checked.
 const MOST: usize = 64;
 
-/// Where a program has the module as a root, or the module asks for a program's axes: permutations
-/// that have every pair of values of the axes that it may ask for. Else what was chosen.
+/// The settings to check a module with. If a program has it as a root, or it asks for a program's
+/// axes: permutations that cover every pair of values of the axes that it may ask for. Otherwise
+/// the settings that were chosen.
 pub fn candidates(graph: &Graph, request: &Request<'_>, path: &str) -> Vec<Settings> {
     let programs = || request.manifest.iter().flat_map(|manifest| &manifest.programs);
     let is_root = |program: &&Program| program.files().any(|file| file.path == path);
@@ -39,12 +40,12 @@ fn of_program(graph: &Graph, request: &Request<'_>, program: &Program) -> Vec<Se
     settings.collect()
 }
 
-/// The space with the axes at their defaults that the module cannot ask for; all of it where that
-/// leaves nothing.
+/// The space with all axes at their defaults that the module cannot ask for; the whole space if
+/// nothing is left.
 fn narrowed(graph: &Graph, space: &Space) -> Space {
     let mut axes = space.axes().to_vec();
     for axis in axes.iter_mut().filter(|axis| !graph.may_ask(&axis.name)) {
-        // Such an axis is always at its default.
+        // A dynamic axis is always at its default.
         axis.mode = Mode::Dynamic;
     }
     Space::new(axes, space.constraints().to_vec(), Lists::default())
@@ -53,8 +54,8 @@ fn narrowed(graph: &Graph, space: &Space) -> Space {
         .unwrap_or_else(|| space.clone())
 }
 
-/// Flags that nothing declares are told on their own: what else is wrong is looked for without
-/// them.
+/// Gives undeclared flags a value. They are reported separately, and other errors are looked for
+/// without them.
 fn without_errors(settings: Settings) -> Settings {
     Settings { undeclared: settings.undeclared.or(Some(false)), ..settings }
 }

@@ -127,7 +127,7 @@ impl Server {
         match handler(self, parameters) {
             Ok(result) => answer(id, result),
             Err(words) if words.is_empty() => {
-                error(id, WRONG_PARAMETERS, &format!("these are no parameters of `{method}`"))
+                error(id, WRONG_PARAMETERS, &format!("these are not parameters of `{method}`"))
             }
             Err(words) => error(id, FAILED, &words),
         }

@@ -98,7 +98,7 @@ pub fn rename(server: &mut Server, parameters: &Value) -> Result<Value, String> 
     let mut letters = new.chars();
     let first = letters.next().is_some_and(|c| c == '_' || unicode_ident::is_xid_start(c));
     if !first || !letters.all(unicode_ident::is_xid_continue) || is_keyword(&new) || new == "_" {
-        return Err(format!("`{new}` is no name in WGSL"));
+        return Err(format!("`{new}` is not a name in WGSL"));
     }
     let declared = modules.declarations(symbol);
     let old = declared.first().map(|span| modules.sources.text(*span).to_owned());

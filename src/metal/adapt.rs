@@ -1,16 +1,16 @@
-//! What the headers cannot express, written in another way. Lines keep their numbers.
+//! Rewrites what the headers cannot express. Lines keep their numbers.
 
 use std::borrow::Cow;
 
 use super::token::{Token, tokens};
 
-/// The text as clang is given it.
+/// The text that clang gets.
 ///
 /// - A function constant has no value: in C++ a constant needs one.
 /// - The helper that compares and exchanges atomically is declared for two address spaces, which
 ///   are one here.
-/// - `(a < b).x` is a number in clang, 0 or -1: behind the headers' `__lamplight::truth` it is of
-///   type `bool`.
+/// - `(a < b).x` is the number 0 or -1 in clang. The headers' `__lamplight::truth` makes it a
+///   `bool`.
 pub fn adapt(text: &str) -> Cow<'_, str> {
     let tokens = tokens(text);
     let mut edits = Vec::new();
@@ -32,7 +32,7 @@ pub fn adapt(text: &str) -> Cow<'_, str> {
     Cow::Owned(to + &text[done..])
 }
 
-/// First byte, first byte behind, and what is written there instead.
+/// The first byte, the byte after the last one, and what replaces them.
 type Edit = (usize, usize, &'static str);
 
 fn texts<'t, const N: usize>(tokens: &[Token<'t>], at: usize) -> Option<[&'t str; N]> {
@@ -49,14 +49,14 @@ fn function_constant(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
     Some((tokens[at].at, tokens[at + 8].at, "= {}"))
 }
 
-/// `template <typename A> R naga_...(threadgroup A *atomic_ptr` is given a name of its own.
+/// `template <typename A> R naga_...(threadgroup A *atomic_ptr` gets a name of its own.
 fn second_helper(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
     const HELPER: &str = "naga_atomic_compare_exchange_weak_explicit";
     let [HELPER, "(", "threadgroup", "A", "*"] = texts::<5>(tokens, at)? else { return None };
     Some((tokens[at].at, tokens[at].end(), "naga_atomic_of_threadgroup"))
 }
 
-/// `(a < b).x`, where the bracket is no call's -> `__lamplight::truth(a < b).x`
+/// `(a < b).x` -> `__lamplight::truth(a < b).x`, unless the bracket belongs to a call.
 fn component_of_group(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
     let (before, open) = (tokens.get(at.checked_sub(1)?)?, tokens[at]);
     let is_call =

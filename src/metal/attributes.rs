@@ -1,8 +1,8 @@
-//! The attributes of a text: clang skips those it does not know, so they are checked here.
+//! Checks the attributes of a text, since clang ignores those that it does not know.
 
 use super::token::{Token, place, tokens};
 
-/// What an attribute is given in brackets.
+/// What an attribute may have in its brackets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Given {
     Nothing,
@@ -14,14 +14,14 @@ enum Given {
     Name,
 }
 
-/// What an attribute is written behind.
+/// What an attribute may stand behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Behind {
     Parameter,
     Member,
     /// A parameter or a member.
     Either,
-    /// What stands alone: a function or a variable.
+    /// A whole declaration: a function or a variable.
     Item,
 }
 
@@ -35,7 +35,7 @@ const SAMPLERS: u32 = 15;
 const COLORS: u32 = 7;
 const ATTRIBUTES: u32 = 30;
 
-/// The attributes of the Metal Shading Language Specification, as far as naga's writer has them.
+/// The attributes of the Metal Shading Language Specification that naga's writer uses.
 const KNOWN: &[(&str, Given, Behind)] = &[
     ("amplification_id", Nothing, Parameter),
     ("attribute", Number(ATTRIBUTES), Member),
@@ -93,14 +93,14 @@ pub struct Attribute<'t> {
 }
 
 impl Attribute<'_> {
-    /// The number it is given.
+    /// The number in its brackets.
     pub fn number(&self) -> Option<u32> {
         self.given?.parse().ok()
     }
 }
 
-/// The attributes between `[[` and `]]`, whose first token is at `start`; and the first token
-/// behind them. `None` where there are no such brackets.
+/// The attributes between `[[` and `]]`, whose first token is at `start`, and the index of the
+/// token after them. `None` if there are no such brackets.
 pub fn list<'t>(tokens: &[Token<'t>], start: usize) -> Option<(Vec<Attribute<'t>>, usize)> {
     if !opens(tokens, start) {
         return None;
@@ -138,7 +138,7 @@ fn opens(tokens: &[Token<'_>], start: usize) -> bool {
     }
 }
 
-/// The first mistake in the attributes of a text, as clang would tell it.
+/// The first mistake in the attributes of a text, in clang's format.
 pub fn mistake(text: &str) -> Option<String> {
     let tokens = tokens(text);
     let (mut brackets, mut braces) = (0u32, 0u32);

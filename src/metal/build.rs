@@ -1,4 +1,5 @@
-//! Texts as one program: units of many texts, compiled on all cores, and linked.
+//! Builds one program from many texts: compiles units of several texts on all cores, and links
+//! them.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -10,11 +11,12 @@ use super::adapt::adapt;
 use super::clang::{Clang, Missing};
 use super::interface::{Interface, Part, Role};
 
-/// Bytes of texts in a unit: the headers cost nothing then, and all cores have work.
+/// Bytes of texts in a unit. It is large enough that the headers cost little, and small enough that
+/// all cores have work.
 const UNIT: usize = 1 << 17;
 
-/// How shaders are compiled: without contraction, so that results are those of single operations,
-/// and with no undefined behaviour where Metal has none.
+/// How shaders are compiled: without contraction, so that each operation is rounded by itself, and
+/// without undefined behaviour where Metal has none.
 const FLAGS: &[&str] = &[
     "-c",
     "-O1",
@@ -74,7 +76,7 @@ pub fn build(texts: &[&str]) -> Result<Built, Missing> {
     Ok(Built { clang, entries })
 }
 
-/// What became of a unit, or of a text of it.
+/// The result for a unit, or for a text of it.
 enum Object {
     /// The file's name.
     Compiled(String),
@@ -111,7 +113,7 @@ fn units<'t>(texts: &[&str], entries: &'t [Result<Interface, String>]) -> Vec<Ve
     units
 }
 
-/// A unit that is refused is compiled in halves, down to the texts that are at fault.
+/// Compiles a unit. If it is refused it is divided in halves, until the texts at fault are found.
 fn compile(clang: &Clang, texts: &[&str], unit: &[Text<'_>]) -> Objects {
     let Some((first, _)) = unit.first() else { return Ok(Vec::new()) };
     let name = format!("unit{first}-{}.o", unit.len());
@@ -168,7 +170,8 @@ fn link(
     done(clang.call(&arguments)?)
 }
 
-/// Texts side by side, each in a namespace of its own and followed by the function that runs it.
+/// Texts one after another, each in a namespace of its own and followed by the function that runs
+/// it.
 fn source(texts: &[&str], unit: &[Text<'_>]) -> String {
     let mut source = "#include \"glue.h\"\n".to_owned();
     for (index, interface) in unit {
@@ -183,7 +186,7 @@ fn source(texts: &[&str], unit: &[Text<'_>]) -> String {
     source
 }
 
-/// The function that fills parameters, and takes results, by their attributes.
+/// The function that fills parameters and takes results, according to their attributes.
 fn glue(to: &mut String, index: usize, interface: &Interface) {
     let _ = writeln!(
         to,

@@ -1,4 +1,4 @@
-//! clang, and the folder it reads the headers from.
+//! clang, and the folder with the headers that it reads.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use std::{env, fs, io};
 
 use crate::tools::CLANG;
 
-/// The headers, and the program around shaders.
+/// The headers, and the program around the shaders.
 const SHIM: &[(&str, &str)] = &[
     ("compute.h", include_str!("shim/compute.h")),
     ("convert.h", include_str!("shim/convert.h")),
@@ -23,8 +23,9 @@ const SHIM: &[(&str, &str)] = &[
     ("types.h", include_str!("shim/types.h")),
 ];
 
-/// How shaders are read: strictly C++17, one type of vector for one of components and elements,
-/// literals without a suffix of type `float`. Warnings about what naga writes help nobody.
+/// How shaders are read: as strict C++17, with one vector type for each element type and size, and
+/// with literals without a suffix of type `float`. Warnings about naga's text would help nobody, so
+/// they are off.
 const FLAGS: &[&str] = &[
     "-x",
     "c++",
@@ -51,7 +52,7 @@ pub struct Clang {
     folder: PathBuf,
 }
 
-/// What the headers and the way they are read are, in short: other headers judge otherwise.
+/// A hash of the headers and of how they are read, since other headers judge differently.
 pub fn shim() -> String {
     let mut hasher = blake3::Hasher::new();
     let texts = SHIM.iter().flat_map(|(name, text)| [*name, *text]).chain(FLAGS.iter().copied());
@@ -62,7 +63,7 @@ pub fn shim() -> String {
     hasher.finalize().to_hex().to_string()
 }
 
-/// What the installed clang says of itself.
+/// The version that the installed clang reports.
 ///
 /// # Errors
 /// There is none.
@@ -104,14 +105,14 @@ impl Clang {
         fs::write(path, bytes)
     }
 
-    /// Reads a source as shaders are read, and does what the arguments say.
+    /// Reads a source as shaders are read, with more arguments.
     pub fn compile(&self, source: &str, arguments: &[&str]) -> Result<Output, Missing> {
         let mut command = Command::new(CLANG.program);
         command.args(FLAGS).arg("-isystem").arg(&self.folder).args(arguments).arg("-");
         self.run(command, source.as_bytes())
     }
 
-    /// Any other call, in the folder.
+    /// Calls clang with any arguments, in the folder.
     pub fn call(&self, arguments: &[&str]) -> Result<Output, Missing> {
         let mut command = Command::new(CLANG.program);
         command.args(arguments);
@@ -123,7 +124,7 @@ impl Clang {
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(reason)?;
         if let Some(mut stdin) = child.stdin.take() {
-            // It stops reading at a mistake it cannot go on from; what it said of it follows.
+            // clang stops reading at a fatal error. Its message is read below.
             match stdin.write_all(input) {
                 Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                     return Err(reason(error));
@@ -137,7 +138,7 @@ impl Clang {
 
 impl Drop for Clang {
     fn drop(&mut self) {
-        // What is left of it is in the folder for temporary files.
+        // If this fails, the rest stays in the folder for temporary files.
         let _ = fs::remove_dir_all(&self.folder);
     }
 }

@@ -1,10 +1,10 @@
-//! What an entry point takes and gives, read from its own text.
+//! Reads from a text what its entry point takes and returns.
 
 use super::attributes::{Attribute, list};
 use super::token::{Token, tokens};
 use crate::bundle::Stage;
 
-/// Where a parameter or a member comes from, or goes to.
+/// What a parameter or a member stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// The struct of locations.
@@ -12,7 +12,7 @@ pub enum Role {
     Buffer(u32),
     Texture(u32),
     Sampler(u32),
-    /// An attribute of a vertex, what goes from one stage to the next, a colour.
+    /// An attribute of a vertex, a value between the stages, or a colour.
     Location(u32),
     Position,
     Depth,
@@ -36,14 +36,14 @@ pub struct Interface {
     pub stage: Stage,
     pub name: String,
     pub parameters: Vec<Part>,
-    /// The struct of locations it takes: its name and members.
+    /// The struct of locations that it takes: its name and members.
     pub input: Option<(String, Vec<Part>)>,
-    /// Members of what it returns.
+    /// The members of its result.
     pub output: Vec<Part>,
 }
 
 impl Interface {
-    /// Reads the only entry point of a text. The error says what is not understood.
+    /// Reads the only entry point of a text. The error tells what is not understood.
     pub fn read(text: &str) -> Result<Self, String> {
         let tokens = tokens(text);
         let stages = [("vertex", Stage::Vertex), ("fragment", Stage::Fragment)];
@@ -95,7 +95,7 @@ fn members(tokens: &[Token<'_>], name: &str) -> Result<Vec<Part>, String> {
     parts(tokens, at + 3, (";", "}"))?.iter().map(|part| self::part(part)).collect()
 }
 
-/// What lies between separators, up to the end.
+/// The tokens between separators, up to the end.
 fn parts<'t>(
     tokens: &[Token<'t>],
     start: usize,
@@ -119,7 +119,7 @@ fn parts<'t>(
     Err("the text ends too early".to_owned())
 }
 
-/// A parameter or a member: its last word before the attributes is its name.
+/// A parameter or a member. The last word before its attributes is its name.
 fn part(tokens: &[Token<'_>]) -> Result<Part, String> {
     let at = (0..tokens.len()).find(|at| list(tokens, *at).is_some());
     let Some((at, (attributes, _))) = at.and_then(|at| Some((at, list(tokens, at)?))) else {

@@ -1,4 +1,4 @@
-//! Whether texts in MSL are well formed: attributes by a table, everything else by clang.
+//! Judges whether texts in MSL are well formed: attributes by a table, everything else by clang.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,8 +9,8 @@ use super::attributes;
 use super::clang::{Clang, Missing};
 use super::token::tokens;
 
-/// Bytes of texts that one run of clang takes: enough that the headers cost nothing, few enough
-/// that finding the one that is refused is quick.
+/// Bytes of texts that one run of clang gets: enough that the headers cost little, few enough that
+/// a refused text is found quickly.
 const BATCH: usize = 1 << 20;
 
 /// A text that is not well formed.
@@ -22,7 +22,7 @@ pub struct Refusal {
     pub errors: String,
 }
 
-/// Judges texts on all cores; `progress` is told how many are done.
+/// Judges texts on all cores. `progress` is called with the number that is done.
 ///
 /// # Errors
 /// clang is missing or cannot be run.
@@ -58,7 +58,7 @@ fn add(outcome: &Mutex<Refusals>, found: Refusals) {
     }
 }
 
-/// Judges some texts, each with a number by which refusals name it.
+/// Judges some texts. Each has a number, by which refusals name it.
 ///
 /// # Errors
 /// clang cannot be run.
@@ -74,7 +74,8 @@ pub fn judge_batch(clang: &Clang, batch: &[Text<'_>]) -> Refusals {
     Ok(refusals)
 }
 
-/// What is checked without clang: a header that the batch has already, an entry point, attributes.
+/// Checks without clang: that the header is included, which a batch has anyway, that there is an
+/// entry point, and the attributes.
 fn before_clang(text: &str) -> Option<String> {
     if !text.lines().any(|line| line.trim() == "#include <metal_stdlib>") {
         return Some("1:1: error: `metal_stdlib` is not included".to_owned());
@@ -100,8 +101,8 @@ fn batches<'b, 't>(texts: &'b [Text<'t>]) -> Vec<&'b [Text<'t>]> {
     batches
 }
 
-/// A batch that is refused is judged in halves, down to the texts that are at fault: a mistake in
-/// one of them may make others look wrong.
+/// Judges a batch. If it is refused, it is divided in halves until the texts at fault are found,
+/// since a mistake in one text may make others look wrong.
 fn judge_sound(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Result<(), Missing> {
     if batch.is_empty() {
         return Ok(());
@@ -128,7 +129,7 @@ fn unit(texts: &[Text<'_>]) -> String {
     unit
 }
 
-/// What clang says of a text, a line for each error, with the types that Metal knows.
+/// clang's errors about a text, a line for each, with Metal's names of types.
 fn errors(stderr: &[u8]) -> String {
     let text = String::from_utf8_lossy(stderr);
     let lines: Vec<&str> = text.lines().collect();
@@ -137,7 +138,8 @@ fn errors(stderr: &[u8]) -> String {
     TYPES.iter().fold(errors, |errors, (clang, metal)| errors.replace(clang, metal))
 }
 
-/// An error with its place. Where that is in the headers, a note says what in the text led there.
+/// An error with its place. If that is in the headers, a note tells which place of the text led
+/// there.
 fn error(lines: &[&str]) -> Option<String> {
     let (place, message) = lines.first()?.split_once(": error: ")?;
     let here = |line: &str| line.strip_prefix("text:").map(str::to_owned);
@@ -150,9 +152,9 @@ fn error(lines: &[&str]) -> Option<String> {
     Some(format!("{place}: error: {message}"))
 }
 
-/// What the headers call types, and what Metal does.
+/// What the headers call types, and what Metal calls them.
 const TYPES: &[(&str, &str)] = &[
-    // A comparison of vectors is the only vector of clang's own `int`.
+    // Only a comparison of vectors gives clang's own vector of `int`.
     ("'int' values", "'bool' values"),
     ("int __attribute__((ext_vector_type(2)))", "metal::bool2"),
     ("int __attribute__((ext_vector_type(3)))", "metal::bool3"),

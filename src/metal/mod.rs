@@ -4,8 +4,8 @@
 //! `texts -> judge (attributes, then clang) -> refusals`
 //! `texts -> interface (what entry points take) -> program (clang, linked) -> words`
 //!
-//! The headers are in `shim/`. What they leave open, since C++ has no word for it, `adapt` writes
-//! in another way, and [`attributes`] checks what clang skips.
+//! The headers are in `shim/`. What C++ cannot express is rewritten by `adapt`. [`attributes`]
+//! checks what clang ignores.
 
 mod adapt;
 pub mod attributes;

@@ -1,4 +1,4 @@
-//! Texts in MSL, compiled for the CPU into one program that is asked to run them.
+//! Texts in MSL, compiled for the CPU into one program, which runs them on request.
 
 use std::io::{Read as _, Write as _};
 use std::process::{Child, Command, Stdio};
@@ -17,8 +17,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Compiles one entry point of each text. Texts that clang refuses, or whose entry point asks
-    /// for what there is not on a CPU, fail when they are run.
+    /// Compiles one entry point of each text. A text that clang refuses, or whose entry point needs
+    /// something that the CPU lacks, fails when it is run.
     ///
     /// # Errors
     /// clang is missing or cannot be run.
@@ -26,7 +26,7 @@ impl Program {
         Ok(Self { built: build::build(texts)?, child: None })
     }
 
-    /// What the entry point of a text takes and gives.
+    /// What the entry point of a text takes and returns.
     ///
     /// # Errors
     /// Why the text cannot be run.
@@ -81,7 +81,7 @@ impl Program {
         Ok(shaded.as_chunks::<4>().0.to_vec())
     }
 
-    /// What every request starts with.
+    /// The start of every request.
     fn head(&self, text: usize, stage: u32, bound: &Bound) -> Result<Words, String> {
         let interface = self.interface(text)?;
         for parameter in &interface.parameters {
@@ -101,7 +101,8 @@ impl Program {
         Ok(request)
     }
 
-    /// Sends a request, and waits for the words of each invocation: four, and its locations.
+    /// Sends a request, and waits for the words of each invocation: four words, then those of its
+    /// locations.
     fn ask(&mut self, request: &[u32], count: usize, given: u32) -> Result<Vec<Words>, String> {
         let size = 4 * (1 + given as usize);
         match self.exchange(request, count * size) {
@@ -127,7 +128,7 @@ impl Program {
         Ok(answer.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect())
     }
 
-    /// How the process ended. The next request starts another.
+    /// How the process ended. The next request starts another one.
     fn ended(&mut self, error: &str) -> String {
         let Some(mut child) = self.child.take() else { return error.to_owned() };
         drop(child.stdin.take());
@@ -143,7 +144,7 @@ impl Program {
 impl Drop for Program {
     fn drop(&mut self) {
         if let Some(mut child) = self.child.take() {
-            // It ends by itself where its input does; a shader may still be running.
+            // The process ends when its input does, but a shader may still be running.
             let _ = child.kill();
             let _ = child.wait();
         }

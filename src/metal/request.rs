@@ -1,4 +1,4 @@
-//! What the program around shaders is asked, as words. `shim/runtime.cpp` is the other end.
+//! Writes requests to the program around the shaders, as words. `shim/runtime.cpp` reads them.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::eval::{Address, Compare, Filter, Level, Resources, Sampler, Shape, Te
 
 pub type Words = Vec<u32>;
 
-/// What is bound, by the slots of Metal's argument tables.
+/// The resources, by the slots of Metal's argument tables.
 #[derive(Debug, Clone, Default)]
 pub struct Bound {
     pub buffers: BTreeMap<u32, Vec<u8>>,
@@ -41,7 +41,7 @@ pub struct ImageLevel {
     pub words: Words,
 }
 
-/// What a vertex is given.
+/// The inputs of a vertex.
 #[derive(Debug, Clone, Default)]
 pub struct Vertex {
     pub index: u32,
@@ -50,14 +50,14 @@ pub struct Vertex {
     pub locations: Vec<[u32; 4]>,
 }
 
-/// What the stage made of a vertex.
+/// The results of the vertex stage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformed {
     pub position: [f32; 4],
     pub locations: Vec<[u32; 4]>,
 }
 
-/// What a fragment is given.
+/// The inputs of a fragment.
 #[derive(Debug, Clone, Default)]
 pub struct Fragment {
     /// x, y, depth, 1/w.
@@ -66,7 +66,7 @@ pub struct Fragment {
     pub locations: Vec<[u32; 4]>,
 }
 
-/// What the stage made of a fragment.
+/// The results of the fragment stage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shaded {
     pub depth: f32,
@@ -76,7 +76,7 @@ pub struct Shaded {
 }
 
 impl Bound {
-    /// What an output's own tables say of where everything is bound.
+    /// Places resources in the slots that the output's own tables give.
     pub fn new(resources: &Resources, native: &Native, reflection: &Reflection) -> Self {
         let mut bound = Self::default();
         for slot in &native.slots {
@@ -97,7 +97,7 @@ impl Bound {
 }
 
 impl Format {
-    /// Of a texture, by its type as WGSL spells it.
+    /// The format of a texture, from its type in WGSL.
     fn of(ty: &str) -> Self {
         match ty {
             _ if ty.contains("<u32") => Self::Unsigned,
@@ -116,7 +116,7 @@ impl Format {
 }
 
 impl Image {
-    /// The texture of the evaluator, in words.
+    /// A texture of the evaluator, as words.
     pub fn new(texture: &Texture, format: Format) -> Self {
         let level = |level: &Level| ImageLevel {
             width: level.width,
@@ -149,11 +149,11 @@ impl Shaded {
     }
 }
 
-/// Parts of requests.
+/// Writes parts of requests.
 pub mod words {
     use super::{Address, Bound, Compare, Filter, Format, Image, Sampler, Shape, Words};
 
-    /// So many locations; those that are not given are 0.
+    /// Writes `count` locations. Those that are not given are 0.
     pub fn locations(to: &mut Words, locations: &[[u32; 4]], count: u32) {
         let given = locations.iter().copied().chain(std::iter::repeat([0; 4]));
         to.extend(given.take(count as usize).flatten());

@@ -13,7 +13,7 @@ pub enum Error {
     Io { path: PathBuf, kind: io::ErrorKind, reason: String },
 }
 
-/// Something that was found at a place to be written, and is left alone.
+/// Something at the path that would be written, which is left alone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Foreign {
     pub path: PathBuf,

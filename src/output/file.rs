@@ -1,4 +1,4 @@
-//! A file that the user names.
+//! Writes a file that the user names.
 
 use std::fs::{self, File, FileType, OpenOptions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use super::scratch::sync_folder;
 use super::{Error, Foreign, Replace, Scratch, make_folder};
 
-/// How much of a file is looked at to see whether it is ours.
+/// How many bytes of a file are read to see whether it is ours.
 pub const HEAD_BYTES: usize = 4096;
 
-/// Writes a file whatever it was: for files whose content the caller has read and understood, or
-/// that lie in a folder of ours.
+/// Replaces a file whatever it is. This is for files whose content the caller has read and
+/// understood, or that are in a folder of ours.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     write_file(path, bytes, |_| true, Replace::Any)
 }
@@ -57,13 +57,13 @@ fn there(path: &Path) -> Result<Option<fs::Metadata>, Error> {
             Ok(_) => Err(Foreign::never(path, "is a link that leads nowhere").into()),
             Err(_) => Ok(None),
         },
-        // A file where a folder would have to be is told when the folder is made.
+        // A file instead of a folder is reported when the folder is made.
         Err(error) if error.kind() == ErrorKind::NotADirectory => Ok(None),
         Err(error) => Err(Error::io(path, &error)),
     }
 }
 
-/// Writes beside, and renames.
+/// Writes a file beside the path and renames it.
 fn put(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> Result<(), Error> {
     let folder = parent(path);
     make_folder(&folder)?;
@@ -82,7 +82,7 @@ fn parent(path: &Path) -> PathBuf {
     parent.unwrap_or(Path::new(".")).to_owned()
 }
 
-/// Writes to a stream, or to the end of a file that somebody opened for us.
+/// Writes to a stream, or to the end of a file that is open as one of our descriptors.
 fn append(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let all = |stream: &mut dyn Write| stream.write_all(bytes).and_then(|()| stream.flush());
     let written = match path.to_str() {
@@ -93,8 +93,8 @@ fn append(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     written.map_err(|error| Error::io(path, &error))
 }
 
-/// Whether the path names an open file of a process, such as `/dev/stdout`: the file that such a
-/// path leads to is held open by somebody, and replacing it would write past its holder.
+/// Whether the path names an open file of a process, such as `/dev/stdout`. Somebody holds the file
+/// that such a path leads to, and would not see a file that replaced it.
 fn is_descriptor(path: &Path) -> bool {
     const MOST_LINKS: usize = 16;
     let mut at = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
@@ -122,7 +122,7 @@ pub(super) fn is_stream(_: FileType) -> bool {
     false
 }
 
-/// What something that is no file is.
+/// Describes something that is not a file.
 pub(super) fn what(kind: FileType) -> &'static str {
     if kind.is_dir() {
         "is a folder"

@@ -1,4 +1,4 @@
-//! A folder with files that carry no mark: a record beside them says which are ours.
+//! Writes a folder of files without marks. A record beside them tells which ones are ours.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -13,11 +13,11 @@ use super::{Error, Foreign, Replace, Scratch, make_folder, turn};
 const RECORD: &str = ".lamplight-outputs";
 const HEADER: &str = "# What `lamplight` wrote here, by hash and path. It replaces nothing else.\n";
 
-/// Most bytes of a record: more than a folder of a million files needs.
+/// The most bytes of a record, more than a folder of a million files needs.
 const MOST_RECORD_BYTES: u64 = 256 << 20;
 
-/// Writes files into a folder, each by its path below it. Nothing is written if any of them would
-/// replace what is not ours.
+/// Writes files into a folder, each by its path below it. If one of them would replace something
+/// that is not ours, nothing is written.
 ///
 /// # Errors
 /// [`Error::Foreign`] where something else is there.
@@ -42,8 +42,8 @@ pub fn write_folder<'a>(
 pub struct Folder {
     path: PathBuf,
     replace: Replace,
-    /// Hash and path of each file that was written here. A path has two hashes while it is being
-    /// replaced, so that a run that is killed leaves no file that the next one does not know.
+    /// The hash and path of each file that was written here. While a file is being replaced, its
+    /// path has two hashes. So even if a run is killed, the next run knows every file.
     record: BTreeSet<(String, String)>,
     /// What this run wrote.
     written: BTreeSet<(String, String)>,
@@ -66,7 +66,7 @@ impl Folder {
         })
     }
 
-    /// The folder, as it was named.
+    /// The folder, as the user named it.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -78,7 +78,7 @@ impl Folder {
         self.put(name, bytes)
     }
 
-    /// Forgets what the files of this run were before.
+    /// Removes the older hashes of this run's files from the record.
     pub fn finish(mut self) -> Result<(), Error> {
         let names: BTreeSet<&str> = self.written.iter().map(|(_, name)| name.as_str()).collect();
         let before = self.record.len();
@@ -90,7 +90,8 @@ impl Folder {
         if self.record.len() == before { Ok(()) } else { self.save() }
     }
 
-    /// Fails if a file may not be written: `bytes`, where they are known, may be there already.
+    /// Fails if a file may not be written. If `bytes` are given, a file that already has them is
+    /// fine.
     pub fn check(&self, name: &str, bytes: Option<&[u8]>) -> Result<(), Error> {
         let mut path = self.path.clone();
         let parts: Vec<Component> = Path::new(name).components().collect();
@@ -162,7 +163,7 @@ impl Folder {
         let lines = self.record.iter().filter(|(_, name)| !name.contains(['\n', '\r']));
         let lines = lines.map(|(hash, name)| format!("{hash} {name}\n"));
         let mut lines: Vec<String> = lines.collect();
-        // By path, so that a change moves no other line.
+        // Sorted by path, so that a changed file changes only its own line.
         lines.sort_by(|a, b| a.split_once(' ').map(|a| a.1).cmp(&b.split_once(' ').map(|b| b.1)));
         let path = self.path.join(RECORD);
         let written =

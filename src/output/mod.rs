@@ -34,9 +34,10 @@ pub enum Replace {
     Any,
 }
 
-/// Waits until no other run writes into a folder; calls `waiting` once if it has to wait.
+/// Waits until no other run writes into a folder. If it has to wait, it calls `waiting` once.
 ///
-/// The system ends a turn with its process. Where folders cannot be locked there are no turns.
+/// A turn ends at the latest with its process. Where folders cannot be locked, runs do not wait for
+/// each other.
 pub fn turn(folder: &Path, waiting: &dyn Fn()) -> Option<File> {
     let folder = File::open(folder).ok()?;
     match folder.try_lock() {
@@ -54,15 +55,15 @@ pub fn turn(folder: &Path, waiting: &dyn Fn()) -> Option<File> {
 pub fn make_folder(path: &Path) -> Result<(), Error> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Ok(()),
-        Ok(_) => Err(Foreign::never(path, "is no folder").into()),
+        Ok(_) => Err(Foreign::never(path, "is not a folder").into()),
         Err(_) => fs::create_dir_all(path).map_err(|error| match obstacle(path) {
-            Some(file) => Foreign::never(file, "is no folder").into(),
+            Some(file) => Foreign::never(file, "is not a folder").into(),
             None => Error::io(path, &error),
         }),
     }
 }
 
-/// What lies where a folder would have to be.
+/// The file that is where a folder would have to be.
 fn obstacle(path: &Path) -> Option<&Path> {
     path.ancestors().find(|above| fs::symlink_metadata(above).is_ok_and(|found| !found.is_dir()))
 }

@@ -1,4 +1,4 @@
-//! Folders for files that are not finished.
+//! Folders for unfinished files.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -7,38 +7,39 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::Error;
+use crate::syncing;
 
 /// How the name of a scratch folder begins; sixteen random digits follow.
 const PREFIX: &str = ".lamplight-";
 const DIGITS: usize = 16;
 
-/// The file that makes a folder ours, and that its run holds locked.
+/// The file that marks a folder as ours. The run that uses the folder holds a lock on it.
 const MARK_FILE: &str = "mark";
 const MARK: &[u8] = b"Lamplight: files of a run that is not over. Delete this folder if none is.\n";
 
-/// Names and locks to try before it is given up.
+/// How many names and locks are tried before giving up.
 const TRIES: u32 = 32;
 
-/// A folder beside the files to be written, for the time of one run.
+/// A folder beside the files to be written, which exists during one run.
 ///
-/// Its name is random and it is made by a call that follows no link and fails if anything is
-/// there, so that nobody can lay a trap in its way. When it is made, folders of runs that were
-/// killed are removed: those with our mark that no process holds.
+/// Its name is random, and it is made by a call that follows no link and fails if anything is
+/// there. So nobody can prepare a trap at its path. When it is made, folders of killed runs are
+/// removed: those with our mark that no process holds.
 #[derive(Debug)]
 pub struct Scratch {
     folder: PathBuf,
-    /// Locked until the value is gone.
+    /// The lock, held until this is dropped.
     _mark: File,
     next: AtomicU32,
 }
 
 impl Scratch {
-    /// Makes a folder in `parent`, which is there.
+    /// Makes a folder in `parent`, which must exist.
     pub fn new(parent: &Path) -> Result<Self, Error> {
         Self::after(parent, &mut |_| ())
     }
 
-    /// The same; `look` sees the folder of each run that was killed before it is removed.
+    /// As [`Self::new`]; `look` sees the folder of each killed run before it is removed.
     pub fn after(parent: &Path, look: &mut dyn FnMut(&Path)) -> Result<Self, Error> {
         for (folder, _mark) in left(parent) {
             look(&folder);
@@ -50,7 +51,8 @@ impl Scratch {
             let folder = parent.join(format!("{PREFIX}{random:0DIGITS$x}"));
             match make(&folder) {
                 Ok(mark) => return Ok(Self { folder, _mark: mark, next: AtomicU32::new(0) }),
-                // Somebody else's, or taken for a dead run's in the moment before it was locked.
+                // The folder is somebody else's, or another run removed it before its mark was
+                // locked.
                 Err(error)
                     if matches!(
                         error.kind(),
@@ -66,12 +68,12 @@ impl Scratch {
         Err(Error::io(parent, &error))
     }
 
-    /// Where a file of that name lies in the folder.
+    /// The path of a file in the folder.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
-    /// Writes a file that is to survive a loss of power once it is renamed into its place.
+    /// Writes a file that must survive a loss of power once it is renamed.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, Error> {
         self.write_with(name, |file| {
             file.write_all(bytes)?;
@@ -79,11 +81,20 @@ impl Scratch {
         })
     }
 
-    /// Writes a file under a name of its own, without waiting for the disk: for what can be
+    /// Writes a file without waiting for the disk: [`Self::sync`] waits for many at once.
+    pub fn stage(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, Error> {
+        self.write_with(name, |file| file.write_all(bytes))
+    }
+
+    /// Returns when files of those names are on the disk.
+    pub fn sync(&self, names: &[&str]) -> Result<(), Error> {
+        syncing::files(&self.folder, names).map_err(|error| Error::io(&self.folder, &error))
+    }
+
+    /// Writes a file under a name of its own, without waiting for the disk. This is for what can be
     /// computed again.
     pub fn write_unsynced(&self, bytes: &[u8]) -> Result<PathBuf, Error> {
-        let name = self.next.fetch_add(1, Ordering::Relaxed).to_string();
-        self.write_with(&name, |file| file.write_all(bytes))
+        self.stage(&self.next.fetch_add(1, Ordering::Relaxed).to_string(), bytes)
     }
 
     fn write_with(
@@ -137,7 +148,8 @@ fn left(parent: &Path) -> Vec<(PathBuf, File)> {
             let folder = entry.path();
             match dead(&folder.join(MARK_FILE)) {
                 Some(mark) => found.push((folder, mark)),
-                // A run that was killed before it wrote its mark: removed only if empty.
+                // A run was killed before it wrote its mark. The folder is removed only if it is
+                // empty.
                 None => drop(fs::remove_dir(&folder)),
             }
         }
@@ -157,7 +169,8 @@ fn dead(path: &Path) -> Option<File> {
     MARK.starts_with(&text).then_some(mark)
 }
 
-/// Removes a scratch folder, its mark last; what is no file stays, and the folder with it.
+/// Removes a scratch folder, its mark last. Anything that is not a file stays, and so does the
+/// folder then.
 fn remove(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
@@ -169,7 +182,7 @@ fn remove(folder: &Path) {
     let _ = fs::remove_dir(folder);
 }
 
-/// Makes renames within a folder survive a loss of power, where the system can.
+/// Makes renames within a folder survive a loss of power, if the system can.
 pub fn sync_folder(folder: &Path) {
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();

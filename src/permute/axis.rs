@@ -3,8 +3,8 @@
 use super::Setting;
 use crate::source::Span;
 
-/// The most axes of a program, and the most values of an axis. A set of either fits into one
-/// machine word, so that large spaces are counted quickly.
+/// The most axes of a program, and the most values of an axis. Sets of either then fit into one
+/// machine word, which makes counting large spaces fast.
 pub const MAX: usize = crate::limits::AXES;
 
 /// What the values of an axis are.
@@ -71,7 +71,7 @@ pub struct Axis {
     pub kind: Kind,
     /// All of one kind, distinct, in the order declared, at least one, at most [`MAX`].
     pub values: Vec<Setting>,
-    /// Ordinal in `values` of the value that keys leave out.
+    /// The ordinal of the default, which keys leave out.
     pub default: usize,
     /// How its values reach the shader.
     pub mode: Mode,
@@ -100,7 +100,7 @@ impl Axis {
         }
     }
 
-    /// The GLSL macros that stand for this axis: its own, then one for each value of an enum.
+    /// The GLSL macros for this axis: its own, then one for each value of an enum.
     pub fn macros(&self) -> Vec<String> {
         let own = self.name.to_ascii_uppercase();
         let values = match self.kind {

@@ -1,6 +1,6 @@
-//! `constants::NAME` with a value from outside, where no axis has the name.
+//! Values from outside for `constants::NAME`, where no axis has that name.
 
-/// Digits of a number that a person gives.
+/// The most digits of a number.
 const LONGEST: usize = 64;
 
 /// The text of a literal of WGSL, whose suffix is its type: `true`, `4`, `4u`, `-4i`, `0.5f`.
@@ -9,7 +9,9 @@ const LONGEST: usize = 64;
 /// What is wrong with it.
 pub fn parse(text: &str) -> Result<String, String> {
     let wrong = || {
-        format!("`{text}` is no constant: write `true`, `false` or a number, such as `4u` or `0.5`")
+        format!(
+            "`{text}` is not a constant: write `true`, `false` or a number, such as `4u` or `0.5`"
+        )
     };
     if matches!(text, "true" | "false") {
         return Ok(text.to_owned());

@@ -67,7 +67,8 @@ pub fn parse(space: &Space, key: &Quoted) -> Result<Assignment, Diagnostics> {
     parse_over(space, space.default_assignment(), key)
 }
 
-/// The point that a key names where axes that it leaves out are as at another point.
+/// The point that a key names, where the axes that it leaves out have their values from another
+/// point.
 pub fn parse_over(
     space: &Space,
     mut point: Assignment,

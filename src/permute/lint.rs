@@ -43,8 +43,8 @@ pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnost
     })
 }
 
-/// Conditions that always have one value. They share a bound on steps; conditions beyond it are not
-/// looked at.
+/// Warnings about conditions that always have the same value. They share a limit on steps, and
+/// conditions beyond it are not looked at.
 fn trivial_constraints(space: &Space) -> Vec<Diagnostic> {
     let mut steps = Steps::new(SPACE_STEPS);
     let constraints = space.constraints().iter();

@@ -10,10 +10,10 @@
 //! ```
 //!
 //! A line is one digit of the mixed-radix number that a point of the program is; the program's
-//! first line is the least significant. A digit 0 of an axis's first line is the value that was
-//! the default when the axis was added, so the points that were there before keep their number.
-//! Values added later (`+`) are a digit of their own, in which 0 means "none of these": no
-//! earlier radix changes. Axes and values that are gone keep their place.
+//! first line is the least significant. The digit 0 of an axis's first line is its default when the
+//! axis was added, so the points that existed before keep their numbers. Values that are added
+//! later (`+`) are a digit of their own, in which 0 means "none of these". So no earlier radix
+//! changes. Axes and values that no longer exist keep their digits.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -39,7 +39,7 @@ pub struct Lock {
 pub(crate) struct Digit {
     program: String,
     pub axis: String,
-    /// Whether 0 means none of the values, rather than the first.
+    /// Whether the digit 0 means none of these values, rather than the first.
     added: bool,
     values: Vec<Setting>,
 }
@@ -158,8 +158,8 @@ impl Lock {
         (placed == settings.len()).then_some(dense)
     }
 
-    /// The point of a number. `None` if it is no point of the space: an axis or a value of it is
-    /// gone, or no point has that number.
+    /// The point with a number. `None` if there is no such point, or if one of its axes or values
+    /// no longer exists.
     pub fn point(&self, program: &str, space: &Space, dense: u128) -> Option<Assignment> {
         let mut settings: BTreeMap<&str, &Setting> = BTreeMap::new();
         let mut covered = Some(1);

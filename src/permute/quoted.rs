@@ -1,4 +1,4 @@
-//! A string with the place of each of its bytes in an author's text, escapes and all.
+//! A string from an author's text, with the place of each of its bytes, even where it has escapes.
 
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ impl Quoted {
         Self { span: Span::new(id, 0..text.len()), places: (0..=text.len() as u32).collect(), text }
     }
 
-    /// A part of a source, which means what it says.
+    /// A part of a source that has no quotes and no escapes.
     pub fn plain(sources: &SourceSet, span: Span) -> Self {
         Self {
             text: sources.text(span).to_owned(),
@@ -47,8 +47,9 @@ impl Quoted {
     }
 }
 
-/// The byte of `literal` at which each byte of `text`, and its end, is written. Walks both side
-/// by side: whatever is not the next character itself is the escape that stands for it.
+/// The byte of `literal` at which each byte of `text`, and its end, is written. Both are walked
+/// side by side: where `literal` does not have the next character itself, it has an escape that
+/// stands for it.
 fn places(literal: &str, text: &str) -> Vec<usize> {
     let (start, escapes) = opening(literal);
     let mut places = Vec::with_capacity(text.len() + 1);

@@ -1,4 +1,5 @@
-//! How many permutations a program has and why: the funnel, and what each axis costs.
+//! Tells how many permutations a program has and why: the counts after each step, and what each
+//! axis costs.
 
 use std::fmt;
 
@@ -104,7 +105,7 @@ fn cost(axis: &Axis, valid_values: usize, wanted: u128, without: Option<u128>) -
 }
 
 impl Report {
-    /// The rows of the funnel that are known, widest first.
+    /// The counts that are known, largest first.
     fn funnel(&self) -> Vec<(String, Count)> {
         let row = |name: &str, count: Count| (name.to_owned(), count);
         let mut rows = vec![

@@ -36,7 +36,7 @@ impl fmt::Display for Setting {
     }
 }
 
-/// What a composition is asked to be: a value for every axis and feature.
+/// The settings that a composition is asked for: a value for every axis and feature.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
 pub struct Settings {
     /// By name of the axis or feature, with its chosen value.
@@ -49,10 +49,11 @@ pub struct Settings {
     /// Axes whose numbers are left open for the pipeline to choose, with their defaults:
     /// `constants::NAME` is an override then. Conditions see the value all the same.
     pub open: BTreeMap<String, Setting>,
-    /// What a feature is that has no value here; where there is nothing, to ask for it is an error.
+    /// The value of every feature that has none here. If this is `None`, asking for such a feature
+    /// is an error.
     pub undeclared: Option<bool>,
-    /// `constants::NAME` that no axis has: literals of WGSL, as [`super::constant::parse`] takes
-    /// them.
+    /// Values for `constants::NAME` where no axis has the name: literals of WGSL, as
+    /// [`super::constant::parse`] reads them.
     pub constants: BTreeMap<String, String>,
 }
 

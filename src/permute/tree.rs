@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 
 use super::{Setting, Settings};
 
-/// A tree of questions with a `T` for every course of answers seen so far.
+/// A tree of questions, with a `T` for every sequence of answers seen so far.
 ///
-/// What a composition asks next depends on earlier answers only. So all compositions of one
-/// thing ask the same first question, those with the same answer the same second one, and so on.
+/// What a composition asks next depends only on earlier answers. So all compositions of one entry
+/// point ask the same first question, those with the same answer ask the same second one, and so
+/// on.
 #[derive(Debug, Clone)]
 pub struct ReadTree<T> {
     /// The first node is the root, once there is one.
@@ -33,8 +34,8 @@ impl<T> Default for ReadTree<T> {
 }
 
 impl<T> ReadTree<T> {
-    /// Adds a course of questions and answers, each question once, and what it led to. A course
-    /// that is known already keeps what it had. Nothing changes on a contradiction.
+    /// Adds a sequence of questions and answers, each question once, with what it led to. A
+    /// sequence that is known keeps what it had. A contradiction changes nothing.
     pub fn insert(&mut self, reads: &[(String, Setting)], value: T) -> Result<(), Contradiction> {
         let mut node = 0;
         for (depth, (name, answer)) in reads.iter().enumerate() {
@@ -56,8 +57,8 @@ impl<T> ReadTree<T> {
         }
     }
 
-    /// What a composition with these settings led to, if one that asks and answers alike is
-    /// known. A setting that is asked for and has no value is unknown too.
+    /// What a composition with these settings led to, if one that asks the same and gets the same
+    /// answers is known. `None` also if a setting that is asked for has no value.
     pub fn get(&self, settings: &Settings) -> Option<&T> {
         let mut node = 0;
         loop {

@@ -11,8 +11,9 @@ use super::space::{Lists, Slice, Space};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::source::{SourceId, SourceSet, Span};
 
-/// Narrows what is wanted of a program to the keys that a list has for it, and to `include`.
-/// Gives a warning for each that is no permutation any more: engines outlive axes.
+/// Narrows what is wanted of a program to the keys that a list has for it, and to `include`. A key
+/// that is no longer a permutation gets a warning and not an error, since lists come from engines
+/// that may be older than the manifest.
 ///
 /// # Errors
 /// `usage-syntax` for lines that are no program and key.
@@ -115,7 +116,7 @@ fn keys(program: &str, sources: &SourceSet, list: SourceId) -> Result<Vec<Quoted
 }
 
 fn gone(key: &Quoted, reason: &str) -> Diagnostic {
-    let message = format!("`{}` is no permutation: {reason}", key.text);
+    let message = format!("`{}` is not a permutation: {reason}", key.text);
     Diagnostic {
         severity: Severity::Warning,
         ..Diagnostic::error(codes::INVALID_PERMUTATION, message).at(key.span, "left out")

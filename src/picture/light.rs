@@ -1,4 +1,4 @@
-//! The light that casts the shadow, as a viewer.
+//! The view of the light that casts the shadow.
 
 use glam::{DMat4, DVec3};
 
@@ -9,16 +9,16 @@ use crate::scene::{
     orthographic, perspective,
 };
 
-/// What a shadow map is drawn with.
+/// How a shadow map is drawn.
 #[derive(Debug, Clone)]
 pub struct LightView {
-    /// World to clip space: one, or one for each face of a cube.
+    /// From world to clip space: one matrix, or one for each face of a cube.
     pub clip_from_world: Vec<DMat4>,
     pub near: f64,
     pub far: f64,
     /// Texels along an edge.
     pub size: u32,
-    /// Size of a texel: everywhere for directional lights, at distance 1 for others.
+    /// The size of a texel: the same everywhere for directional lights, at distance 1 for others.
     pub texel: f64,
 }
 
@@ -26,10 +26,10 @@ pub struct LightView {
 const UNIT: Bounds =
     Bounds { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: -1.0, far: 1.0 };
 
-/// Planes nearer than this share of the far one waste what precision there is.
+/// The near plane is at least this share of the far plane, since a nearer one wastes precision.
 const NEAREST: f64 = 0.02;
 
-/// What a source publishes of the frustum of a spot light's map.
+/// What a source publishes about the frustum of a spot light's map.
 struct Frustum {
     /// The whole angle, radians.
     angle: Option<f64>,
@@ -49,7 +49,7 @@ impl Frustum {
 }
 
 impl LightView {
-    /// The view of the scene's first lamp as the last pass of a plan takes it.
+    /// The view of the scene's first lamp, as the last pass of a plan needs it.
     pub fn new(scene: &Scene, lamp: &Lamp, plan: &Plan, last: &Pass, size: u32) -> Self {
         let points = scene.points();
         match last.needs.caster.unwrap_or(LampKind::Spot) {
@@ -65,7 +65,7 @@ impl LightView {
         let far = frustum.far.unwrap_or(farthest.max(0.1) * 1.01);
         let fitting = || (0.98 * nearest).clamp(NEAREST * far, 0.9 * far);
         let near = frustum.near.unwrap_or_else(fitting);
-        // Two texels more than the cone, so that its rim is inside.
+        // Wider than the cone by two texels, so that the cone's rim is inside.
         let cone = || (2.0 * lamp.half_angle * (1.0 + 4.0 / f64::from(size))).min(2.8);
         let angle = frustum.angle.unwrap_or_else(cone);
         let projection = perspective(angle, 1.0, near, far, Clip::Wgpu, Depth::Normal);
@@ -78,8 +78,8 @@ impl LightView {
         Self::around(view, fit(view, points).unwrap_or(UNIT), size)
     }
 
-    /// The view of a directional light on what lies in a part of the viewer's depth, which may be
-    /// shaded by all that is before it.
+    /// The view of a directional light for a part of the viewer's depth, including everything that
+    /// may cast a shadow into it.
     pub fn cascade(scene: &Scene, lamp: &Lamp, clip_from_world: DMat4, size: u32) -> Self {
         let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
         let whole = fit(view, &scene.points()).unwrap_or(UNIT);
@@ -91,13 +91,13 @@ impl LightView {
             top: part.top.min(whole.top),
             ..whole
         };
-        // A part with nothing of the scene in it is drawn with any map.
+        // A part without anything of the scene in it may have any map.
         let is_seen = bounds.left < bounds.right && bounds.bottom < bounds.top;
         Self::around(view, if is_seen { bounds } else { whole }, size)
     }
 
     fn around(view: DMat4, tight: Bounds, size: u32) -> Self {
-        // A margin on all sides: of the map for filters, of the depth against rounding.
+        // A margin on all sides: on the map for filters, in depth for rounding.
         let margin = 0.02 * (tight.right - tight.left).max(tight.top - tight.bottom) + 1e-3;
         let bounds = Bounds {
             left: tight.left - margin,
@@ -126,7 +126,7 @@ impl LightView {
         Self { clip_from_world: faces, near, far, size, texel: 2.0 / f64::from(size) }
     }
 
-    /// Whether it has a face to each side.
+    /// Whether it is a cube with six faces.
     pub fn is_cube(&self) -> bool {
         self.clip_from_world.len() == 6
     }

@@ -1,12 +1,12 @@
-//! Shapes as the vertex stage of a program takes them.
+//! Makes meshes from shapes, with the attributes that a vertex stage reads.
 
 use crate::bundle::{Reflection, Varying};
 use crate::execute::frame::{Attribute, Mesh, VertexFormat};
 use crate::scene::sets::Object;
 use crate::scene::{Shape, Vertex};
 
-/// The mesh of an object for a vertex stage; with `faceted`, each triangle has its own corners and
-/// the normal of its face.
+/// The mesh of an object for a vertex stage. With `faceted`, each triangle has vertices of its own,
+/// with the normal of its face.
 pub fn mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh {
     let attributes = attributes(vertex);
     let own = faceted.then(|| object.shape.faceted());
@@ -42,7 +42,8 @@ fn components(attribute: Attribute) -> usize {
     attribute.format.words() as usize
 }
 
-/// What `forward` has at a location: tabulated in `programs/forward.wesl`.
+/// The words that `forward` reads at a location. `programs/forward.wesl` has the table of
+/// locations.
 fn numbers(corner: &Vertex, location: u32, material: u32, count: usize) -> Vec<u32> {
     let numbers = match location {
         0 => corner.position.extend(1.0).to_array(),

@@ -3,9 +3,9 @@
 //!
 //! `preset or point -> plan -> passes (shadow map, blur, ...) -> prepared -> frames -> picture`
 //!
-//! Every pass is drawn by an executor, which may be a device or the evaluator. What a pass drew
-//! comes back as numbers, exact to the bit, and goes into the next as a texture, so that all
-//! executors share everything but the drawing itself.
+//! Every pass is drawn by an executor, which may be a device or the evaluator. The result of a pass
+//! comes back as numbers, exact to the bit, and is a texture for the next pass. So all executors
+//! share everything but the drawing itself.
 
 pub mod frame;
 pub mod gallery;
@@ -36,24 +36,24 @@ use crate::execute::Session;
 use crate::scene::{Equirect, Sky};
 use frame::Programs;
 
-/// How a plan is photographed.
+/// How a picture of a plan is taken.
 #[derive(Clone)]
 pub struct Shot {
-    /// Pixels from left to right, and from top to bottom.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Places in each pixel that are averaged, at least 1.
+    /// How many places of each pixel are averaged, at least 1.
     pub samples: u32,
-    /// Factor on all light, as a power of two.
+    /// A factor for all light, as a power of two.
     pub exposure: f64,
-    /// Shadow maps of a directional light, one for each part of the viewer's depth; 1 for one map
-    /// of the whole scene.
+    /// How many shadow maps a directional light has, one for each part of the viewer's depth; 1 for
+    /// one map of the whole scene.
     pub cascades: u32,
     pub language: Language,
     /// What is around the scene.
     pub surroundings: Surroundings,
 }
 
-/// Radiance from every direction.
+/// The radiance from every direction.
 #[derive(Clone)]
 pub enum Surroundings {
     Formula(fn(DVec3) -> DVec3),
@@ -69,7 +69,7 @@ impl Surroundings {
         }
     }
 
-    /// For functions that take a sky.
+    /// Calls a function that takes a sky.
     pub fn with_sky<T>(&self, run: impl FnOnce(&Sky<'_>) -> T) -> T {
         run(&|direction| self.radiance(direction))
     }

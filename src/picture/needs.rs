@@ -1,8 +1,8 @@
-//! What pictures take from programs and the values of their axes: `pictures.toml` of the library,
-//! which explains its own form.
+//! What pictures need from programs and from the values of their axes. It is read from
+//! `pictures.toml` of the library, which explains its own format.
 //!
-//! Rust knows what a row may say; which value of which axis says it is data. So a new value of an
-//! axis is one line, and one that was forgotten is an error that names it.
+//! The code knows what a row can say. Which value of which axis says it is data. So a new value of
+//! an axis takes one line, and a missing line is an error that names it.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ pub struct Table {
     programs: BTreeMap<String, ProgramNeeds>,
 }
 
-/// What pictures take from one program.
+/// What pictures need from one program.
 #[derive(Debug)]
 struct ProgramNeeds {
     scene: Option<String>,
@@ -38,30 +38,30 @@ struct ProgramNeeds {
     axes: BTreeMap<String, BTreeMap<String, Row>>,
 }
 
-/// What a picture takes from a permutation: the rows of the values of its axes together.
+/// What a picture needs from a permutation: the rows of the values of all its axes combined.
 #[derive(Debug, Clone, Default)]
 pub struct Needs {
-    /// Passes before: programs, and keys where those are not the default.
+    /// The passes before it: programs, and keys where these are not the default.
     pub before: Vec<(String, String)>,
-    /// Texels to each side that the lookup of the shadow reads.
+    /// How many texels to each side a shadow lookup reads.
     pub reach: f64,
-    /// The kind of all lamps; `None` leaves them as the scene has them.
+    /// The kind of all lamps. With `None` lamps keep the kinds that the scene gives them.
     pub lamps: Option<LampKind>,
     /// The kind of the lamp that casts the shadow.
     pub caster: Option<LampKind>,
     pub falloff: Falloff,
-    /// No lamp shines.
+    /// Whether no lamp shines.
     pub unlit: bool,
-    /// Each triangle has the normal of its face.
+    /// Whether each triangle has the normal of its face.
     pub faceted: bool,
-    /// One block holds the materials of all objects.
+    /// Whether one block holds the materials of all objects.
     pub material_array: bool,
-    /// That array has a material for each side.
+    /// Whether that array has a material for each side.
     pub sides: bool,
     pub background: Background,
-    /// Moments of depth 1 are those of exponentials.
+    /// Whether the moments of depth 1 are exponentials.
     pub exponential: bool,
-    /// Near plane of the shadow map of a spot.
+    /// The near plane of a spot light's shadow map.
     pub near: Option<f64>,
     uniforms: Uniforms,
 }
@@ -77,15 +77,16 @@ pub enum Falloff {
     InverseSquareWindow,
 }
 
-/// What is seen where nothing was drawn. Where several values of axes say so, the last one wins.
+/// What is visible where nothing was drawn. If several values of axes choose it, the last one
+/// decides.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Background {
-    /// Dark, darker towards the edges.
+    /// A dark background, darker towards the edges.
     #[default]
     Backdrop,
     Hemisphere,
-    /// The light probe, if no lamp shines.
+    /// The light probe, unless a lamp shines.
     Probe,
     Surroundings,
     Haze,
@@ -98,14 +99,14 @@ enum Materials {
     Array,
 }
 
-/// What an empty texel of a map of moments holds.
+/// The content of an empty texel in a map of moments.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Cleared {
     Exponential,
 }
 
-/// As the file has it, and as [`Needs`] explains it.
+/// A row as the file has it; [`Needs`] explains its fields.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Row {
@@ -142,10 +143,10 @@ struct ProgramEntry {
 }
 
 impl Table {
-    /// The library's table, in which each value of an axis that is listed has its row.
+    /// The library's table. Each value of an axis that is listed has a row.
     ///
     /// # Errors
-    /// Those of the file: values without a row, and rows that no axis has.
+    /// Values without a row, and rows for values that no axis has.
     pub fn load(sources: &mut SourceSet, manifest: &Manifest) -> Result<Self, Diagnostics> {
         let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
         let id = source::read(sources, &package, PATH).map_err(|error| vec![error.into()])?;
@@ -179,8 +180,8 @@ impl Table {
         })
     }
 
-    /// The scene that a program shows where none is asked for; `None` if it draws no picture by
-    /// itself.
+    /// The scene that a program shows where none is asked for; `None` if the program draws no
+    /// picture by itself.
     pub fn scene(&self, program: &str) -> Option<&str> {
         self.programs.get(program)?.scene.as_deref()
     }
@@ -207,7 +208,7 @@ impl Table {
 }
 
 impl Needs {
-    /// The numbers of a field that nothing else has.
+    /// The numbers of a uniform's field that has them in this table.
     pub fn uniform(&self, block: &str, field: &str) -> Option<Vec<f64>> {
         self.uniforms.get(block)?.get(field).map(Number::to_vec)
     }
@@ -255,7 +256,7 @@ impl From<ProgramEntry> for ProgramNeeds {
     }
 }
 
-/// What is wrong with a program's tables.
+/// Errors in a program's tables.
 fn check(
     id: SourceId,
     manifest: &Manifest,

@@ -1,4 +1,4 @@
-//! The passes of a plan, one after another.
+//! Runs the passes of a plan in order.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,8 +38,8 @@ struct Studio<'a> {
     values: Values<'a>,
 }
 
-/// Smallest and largest shadow map, texels along an edge; between, twice the picture. Moments are
-/// blurred, and half as fine.
+/// The smallest and the largest shadow map, in texels along an edge. In between, a map has twice
+/// the picture's size. Maps of moments are blurred, so half of that is enough.
 const MAP_SIZES: (u32, u32) = (256, 1024);
 
 /// Draws all passes of a plan but the last, and prepares that one.
@@ -82,7 +82,7 @@ pub fn prepare(
     if last.needs.caster != Some(LampKind::Directional) || !last.needs.has_shadow() {
         return Err(vec![no_cascades(last)]);
     }
-    // Each part of the viewer's depth is a frame of its own, clipped by its planes.
+    // Each part of the viewer's depth is a separate frame, clipped by its planes.
     let whole = scene.eye;
     let mut slices = Vec::new();
     for (near, far) in slices_of(&scene, shot.cascades) {
@@ -96,7 +96,7 @@ pub fn prepare(
     Ok(Prepared { farther: slices.collect(), ..nearest })
 }
 
-/// The scene with the lamps that shine from a place, where it shows them.
+/// The scene, with the lamps that have a position as objects, if it shows them.
 fn with_bulbs(
     scene: &Scene,
     plan: &Plan,
@@ -116,11 +116,11 @@ fn with_bulbs(
     Some(Scene { objects, ..scene.clone() })
 }
 
-/// How much of the splits is logarithmic.
+/// The weight of the logarithmic split against the even one.
 const SPLIT: f64 = 0.7;
 
-/// The viewer's depth in parts that share their planes: splits where the scene is, ends where the
-/// viewer's are.
+/// The viewer's depth in parts that share planes. The splits are where the scene is, and the ends
+/// are those of the viewer.
 fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
     let eye = &scene.eye;
     let (nearest, farthest) =
@@ -141,11 +141,11 @@ fn no_cascades(pass: &Pass) -> Diagnostic {
         .note("choose `shadow_light=directional` and a `shadow`")
 }
 
-/// What the viewer sees through.
+/// The viewer's camera.
 fn viewer(eye: &Eye, shot: &Shot) -> Camera {
     let [width, height] = shot.size;
     let aspect = f64::from(width) / f64::from(height.max(1));
-    // What a square shows stays in a picture that is higher than wide.
+    // A picture that is higher than wide still shows everything that a square one shows.
     let fov =
         if aspect < 1.0 { 2.0 * ((0.5 * eye.fov_y).tan() / aspect).atan() } else { eye.fov_y };
     let view = eye.view();
@@ -154,7 +154,7 @@ fn viewer(eye: &Eye, shot: &Shot) -> Camera {
 }
 
 impl Studio<'_> {
-    /// Draws an earlier pass.
+    /// Draws a pass before the last one.
     fn draw(&self, pass: &Pass, left: &Left) -> Result<Left, Diagnostics> {
         let prepared = self.ready(pass, left)?;
         let light = self.values.light;
@@ -261,7 +261,7 @@ impl Studio<'_> {
         }
     }
 
-    /// A mesh for each object with the blocks of its own; one triangle where the stage has no
+    /// A mesh for each object, with the object's own blocks; one triangle if the stage has no
     /// attributes.
     fn items(
         &self,
@@ -292,15 +292,15 @@ impl Studio<'_> {
     }
 }
 
-/// Blocks of `forward` that decide about colours alone.
+/// Blocks of `forward` that only affect colours.
 const PLAIN: &[&str] = &["materials", "haze", "surroundings"];
 
-/// Blocks that each view or each object fills.
+/// Whether each view or each object fills the block.
 fn is_own(name: &str) -> bool {
     matches!(name, "camera" | "object" | "materials")
 }
 
-/// The bindings of both stages, each once, with the members that either knows.
+/// The bindings of both stages, each once, with the members that either of them has.
 fn bindings(stages: &Stages) -> Vec<Binding> {
     let of = |stage: &Composed| stage.reflection.bindings.clone();
     let all = of(&stages.vertex).into_iter().chain(stages.fragment.iter().flat_map(of));

@@ -9,13 +9,13 @@ use super::needs;
 use super::values::{Camera, Values};
 use crate::scene::irradiance_sh9;
 
-/// Sums of linear colours, clamped to [0, 1] sample by sample, so that edges of bright things are
+/// Sums of linear colours. Each sample is clamped to [0, 1], so that the edges of bright things are
 /// smooth.
 #[derive(Debug, Clone)]
 pub struct Linear {
     size: [u32; 2],
     sums: Vec<DVec3>,
-    /// Of the first sample, unclamped; `None` where the background is.
+    /// The first sample of each pixel, not clamped; `None` for the background.
     first: Vec<Option<DVec3>>,
     samples: u32,
 }
@@ -29,7 +29,7 @@ pub struct Picture {
     pub pixels: Vec<u8>,
 }
 
-/// What is seen where nothing is drawn.
+/// What is visible where nothing is drawn.
 #[derive(Clone)]
 pub struct Background {
     world_from_clip: DMat4,
@@ -38,18 +38,18 @@ pub struct Background {
 
 #[derive(Clone)]
 enum Seen {
-    /// Dark, darker towards the edges.
+    /// A dark background, darker towards the edges.
     Backdrop,
     Around(Surroundings),
-    /// Light of the probe as a surface across the direction would receive it.
+    /// The light of the probe, as a surface across the direction would receive it.
     Probe(Box<[DVec3; 9]>, f64),
-    /// From below, from above.
+    /// The colour from below, and from above.
     Hemisphere(DVec3, DVec3),
     Haze(DVec3),
 }
 
 impl Background {
-    /// What fits the light of the last pass.
+    /// The background that fits the light of the last pass.
     pub fn new(values: &Values<'_>, eye: Camera) -> Self {
         let needs = &values.last.needs;
         let kind = match needs.background {
@@ -67,7 +67,8 @@ impl Background {
         Self { world_from_clip: eye.clip_from_world.inverse(), kind }
     }
 
-    /// The colour behind a place of the picture, both coordinates in [0, 1] from the upper left.
+    /// The background at a place of the picture. Both coordinates are in [0, 1], from the upper
+    /// left.
     fn colour(&self, u: f64, v: f64) -> DVec3 {
         let at = |depth: f64| {
             self.world_from_clip.project_point3(DVec3::new(2.0 * u - 1.0, 1.0 - 2.0 * v, depth))
@@ -96,7 +97,7 @@ impl Linear {
         Self { size, sums: vec![DVec3::ZERO; pixels], first: vec![None; pixels], samples: 0 }
     }
 
-    /// Adds one sample of every pixel, taken a shift away from the pixel's middle.
+    /// Adds one sample of every pixel, taken at an offset from the pixel's centre.
     pub fn add(
         &mut self,
         colours: impl Iterator<Item = Option<[f32; 4]>>,
@@ -109,7 +110,7 @@ impl Linear {
         for (index, colour) in colours.enumerate().take(self.sums.len()) {
             let (x, y) =
                 ((index as u32 % self.size[0]) as f64, (index as u32 / self.size[0]) as f64);
-            // What moves to the right shows what was left of it.
+            // A picture that is moved to the right shows the background that was left of it.
             let behind =
                 || background.colour((x + 0.5 - shift[0]) / width, (y + 0.5 + shift[1]) / height);
             let drawn = colour.map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
@@ -121,7 +122,7 @@ impl Linear {
         self.samples += 1;
     }
 
-    /// Adds one sample of every pixel, all of which were drawn.
+    /// Adds one sample of every pixel, where all pixels were drawn.
     pub fn add_all(&mut self, colours: impl Iterator<Item = DVec3>, exposure: f64) {
         let factor = exposure.exp2();
         for (sum, colour) in self.sums.iter_mut().zip(colours) {
@@ -135,7 +136,7 @@ impl Linear {
         self.first.get((y * self.size[0] + x) as usize).copied().flatten()
     }
 
-    /// The picture, in sRGB.
+    /// The picture in sRGB.
     pub fn develop(&self) -> Picture {
         let scale = 1.0 / f64::from(self.samples.max(1));
         let byte = |linear: f64| (encoded(linear * scale) * 255.0).round() as u8;
@@ -144,7 +145,7 @@ impl Linear {
     }
 }
 
-/// What of a colour can be shown.
+/// The part of a colour that can be shown.
 fn visible(seen: DVec3) -> DVec3 {
     let parts = seen.to_array().map(|part| if part.is_nan() { 0.0 } else { part });
     DVec3::from_array(parts).clamp(DVec3::ZERO, DVec3::ONE)
@@ -163,8 +164,8 @@ fn decoded(encoded: f64) -> f64 {
 /// The signature of a PNG file and its first chunk, which is the header.
 const PNG_HEADER_BYTES: usize = 8 + 25;
 
-/// A chunk that names the program: length, type, keyword and text, checksum. A picture with it
-/// may be drawn anew.
+/// A PNG chunk that names the program: length, type, keyword and text, checksum. A picture with it
+/// may be replaced.
 const PNG_MARK: &[u8] = b"\0\0\0\x12tEXtSoftware\0Lamplight\x4f\xb9\x48\x3e";
 
 /// Whether a file begins as one that [`Picture::png`] wrote.
@@ -176,7 +177,7 @@ impl Picture {
     /// The picture as a PNG file.
     ///
     /// # Errors
-    /// In words: a picture whose pixels do not fit its size.
+    /// A message, if the number of pixels does not fit the size.
     pub fn png(&self) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let encoder =
@@ -215,7 +216,7 @@ impl Picture {
         }
     }
 
-    /// A part of the picture; what is outside of it is black.
+    /// A part of the picture. What is outside of the picture is black.
     #[must_use]
     pub fn part(&self, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> Self {
         let mut part = Self::filled(width, height, [0; 3]);
@@ -227,7 +228,7 @@ impl Picture {
         part
     }
 
-    /// Draws a frame of one pixel.
+    /// Draws a frame that is one pixel wide.
     pub fn outline(&mut self, [left, top]: [u32; 2], [width, height]: [u32; 2], colour: [u8; 3]) {
         for x in left..left + width {
             self.set([x, top], colour);
@@ -239,8 +240,8 @@ impl Picture {
         }
     }
 
-    /// The picture in fewer pixels, each the mean of the light of `factor` by `factor`; what is
-    /// left at the right and below is cut off.
+    /// The picture with fewer pixels: each is the mean of the light of `factor` by `factor` pixels.
+    /// What remains at the right and the bottom is cut off.
     #[must_use]
     pub fn shrunk(&self, factor: u32) -> Self {
         let factor = factor.max(1);
@@ -263,7 +264,7 @@ impl Picture {
     /// The picture of a PNG file.
     ///
     /// # Errors
-    /// In words: bytes that are no such file.
+    /// A message, if the bytes are not a PNG file.
     pub fn from_png(bytes: &[u8]) -> Result<Self, String> {
         let decoded = image::load_from_memory_with_format(bytes, image::ImageFormat::Png)
             .map_err(|error| error.to_string())?;

@@ -1,4 +1,4 @@
-//! Which permutations are drawn, in which order, with which numbers.
+//! Plans a picture: which permutations are drawn, in which order, with which numbers.
 
 use std::collections::BTreeMap;
 
@@ -14,16 +14,16 @@ use crate::picture::frame::Programs;
 use crate::scene::sets::Lamp;
 use crate::source::SourceSet;
 
-/// Everything about a picture but how it is photographed.
+/// Everything about a picture, except how it is taken.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Of the scene, one of [`sets::ALL`](crate::scene::sets::ALL).
+    /// The name of the scene, one of [`sets::ALL`](crate::scene::sets::ALL).
     pub scene: String,
-    /// In order; the last one draws the picture.
+    /// The passes in order. The last one draws the picture.
     pub passes: Vec<Pass>,
-    /// Published numbers by group, then by field, as of [`Preset`].
+    /// Published numbers by group and field, as in [`Preset`].
     pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
-    /// Nine coefficients of the light from everywhere.
+    /// The nine coefficients of the ambient light, if a probe is given.
     pub probe: Option<[[f64; 3]; 9]>,
 }
 
@@ -33,7 +33,7 @@ pub struct Pass {
     pub program: String,
     pub key: String,
     pub settings: Settings,
-    /// What a picture takes from it.
+    /// What a picture needs from it.
     pub needs: Needs,
 }
 
@@ -67,11 +67,13 @@ impl Plan {
     /// A program or key that the manifest does not have, or that breaks a constraint.
     pub fn of_key(programs: &Programs, program: &str, text: &str) -> Result<Self, Diagnostics> {
         let found = known(programs, program)?;
-        let mut texts = SourceSet::default();
-        let id = texts.add("key", text.to_owned());
-        let point = key::parse(&found.space, &Quoted::whole(&texts, id))?;
+        let point = programs.with_texts(|texts| {
+            let id = texts.add("key", text.to_owned());
+            key::parse(&found.space, &Quoted::whole(texts, id))
+        })?;
         if let Some(constraint) = found.space.broken(&point).next() {
-            let message = format!("`{text}` breaks the constraint `{}`", constraint.text);
+            let sentence = constraint.doc.as_ref().unwrap_or(&constraint.text);
+            let message = format!("`{text}` is no permutation of `{program}`: {sentence}");
             return Err(vec![Diagnostic::error(codes::INVALID_PERMUTATION, message)]);
         }
         Self::of_point(programs, found, &point)
@@ -80,7 +82,7 @@ impl Plan {
     /// A point of a program's space, with the passes that it needs before it.
     ///
     /// # Errors
-    /// A program whose last pass is no picture.
+    /// The program does not draw a picture.
     pub fn of_point(
         programs: &Programs,
         program: &Program,
@@ -107,7 +109,7 @@ impl Plan {
         self.passes.last()
     }
 
-    /// Puts a lamp where the source has it, so that its shadow falls from there.
+    /// Moves a lamp to where the source has it, so that its shadow falls from there.
     pub(super) fn place(&self, lamp: &mut Lamp) {
         let vector = |field| {
             self.number("light", field)
@@ -132,7 +134,11 @@ impl Plan {
     }
 }
 
-fn known<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Diagnostics> {
+/// The program of that name.
+///
+/// # Errors
+/// There is none.
+pub(super) fn known<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Diagnostics> {
     let unknown = || {
         let message = format!("there is no program `{name}`");
         vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
@@ -159,7 +165,7 @@ impl Pass {
         }
     }
 
-    /// The number that an axis is.
+    /// The integer value of an axis.
     pub fn integer(&self, axis: &str) -> Option<i64> {
         match self.settings.values.get(axis) {
             Some(Setting::Int(value)) => Some(*value),

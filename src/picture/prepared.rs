@@ -16,7 +16,7 @@ use crate::execute::frame::{Buffers, Drawing, EntryPoint, Frame, Item, Mesh, Sta
 use crate::execute::kernel::SENTINEL;
 use crate::picture::frame::{Stages, pack, probe};
 
-/// A pass with everything it is drawn with.
+/// A pass with everything that it is drawn with.
 pub struct Prepared {
     pub stages: Stages,
     pub items: Vec<(Mesh, Buffers)>,
@@ -25,12 +25,12 @@ pub struct Prepared {
     pub levels: BTreeMap<(u32, u32), Vec<Texture>>,
     pub state: State,
     pub(super) plain: Vec<(u32, u32)>,
-    /// The binding of the camera, which each view fills; screens have none.
+    /// The binding of the camera, which each view fills. A full-screen pass has none.
     pub(super) camera: Option<Binding>,
     pub(super) eye: Camera,
     pub(super) background: Background,
-    /// The same for the farther parts of the viewer's depth, nearest first: seen where nothing
-    /// nearer was drawn.
+    /// The same pass for the farther parts of the viewer's depth, nearest first. They are visible
+    /// where no nearer part drew anything.
     pub farther: Vec<Self>,
 }
 
@@ -44,10 +44,10 @@ impl Prepared {
         self.camera.iter().map(buffer).collect()
     }
 
-    /// The buffers of the viewer, moved by parts of a pixel.
+    /// The buffers of the viewer, moved by a part of a pixel.
     ///
     /// # Errors
-    /// A field of the camera that has no number.
+    /// A field of the camera without a number.
     pub fn eye_view(&self, shift: [f64; 2], size: [u32; 2]) -> Result<Buffers, Diagnostic> {
         let [x, y] = [0, 1].map(|axis| 2.0 * shift[axis] / f64::from(size[axis].max(1)));
         let moved = DMat4::from_translation(DVec3::new(x, y, 0.0)) * self.eye.clip_from_world;
@@ -59,8 +59,8 @@ impl Prepared {
         views.collect::<Result<_, _>>().map_err(|problem| vec![problem])
     }
 
-    /// Draws a frame for each view with the stages as they are, or with another fragment stage of
-    /// so many targets.
+    /// Draws a frame for each view, with the stages as they are or with another fragment stage and
+    /// its number of targets.
     ///
     /// # Errors
     /// The painter's.
@@ -156,10 +156,11 @@ impl Prepared {
     }
 }
 
-/// Bytes of the frames that are drawn at once.
+/// The most bytes of the frames that are drawn at once.
 const AT_ONCE: usize = 64 << 20;
 
-/// Where in the pixel a sample is taken, from its middle: Halton's points, the middle alone for one.
+/// The offset of a sample from the pixel's centre: points of Halton's sequence, or the centre for a
+/// single sample.
 pub(super) fn shift(index: u32, samples: u32) -> [f64; 2] {
     let radical = |base: u32| {
         let (mut rest, mut place, mut value) = (index + 1, 1.0, 0.0);

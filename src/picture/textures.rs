@@ -1,4 +1,5 @@
-//! The textures and samplers of a pass: what earlier passes drew, the scene's, its surroundings'.
+//! The textures and samplers of a pass, from earlier passes, from the scene and from its
+//! surroundings.
 
 use super::values::Values;
 use crate::bundle::{Binding, Kind};
@@ -7,7 +8,7 @@ use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, Textu
 use crate::scene::sets::{Map, Maps};
 use crate::scene::{CubeMap, FACES, prefilter};
 
-/// What a pass left for the next.
+/// The result of a pass, which the next one reads.
 pub enum Left {
     Nothing,
     /// Six faces, or one.
@@ -29,10 +30,10 @@ pub struct Library<'a> {
     maps: Option<Maps>,
 }
 
-/// Edges of the environment's cube maps, and rows of the quadratures that fill them.
+/// The edges of the environment's cube maps, and the rows of the quadratures that fill them.
 const DIFFUSE: (usize, usize) = (12, 24);
 const SPECULAR: (usize, usize) = (32, 36);
-/// Exponent of the specular map.
+/// The exponent of the specular map.
 const LOBE: f64 = 60.0;
 
 impl<'a> Library<'a> {
@@ -85,7 +86,7 @@ fn flat(kind: TextureKind, faces: &[Vec<f32>], size: u32) -> Texture {
     }
 }
 
-/// Depths where they are read as colours.
+/// Depths in the form of a colour texture, for passes that read them so.
 fn as_color(faces: &[Vec<f32>], size: u32) -> Texture {
     let texels = faces.iter().take(1).flatten().flat_map(|depth| [*depth, 0.0, 0.0, 1.0]).collect();
     Texture { kind: TextureKind::Color2d, width: size, height: size, texels }
@@ -116,7 +117,8 @@ fn colors(levels: Vec<Map>) -> Vec<Texture> {
     levels.into_iter().map(color).collect()
 }
 
-/// A texture with all its smaller levels: made after the blur, so that they are blurred too.
+/// A texture with all its smaller levels. They are made after the blur, so that they are blurred
+/// too.
 fn mipped(texture: Texture) -> Vec<Texture> {
     let (pixels, _) = texture.texels.as_chunks::<4>();
     let texels = pixels.iter().map(|pixel| glam::Vec4::from_array(*pixel).as_dvec4()).collect();

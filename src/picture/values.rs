@@ -1,4 +1,4 @@
-//! A number for every uniform: what the source published, or else what the scene has.
+//! Finds a number for every uniform: what the source published, or else what the scene has.
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ use crate::scene::{directions, normal_matrix, sh9_project};
 pub struct Values<'a> {
     pub plan: &'a Plan,
     pub scene: &'a Scene,
-    /// The pass that draws the picture, whichever is being drawn.
+    /// The pass that draws the picture, whichever pass these values are for.
     pub last: &'a Pass,
     pub light: &'a LightView,
     pub shot: &'a Shot,
@@ -28,7 +28,7 @@ pub struct Camera {
     pub world_from_view: DMat4,
 }
 
-/// Blocks of uniforms, with the group of numbers that a preset has for them.
+/// The blocks of uniforms, with the group of a preset's numbers that fills each.
 const GROUPS: &[(&str, &str)] = &[
     ("lamps", "light"),
     ("materials", "material"),
@@ -38,10 +38,11 @@ const GROUPS: &[(&str, &str)] = &[
     ("terms", "moments"),
 ];
 
-/// Reach of falloffs that have one, in distances of the target.
+/// The range of falloffs that have one, as a multiple of the target's distance.
 const RANGE: f64 = 2.4;
 
-/// A uniform's place: `lamps.lights[2].color` is the field `color` of the third of `lamps`.
+/// The path of a uniform: `lamps.lights[2].color` is the field `color` of the third light in the
+/// block `lamps`.
 struct Path<'p> {
     block: &'p str,
     index: usize,
@@ -69,8 +70,8 @@ impl Camera {
 }
 
 impl Values<'_> {
-    /// The numbers of a uniform of every block but those of the camera and of an object: what the
-    /// source published, what the scene has, what the axes choose. `None` if nothing knows it.
+    /// The numbers of a uniform in any block but those of the camera and of an object: what the
+    /// source published, what the scene has, or what the axes choose. `None` if nothing knows it.
     pub fn number(&self, path: &str) -> Option<Vec<f64>> {
         let path = Path::new(path);
         let of_scene = || match path.block {
@@ -105,18 +106,18 @@ impl Values<'_> {
 
     fn published(&self, path: &Path<'_>) -> Option<Vec<f64>> {
         let (_, group) = GROUPS.iter().find(|(block, _)| *block == path.block)?;
-        // The exponents are the same where moments are made and where they are read.
+        // The exponents must be the same where moments are made and where they are read.
         let group = if path.field == "exponents" { "caster" } else { group };
         self.plan.number(group, path.field)
     }
 
-    /// How many lamps shine: those of the scene, as far as the array is long.
+    /// How many lamps shine: those of the scene, as far as the array has room.
     pub fn lamps(&self) -> Option<usize> {
         let most = usize::try_from(self.last.integer("max_lights")?).ok()?;
         Some(self.scene.lamps.len().min(most))
     }
 
-    /// What a lamp is in this permutation.
+    /// The kind of a lamp in this permutation.
     pub fn kind(&self, index: usize, lamp: &Lamp) -> LampKind {
         let needs = &self.last.needs;
         // The first lamp casts the shadow.
@@ -146,7 +147,8 @@ impl Values<'_> {
         })
     }
 
-    /// Several directional lights shine from where the lamps are, not all straight down.
+    /// The direction of a lamp. Several directional lights shine from where the lamps are, and not
+    /// all straight down.
     fn axis(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
         let key = self.scene.lamps.first().map_or(DVec3::ZERO, |key| key.target);
         if kind == LampKind::Directional && index > 0 {
@@ -156,10 +158,10 @@ impl Values<'_> {
         }
     }
 
-    /// The colour that arrives at the target as the lamp has it, whatever the falloff.
+    /// The intensity with which the lamp's colour arrives at the target, whatever the falloff is.
     fn intensity(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
         if kind == LampKind::Directional {
-            // They reach everywhere, so that those beside the first add up.
+            // Directional lights reach everywhere, so all but the first are dimmer.
             return lamp.color * if index == 0 { 1.0 } else { 0.25 };
         }
         let d = lamp.reach();
@@ -178,7 +180,7 @@ impl Values<'_> {
         lamp.color / if falloff > 1e-6 { falloff } else { 1.0 }
     }
 
-    /// Reach of a lamp at a distance from its target.
+    /// The range of a lamp at a distance from its target.
     fn range(&self, distance: f64) -> f64 {
         let published = self.plan.number("light", "range");
         published.and_then(|range| range.first().copied()).unwrap_or(RANGE * distance)
@@ -196,7 +198,7 @@ impl Values<'_> {
         let dimmed = if lit { 0.35 } else { 1.0 };
         Some(match path.field {
             "color" => vector(if lit { self.scene.ambient } else { DVec3::new(0.44, 0.45, 0.48) }),
-            // Published coefficients are taken as the book takes them.
+            // Published coefficients are used as the book uses them.
             "scale" => vec![dimmed * if self.plan.probe.is_some() { 1.0 } else { 1.0 / PI }],
             "sky" => vector(self.scene.sky * dimmed),
             "ground" => vector(self.scene.ground * dimmed),
@@ -208,7 +210,7 @@ impl Values<'_> {
         })
     }
 
-    /// Nine coefficients: published, or of what is around the scene.
+    /// The nine coefficients: the published ones, or those of the surroundings.
     pub fn probe(&self) -> [[f64; 3]; 9] {
         self.plan.probe.unwrap_or_else(|| projected(&self.shot.surroundings))
     }
@@ -217,7 +219,7 @@ impl Values<'_> {
         let (start, end) = self.scene.haze_range;
         Some(match field {
             "color" => vector(self.scene.haze),
-            // Half of the colour is left in the middle.
+            // So that half of the colour is left in the middle of the haze.
             "density" => vec![2.0_f64.ln().sqrt() / (0.5 * (start + end))],
             "start" => vec![start],
             "end" => vec![end],
@@ -226,11 +228,11 @@ impl Values<'_> {
     }
 
     fn caster(&self, field: &str) -> Option<Vec<f64>> {
-        // Where the source has a way against acne of its own, nothing is added.
+        // If the source avoids acne in its own way, no offset is added.
         let offset =
             if self.is_biased_by_source() { 0.0 } else { 1.0 + 0.5 * self.last.needs.reach };
         Some(match field {
-            // Point lights have a matrix for each face, and read none.
+            // A point light has a matrix for each face, and its stage reads none.
             "clip_from_world" => columns(*self.light.clip_from_world.first()?),
             "near" => vec![self.light.near],
             "far" => vec![self.light.far],
@@ -240,7 +242,7 @@ impl Values<'_> {
         })
     }
 
-    /// Polygon offset of the depth pass: the source's, or as much as the filter needs.
+    /// The polygon offset of the depth pass: the source's, or as much as the filter needs.
     pub fn offset(&self) -> [f32; 2] {
         if !self.is_biased_by_source() {
             return [1.0 + self.last.needs.reach as f32, 4.0];
@@ -249,20 +251,20 @@ impl Values<'_> {
         [0, 1].map(|index| published.get(index).map_or(0.0, |value| *value as f32))
     }
 
-    /// Whether the source says what its depth pass does against acne.
+    /// Whether the source says how its depth pass avoids acne.
     fn is_biased_by_source(&self) -> bool {
         let has = |field| self.plan.number("depth_pass", field).is_some();
         has("polygon_offset") || has("cull_front")
     }
 
-    /// Whether the depth pass has back faces only.
+    /// Whether the depth pass draws only back faces.
     pub fn culls_front(&self) -> bool {
         self.plan
             .number("depth_pass", "cull_front")
             .is_some_and(|value| value.first().is_some_and(|value| *value != 0.0))
     }
 
-    /// What depth 1 is in the moments that the last pass reads.
+    /// The moments of depth 1, which the last pass reads where nothing was drawn.
     pub fn cleared_moments(&self) -> [f32; 4] {
         if !self.last.needs.exponential {
             return [1.0, 1.0, 0.0, 0.0];

@@ -1,5 +1,5 @@
-//! Packages that npm or Cargo installed. Nothing is run for it: their own files say where a package
-//! lies, and no program of a strange folder is started.
+//! Packages that npm or Cargo installed. Their own files tell where a package is. No program is
+//! run, since the folder may be a stranger's.
 
 use std::path::{Path, PathBuf};
 
@@ -16,12 +16,12 @@ pub enum Manager {
 }
 
 impl Manager {
-    /// With the words of `package-manager`, and the file that tells of it.
+    /// Each manager, with its name in `package-manager` and the file that shows its use.
     pub const ALL: [(&'static str, Self, &'static str); 2] =
         [("npm", Self::Npm, "package.json"), ("cargo", Self::Cargo, "Cargo.toml")];
 
-    /// The manager that a `wesl.toml` names, or else the one whose file is in its folder or, where
-    /// none is there, nearest above.
+    /// The manager that a `wesl.toml` names. Without a name, the one whose file is in its folder
+    /// or, if there is none, in the nearest folder above.
     pub fn of(folder: &Path, declared: Option<&str>) -> Result<Self, String> {
         if let Some(name) = declared {
             let found = Self::ALL.iter().find(|(known, ..)| *known == name);
@@ -99,7 +99,7 @@ fn is_name(package: &str) -> bool {
 
 fn npm(folder: &Path, package: &str) -> Result<PathBuf, String> {
     if !is_name(package) {
-        return Err(format!("`{package}` is no name of a package of npm"));
+        return Err(format!("`{package}` is not the name of an npm package"));
     }
     let mut places = upwards(folder).map(|above| above.join("node_modules").join(package));
     places
@@ -109,7 +109,7 @@ fn npm(folder: &Path, package: &str) -> Result<PathBuf, String> {
 
 fn cargo(folder: &Path, package: &str) -> Result<PathBuf, String> {
     if !is_name(package) || package.contains(['@', '/']) {
-        return Err(format!("`{package}` is no name of a package of Cargo"));
+        return Err(format!("`{package}` is not the name of a Cargo package"));
     }
     let above: Vec<PathBuf> = upwards(folder).collect();
     let declared = above.iter().find_map(|above| declared(above, package));

@@ -1,6 +1,6 @@
-//! Where a package lies on disk: its root, its dependencies, its manifest.
+//! Finds a package on disk: its root, its dependencies, its manifest.
 //!
-//! This is the input end of the pipeline; the stages after it read through [`Packages`] only.
+//! This is the input end of the pipeline. The stages after it read through [`Packages`] only.
 
 mod managers;
 mod place;

@@ -1,4 +1,5 @@
-//! Which package a file or a manifest belongs to: every command asks here, so that they agree.
+//! Finds the package that a file or a manifest belongs to. Every command asks here, so that they
+//! agree.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -24,7 +25,7 @@ pub fn package_above(folder: &Path) -> Option<PathBuf> {
     Some(if root.as_os_str().is_empty() { PathBuf::from(".") } else { root })
 }
 
-/// The root of the package that a folder belongs to: one that starts there, or that it is in.
+/// The root of the package that a folder belongs to: one that starts there or above it.
 pub fn package_at(folder: &Path) -> Option<PathBuf> {
     declared_root(folder).or_else(|| {
         let below = |root: &PathBuf| relative_folder(folder, root).is_ok();
@@ -77,7 +78,8 @@ pub fn manifest_of(root: &Path) -> Option<PathBuf> {
     beside.is_file().then_some(beside)
 }
 
-/// A manifest names files from its own folder: their paths from the package's root.
+/// Changes the paths of a manifest's files, which are relative to its folder, into paths from the
+/// package's root.
 pub fn below_root(programs: &mut [Program], folder: &Path) -> Result<(), Diagnostics> {
     let root = root_beside(folder);
     let prefix = tidy(tidy(&root).strip_prefix(tidy(folder)).unwrap_or(&root));
@@ -100,7 +102,7 @@ fn outside(file: &File, root: &Path) -> Diagnostic {
     ))
 }
 
-/// A path without `.`.
+/// The path without `.` components.
 fn tidy(path: &Path) -> PathBuf {
     path.components().filter(|component| *component != Component::CurDir).collect()
 }

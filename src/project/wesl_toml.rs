@@ -1,5 +1,5 @@
-//! `wesl.toml`, as the community's specification "wesl.toml file format" has it: its keys stand in
-//! the table `package`; the tools that came before that read them at the top, so both are read.
+//! Reads `wesl.toml`. In the community's specification "wesl.toml file format" its keys are in the
+//! table `package`. Older tools read them at the top level, so both are accepted.
 
 use std::path::{Path, PathBuf};
 
@@ -14,10 +14,10 @@ use crate::source::{
 };
 
 const NAME: &str = "wesl.toml";
-/// Packages that one `wesl.toml` may list.
+/// The most packages that one `wesl.toml` may list.
 const DEPENDENCIES: usize = crate::limits::PACKAGES;
 const DEFAULT_ROOT: &str = "shaders";
-/// The word for all that the package manager installed.
+/// The value that means all packages that the package manager installed.
 const AUTO: &str = "auto";
 
 /// The root that the `wesl.toml` of `folder` declares, if it has one.
@@ -85,8 +85,8 @@ pub fn shown_home(root: &Path, home: &Path) -> PathBuf {
     (0..below.unwrap_or(0)).fold(root.to_owned(), |path, _| path.join(".."))
 }
 
-/// Refuses a `wesl.toml` of the root or above it that cannot be understood: to ignore it would
-/// blame the imports.
+/// Refuses a `wesl.toml` of the root, or above it, that cannot be read. To ignore it would make its
+/// imports look wrong.
 fn broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
     let Ok(real) = root.canonicalize() else { return Ok(()) };
     for folder in [Some(real.as_path()), real.parent()]
@@ -129,7 +129,7 @@ fn parse(
     Ok((table, id))
 }
 
-/// What is read of the file has the types that are expected.
+/// Checks that the values that are read have the expected types.
 fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
     let wrong = |what: &str, expected: &str, key: &str| {
         let start = text.find(key).unwrap_or(0);
@@ -178,7 +178,7 @@ fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-/// What the file says of who installs packages.
+/// What the file says about who installs packages.
 fn manager_of(table: &Table) -> Option<&str> {
     const KEY: &str = "package-manager";
     let packaged = table.get("package").and_then(|package| package.get(KEY));

@@ -1,4 +1,4 @@
-//! The catalogue of the embedded library, its plots computed by the CPU executor.
+//! Makes the catalogue of the embedded library. The evaluator computes its plots.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -16,7 +16,7 @@ use crate::source::{self, Embedded, Package, SourceSet};
 /// Path below a folder and text.
 pub type Files = BTreeMap<String, String>;
 
-/// The catalogue's files. Errors are the library's, with its texts.
+/// The catalogue's files. Errors are about the library, and come with its texts.
 pub fn pages() -> Result<Files, (SourceSet, Diagnostics)> {
     let (sources, manifest) = project::library_manifest()?;
     let sources = Mutex::new(sources);
@@ -24,8 +24,8 @@ pub fn pages() -> Result<Files, (SourceSet, Diagnostics)> {
     made.map_err(|problems| (sources.into_inner().unwrap_or_default(), problems))
 }
 
-/// Files of the library that are made from others: modules and cases from its data, and the names
-/// with a prefix. By path below the library.
+/// Files of the library that are made from others, by path below the library: modules and cases
+/// from its data, and the names with a prefix.
 pub fn modules() -> Result<Files, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let probes = match probe::library(&mut sources) {

@@ -1,9 +1,10 @@
 //! The small language of case files: f64 formulas over the parameters of a function.
 //!
-//! Numbers, parameters by path (`light.kind`, `n.x`), `+ - * /`, comparisons and `&&`, `||`
-//! (1 or 0), parentheses, and the functions of [`FUNCTIONS`]. A vector with a scalar works by
-//! component. Formulas say where a comparison is too close to call (`near`), which inputs are
-//! meant (`where`), what an error grows with (`scaled`), and what is expected (`formula`).
+//! Numbers, parameters by path (`light.kind`, `n.x`), `+ - * /`, comparisons and `&&`, `||` (1 or
+//! 0), parentheses, and the functions of [`FUNCTIONS`]. An operation between a vector and a scalar
+//! is done for each component. Formulas say where a comparison is too close to call (`near`), which
+//! inputs are kept (`where`), what an error grows with (`scaled`), and what is expected
+//! (`formula`).
 
 mod functions;
 
@@ -13,7 +14,7 @@ use crate::diagnostic::{Diagnostic, codes, nearest};
 use crate::execute::kernel::Shape;
 use crate::limits::{FORMULA_NESTING, FORMULA_PARTS};
 
-/// A formula with its names resolved to words of a row.
+/// A formula whose names are resolved to words of a row.
 #[derive(Debug, Clone)]
 pub enum Formula {
     Number(f64),
@@ -27,7 +28,7 @@ pub enum Formula {
 /// A binary operator: spelling, precedence, meaning.
 type Operator = (&'static str, u8, fn(f64, f64) -> f64);
 
-/// Longest first where one is the beginning of another.
+/// Longer ones before those that they begin with.
 const OPERATORS: &[Operator] = &[
     ("||", 1, |a, b| truth(a != 0.0 || b != 0.0)),
     ("&&", 2, |a, b| truth(a != 0.0 && b != 0.0)),
@@ -55,13 +56,13 @@ pub struct Function {
 /// Every function, by name.
 pub const FUNCTIONS: &[Function] = functions::ALL;
 
-/// Why a text is no formula, and where.
+/// Why and where a text is not a formula.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mistake {
     /// Bytes of the text.
     pub range: Range<usize>,
     pub message: String,
-    /// What there would have been.
+    /// What would have been accepted.
     pub note: Option<String>,
 }
 
@@ -160,9 +161,9 @@ impl Scope<'_> {
 struct Parser<'a> {
     text: &'a str,
     at: usize,
-    /// Parentheses and operands within each other.
+    /// How deeply parentheses and operands nest here.
     depth: usize,
-    /// Operands and operators so far: as deep as the formula can become.
+    /// How many operands and operators there are so far; the formula cannot be deeper.
     parts: usize,
     scope: &'a Scope<'a>,
 }
@@ -314,7 +315,8 @@ fn map(a: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
     a.iter().map(|x| f(*x)).collect()
 }
 
-/// By component; a scalar goes with every component, a shorter vector with its own count.
+/// Applies `f` to each component. A scalar is used for every component. Of two vectors the shorter
+/// one decides how many components there are.
 fn zip(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let count = match (a.len(), b.len()) {
         (1, n) | (n, 1) => n,

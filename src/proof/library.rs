@@ -1,4 +1,4 @@
-//! A package of shader modules, composed for proof: the shipped library or a user's own.
+//! Composes the modules of a package for proof: the shipped library, or a user's own package.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -22,12 +22,12 @@ pub struct Library {
     name: String,
     files: Arc<dyn Files>,
     dependencies: Vec<(String, Arc<dyn Files>)>,
-    /// Under which its modules are composed.
+    /// The settings for which its modules are composed.
     settings: Settings,
 }
 
 impl Library {
-    /// The library that the binary carries.
+    /// The library that is in the binary.
     pub fn embedded() -> Self {
         Self::new(LIBRARY, Arc::new(Embedded), Vec::new())
     }
@@ -63,7 +63,7 @@ impl Library {
         self.files.list(&["toml"]).into_iter().filter(|path| has_module(path)).collect()
     }
 
-    /// Paths of all modules that are no programs: `lighting::spot`.
+    /// Paths of all modules that are not programs, such as `lighting::spot`.
     pub fn modules(&self) -> Vec<String> {
         let paths =
             self.files.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
@@ -75,7 +75,7 @@ impl Library {
         self.files.read(path).ok().flatten()
     }
 
-    /// First path components of the modules: `lighting`, `brdf`, and so on.
+    /// The first path components of the modules, such as `lighting` and `brdf`.
     pub fn folders(&self) -> Vec<String> {
         let mut folders: Vec<_> = self
             .files
@@ -88,7 +88,7 @@ impl Library {
     }
 
     /// Checks case files (paths below the package) in the languages on the open executors, which
-    /// are held to what was recorded of them.
+    /// must not need more than was recorded for them.
     pub fn check(
         &self,
         sources: &Mutex<SourceSet>,
@@ -110,7 +110,7 @@ impl Library {
         self.name == LIBRARY
     }
 
-    /// What drivers were measured to need of the package's tolerances, if that is recorded.
+    /// What drivers were measured to need for the package's tolerances, if that is recorded.
     pub fn ratchet(&self, sources: &Mutex<SourceSet>) -> Result<Option<Ratchet>, Diagnostics> {
         let mut sources = lock(sources);
         let id = source::read(&mut sources, &self.package(), ratchet::FILE)
@@ -171,7 +171,7 @@ impl Library {
         Ok(files)
     }
 
-    /// A WESL module with everything it declares, and the map back to its text.
+    /// A WESL module with everything that it declares, and the map back to its text.
     pub fn whole(
         &self,
         sources: &Mutex<SourceSet>,
@@ -217,7 +217,7 @@ impl Library {
             .map(|validated| Arc::new(validated.module))
     }
 
-    /// A module of its own package that imports this one by name.
+    /// A module of its own package, which imports this one by name.
     pub fn importing(
         &self,
         sources: &Mutex<SourceSet>,
@@ -293,7 +293,7 @@ fn composed(
     }
 }
 
-/// The package's files, with a few texts of our own beside them.
+/// The files of a package, with some texts of our own added.
 struct Overlay {
     base: Arc<dyn Files>,
     extra: BTreeMap<String, String>,

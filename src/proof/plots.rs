@@ -1,4 +1,4 @@
-//! The values behind the catalogue's plots, from any executor.
+//! Computes the values for the catalogue's plots, on any executor.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;

@@ -1,5 +1,5 @@
-//! The `driver` tier: what a pinned software driver was measured to need of each function's
-//! stated tolerance, kept in a file that may only become stricter.
+//! The `driver` tier: the share of each function's stated tolerance that a pinned software driver
+//! was measured to need. It is kept in a file that may only become stricter.
 //!
 //! ```toml
 //! [adapter]                            # what was measured on; another driver is not judged
@@ -31,9 +31,10 @@ use toml::{Table, Value};
 
 /// File name below a package's root.
 pub const FILE: &str = "tolerances.toml";
-/// How much more than recorded a run may need. Processors differ in fused operations and rounding.
+/// A run may need this many times what is recorded, since processors differ in fused operations and
+/// rounding.
 pub const SLACK: f64 = 2.0;
-/// The least share that is recorded, so that an exact result does not become a bound of 0.
+/// The smallest share that is recorded, so that an exact result does not become a bound of 0.
 const LEAST: f64 = 0.001;
 
 const HEADER: &str = "# The driver tier: error over stated tolerance, worst of all inputs, as measured on the adapters
@@ -44,9 +45,9 @@ const HEADER: &str = "# The driver tier: error over stated tolerance, worst of a
 /// The content of the file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Ratchet {
-    /// Adapter by executor, what is in parentheses left out.
+    /// The adapter of each executor, without what is in parentheses.
     pub adapters: BTreeMap<String, String>,
-    /// Share by case ([`Outcome::record`](super::check::Outcome::record)) and executor.
+    /// The shares by case ([`Outcome::record`](super::check::Outcome::record)) and executor.
     pub shares: BTreeMap<String, BTreeMap<String, f64>>,
     pub waivers: Vec<Waiver>,
 }
@@ -117,7 +118,7 @@ impl Ratchet {
         text
     }
 
-    /// The waivers alone, for what is to be measured anew.
+    /// Only the waivers, for what is to be measured again.
     pub fn waivers_only(&self) -> Self {
         Self { waivers: self.waivers.clone(), ..Self::default() }
     }
@@ -135,8 +136,8 @@ impl Ratchet {
             .find(|waiver| waiver.function == function && waiver.executor == executor)
     }
 
-    /// Lowers the shares to what a report measured; raises them only by force. What was recorded
-    /// on another adapter is measured anew. What fails is not recorded.
+    /// Lowers the shares to what a report measured. They are raised only by force. Shares from
+    /// another adapter are measured again. What fails is not recorded.
     pub fn bless(&mut self, report: &Report, force: bool) {
         for (executor, adapter) in
             report.outcomes.iter().map(|outcome| (outcome.executor, pinned(&outcome.adapter)))
@@ -156,7 +157,7 @@ impl Ratchet {
     }
 }
 
-/// The worst share of each case and executor that holds, rounded up.
+/// The worst share of each case and executor that passes, rounded up.
 fn measured(report: &Report) -> BTreeMap<(String, &'static str), f64> {
     let mut found = BTreeMap::new();
     for outcome in report.outcomes.iter().filter(|outcome| outcome.is_within()) {
@@ -172,7 +173,8 @@ fn measured(report: &Report) -> BTreeMap<(String, &'static str), f64> {
     found
 }
 
-/// An adapter without what is in parentheses: the width of vectors differs between processors.
+/// An adapter's name without what is in parentheses, since the width of vectors differs between
+/// processors.
 pub fn pinned(adapter: &str) -> String {
     let mut depth = 0;
     let mut kept = String::new();

@@ -1,5 +1,5 @@
-//! What functions should return, in f64, written from the published formulas and never from the
-//! shaders' text: one file of `references/` for each module.
+//! What functions should return, in f64: one file of `references/` for each module. A reference is
+//! written from the published formula and never from the shader's text.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ pub struct Entry {
     pub functions: &'static [(&'static str, Reference)],
 }
 
-/// Reads its arguments in the order of the parameters.
+/// A reference reads its arguments in the order of the parameters.
 pub type Reference = fn(&mut Arguments<'_>) -> Expected;
 
 /// The arguments of one call, taken from the front.
@@ -25,7 +25,7 @@ pub struct Arguments<'a> {
 }
 
 impl<'a> Arguments<'a> {
-    /// Words of the plain parameters, and the fixtures of the others in order.
+    /// The words of the plain parameters, and the fixtures of the others in order.
     pub fn new(words: &'a [f64], fixtures: &'a [Arc<Fixture>]) -> Self {
         Self { words, fixtures }
     }
@@ -103,7 +103,7 @@ impl Expected {
         Self { value: value.into_iter().collect(), alternatives: Vec::new() }
     }
 
-    /// With one more value that is accepted.
+    /// Adds a value that is accepted too.
     pub fn or(mut self, other: impl Into<Self>) -> Self {
         let other = other.into();
         self.alternatives.push(other.value);

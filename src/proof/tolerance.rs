@@ -10,7 +10,8 @@
 //! | `pow = { base, exponent, ulp }` | what WGSL allows `pow(x, s)`: \|y\|*(s*ln2*2^-21 + \|t\|*ln2*u + (3 + 2\|t\|)*u + s*ulp*u/2), t = s*log2(x); `ulp` is the error of the base, 2 by default |
 //! | `scaled = { by, ulp }` | ulp*u*\|by\|: for sums, `by` is the sum of the terms' magnitudes |
 //!
-//! A table may name one part of a struct's result with `for`; terms without it go for all.
+//! A table may name one part of a struct's result with `for`. Terms without `for` apply to all
+//! parts.
 
 use super::formula::{Formula, Scope};
 use crate::diagnostic::Diagnostic;
@@ -43,13 +44,13 @@ pub const TERMS: &[Kind] = &[
     },
 ];
 
-/// One term of a case; `F` is a text, then a formula.
+/// One term of a case. `F` is a text first, and a formula once it is bound.
 #[derive(Debug, Clone)]
 pub struct Term<F> {
     pub kind: &'static Kind,
     pub coefficient: f64,
     pub formulas: Vec<F>,
-    /// Path of the part of the result it goes for.
+    /// The path of the part of the result that it applies to.
     pub only: Option<String>,
 }
 
@@ -64,7 +65,7 @@ pub fn find(name: &str) -> Option<&'static Kind> {
     TERMS.iter().find(|kind| kind.name == name)
 }
 
-/// A term over a function's parameters, with the result words it goes for.
+/// A term over a function's parameters, with the result words that it applies to.
 #[derive(Debug)]
 pub struct Bound {
     term: Term<Formula>,
@@ -119,7 +120,7 @@ pub fn values(terms: &[Bound], row: &[f64]) -> Vec<f64> {
     terms.iter().flat_map(|bound| &bound.term.formulas).map(|formula| formula.scalar(row)).collect()
 }
 
-/// What the terms allow one component of a row's result, with the row's [`values`].
+/// What the terms allow for one component of a row's result, given the row's [`values`].
 pub fn allowed(terms: &[Bound], values: &[f64], word: usize, expected: f64) -> f64 {
     let (mut sum, mut rest) = (0.0, values);
     for Bound { term, words } in terms {

@@ -1,4 +1,4 @@
-//! Functions of a module that no case calls.
+//! Finds functions of a module that no case calls.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,8 +7,8 @@ use crate::parse::glsl::{self, Kind, Part, Symbol, Symbols, Token, known};
 use crate::parse::wesl::{self, Event, Item, ItemKind, Module, Name, Names, Reference};
 use crate::source::{SourceId, SourceSet};
 
-/// Paths of the functions of a WESL module that no case names and that no function which a case
-/// names calls. Entry points have no cases.
+/// Paths of the functions of a WESL module that no case names and that no named function calls.
+/// Entry points need no cases.
 pub fn of(module: &str, text: &str, file: &File) -> Vec<String> {
     let mut names = Names::default();
     let parsed = wesl::parse(SourceId(0), text.into(), &mut names);
@@ -22,7 +22,7 @@ pub fn of(module: &str, text: &str, file: &File) -> Vec<String> {
     paths(module, missed.map(|item| names.text(item.name)))
 }
 
-/// The same of a GLSL module, whichever of its conditions hold.
+/// The same for a GLSL module, whichever of its conditions hold.
 pub fn of_glsl(module: &str, text: &str, file: &File) -> Vec<String> {
     let (mut sources, mut symbols) = (SourceSet::default(), Symbols::default());
     let id = sources.add(format!("{module}.glsl"), text);
@@ -41,7 +41,7 @@ fn named(file: &File) -> impl Iterator<Item = &str> {
     })
 }
 
-/// What is named, and all that it uses.
+/// What is named, and everything that this uses.
 fn reached<N: Copy + Ord>(mut open: Vec<N>, uses: impl Fn(N) -> Vec<N>) -> BTreeSet<N> {
     let mut reached = BTreeSet::new();
     while let Some(name) = open.pop() {

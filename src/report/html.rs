@@ -32,11 +32,11 @@ pub fn page(report: &Report, origin: &Origin<'_>) -> String {
     html + "</main></body></html>\n"
 }
 
-/// A report sorted for reading.
+/// A report, sorted for reading.
 struct Page<'a> {
     report: &'a Report,
     origin: &'a Origin<'a>,
-    /// In the order of their first runs.
+    /// In the order in which they first ran.
     executors: Vec<&'static str>,
     functions: BTreeMap<String, Vec<&'a Outcome>>,
 }
@@ -58,7 +58,7 @@ impl<'a> Page<'a> {
             || self.report.proofs.iter().any(|proof| !proof.passed() && proof.path() == path)
     }
 
-    /// Functions in the order of a reader's interest.
+    /// Functions, those that fail first.
     fn failures_first(&self) -> Vec<(&String, &Vec<&'a Outcome>)> {
         let mut functions: Vec<_> = self.functions.iter().collect();
         functions.sort_by_key(|(path, outcomes)| !self.fails(path, outcomes));
@@ -233,7 +233,7 @@ fn headroom(share: f64) -> String {
     if share == 0.0 { "exact".to_owned() } else { format!("{:.0} %", 100.0 * (1.0 - share)) }
 }
 
-/// A table cell with a bar as long as what is used of the tolerance.
+/// A table cell, with a bar that shows how much of the tolerance is used.
 fn cell(passed: bool, share: f64) -> String {
     let class = if !passed {
         "bad"
@@ -292,7 +292,7 @@ fn numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
     );
 }
 
-/// What holds without a device, in a sentence each.
+/// What is proven without a device, a sentence for each part.
 fn proved(proof: &Proof) -> String {
     let mut text = match &proof.spec {
         Err(error) => format!("WGSL's own bound is not known: {}. ", escaped(error)),
@@ -346,7 +346,7 @@ fn failing(html: &mut String, outcomes: &[&Outcome]) {
     }
 }
 
-/// The inputs that used most of what is allowed, of the run that used most.
+/// The inputs with the largest share of what is allowed, from the run with the largest share.
 fn inputs(html: &mut String, outcomes: &[&Outcome]) {
     let Some(outcome) = outcomes.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else {
         return;

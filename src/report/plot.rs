@@ -13,7 +13,7 @@ const RIGHT: f64 = 8.0;
 const BOTTOM: f64 = 16.0;
 /// Decades of the error that are shown.
 const DECADES: f64 = 9.0;
-/// Steps of colour of a map.
+/// How many steps of colour a map has.
 const LEVELS: usize = 8;
 
 /// One line of a plot: class of its colour, whether it is dashed, and where its numbers are.
@@ -72,7 +72,7 @@ impl Frame {
         HEIGHT - BOTTOM - place * (HEIGHT - BOTTOM - TOP)
     }
 
-    /// Everything below what is allowed.
+    /// The area below what is allowed.
     fn area(&self, axes: &[(&Series<'_>, &Axis)]) -> String {
         let allowed = |index: usize| {
             axes.iter()

@@ -1,4 +1,4 @@
-//! Environments with a high dynamic range: given by formulas, or read from Radiance files.
+//! Environments with a high dynamic range, from formulas or from Radiance files.
 
 use glam::DVec3;
 use image::ImageDecoder as _;
@@ -37,7 +37,7 @@ fn studio(d: DVec3) -> DVec3 {
         + softbox(d, DVec3::new(0.5, 0.1, -0.9), (0.07, 0.07)) * DVec3::new(4.2, 2.4, 1.1)
 }
 
-/// 1 inside of a rectangle as seen from the origin, 0 outside, with a soft rim.
+/// 1 inside a rectangle as seen from the origin, 0 outside, with a soft rim between.
 fn softbox(d: DVec3, towards: DVec3, half: (f64, f64)) -> f64 {
     let forward = towards.normalize();
     let right = forward.cross(DVec3::Y).normalize();
@@ -65,24 +65,24 @@ fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The stage of [`rehearse`] that is the decoder's.
+/// The stage of [`rehearse`] that runs the decoder.
 pub const DECODER: &str = "picture";
 
 impl Equirect {
     /// The image of a Radiance file (`.hdr`).
     ///
     /// # Errors
-    /// In words: bytes that are no such file, one that is too large, or one that its decoder needs
-    /// too much for.
+    /// A message: the bytes are not such a file, the image is too large, or its decoder needs too
+    /// much memory or time.
     pub fn from_radiance(bytes: &[u8]) -> Result<Self, String> {
         let decoder =
             HdrDecoder::new(std::io::Cursor::new(bytes)).map_err(|error| error.to_string())?;
         let (width, height) = decoder.dimensions();
-        // The header alone decides how much is allocated, whatever the file holds.
+        // The header alone decides how much memory is allocated, so it is checked first.
         if u64::from(width) * u64::from(height) > ENVIRONMENT_PIXELS {
             return Err(format!("{width} x {height} pixels are more than {ENVIRONMENT_PIXELS}"));
         }
-        // An environment of 4096 x 2048 is read at once.
+        // Images up to 4096 x 2048 are decoded without a rehearsal.
         if u64::from(width) * u64::from(height) > ENVIRONMENT_PIXELS / 2 {
             rehearse(DECODER, bytes).map_err(|how| format!("its decoder {how}"))?;
         }

@@ -1,4 +1,4 @@
-//! Textures by formulas.
+//! Textures made by formulas.
 
 use glam::{DVec2, DVec3, DVec4};
 
@@ -13,7 +13,7 @@ pub struct Map {
     pub texels: Vec<DVec4>,
 }
 
-/// What the axes `base_map`, `normal_map` and `lightmap` read.
+/// The textures that the axes `base_map`, `normal_map` and `lightmap` read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Maps {
     /// Colours.
@@ -59,7 +59,7 @@ impl Map {
     }
 }
 
-/// Bricks in a bond; the baked light is a soft spot.
+/// A wall of bricks in a bond. Its baked light is a soft spot.
 pub fn bricks() -> Maps {
     Maps {
         base: Map::of(256, |at| {
@@ -85,7 +85,7 @@ pub fn bricks() -> Maps {
     }
 }
 
-/// Soil without a pattern, the rest as of [`bricks`].
+/// Soil without a pattern. The other maps are those of [`bricks`].
 pub fn soil() -> Maps {
     let base = Map::of(128, |at| {
         let turn = at * std::f64::consts::TAU;
@@ -95,7 +95,7 @@ pub fn soil() -> Maps {
     Maps { base, ..bricks() }
 }
 
-/// Bright grass of many tones, the rest as of [`bricks`].
+/// Bright grass of many tones. The other maps are those of [`bricks`].
 pub fn meadow() -> Maps {
     let base = Map::of(256, |at| {
         let tone = 0.9 + 0.06 * grain(at) + 0.04 * grain(at * 2.0);
@@ -104,11 +104,11 @@ pub fn meadow() -> Maps {
     Maps { base, ..bricks() }
 }
 
-/// Where a place of the wall is on its brick.
+/// A place of the wall, relative to its brick.
 struct Brick {
     /// 0 in the joint, 1 on the brick.
     height: f64,
-    /// Differs from brick to brick, [0, 1).
+    /// A random number of the brick, [0, 1).
     tone: f64,
 }
 

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DMat4, DVec3};
 
-/// Stands for the normal of a vertex that no triangle with an area uses.
+/// The normal of a vertex that belongs to no triangle with an area.
 pub const UNUSED_NORMAL: DVec3 = DVec3::Z;
 
-/// Why a mesh has no normals.
+/// Why the normals of a mesh cannot be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshError {
     /// The number of corners is not a multiple of three.
@@ -99,7 +99,7 @@ fn triangles(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<[usize;
     }
 }
 
-/// For each position the first that is equal to it; 0 and -0 are.
+/// For each position, the first one that is equal to it. 0 and -0 are equal.
 fn welded(positions: &[DVec3]) -> Vec<usize> {
     let mut first = BTreeMap::new();
     let key = |position: &DVec3| position.to_array().map(|part| (part + 0.0).to_bits());

@@ -1,5 +1,5 @@
-//! Host-side mathematics of lighting: light matrices, fits, normals, skies and kernels; shapes,
-//! environments and the scenes of the pictures, all by formulas.
+//! The mathematics of lighting for the host: light matrices, fits, normals, skies and kernels. Also
+//! the shapes, environments and scenes of the pictures, all made by formulas.
 //!
 //! Everything is in f64 and for column vectors. World and view spaces are right-handed; a view
 //! looks down its -z axis, with +y up. Lengths are in scene units, angles in radians. Cast the

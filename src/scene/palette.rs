@@ -12,7 +12,7 @@ pub const INDIGO: DVec3 = DVec3::new(0.22, 0.27, 0.7);
 pub const CHALK: DVec3 = DVec3::new(0.78, 0.76, 0.72);
 pub const SLATE: DVec3 = DVec3::new(0.3, 0.32, 0.36);
 
-/// Fourteen materials, each with one for its back: ambient and diffuse, specular, shininess.
+/// Fourteen materials, each with one for its back side.
 pub fn materials() -> Vec<[Material; 2]> {
     const FRONTS: [(DVec3, f64, f64); 14] = [
         (DVec3::new(0.75, 0.08, 0.07), 0.6, 60.0),
@@ -39,7 +39,19 @@ pub fn materials() -> Vec<[Material; 2]> {
     FRONTS.iter().enumerate().map(|(index, front)| [material(*front), back(index)]).collect()
 }
 
-/// Ten lamps: the key light given, then coloured ones on a ring around its target.
+/// The lamps of shapes that float: the first shines from beside the viewer, everywhere alike.
+pub fn over_the_shoulder() -> Vec<Lamp> {
+    let key = Lamp {
+        color: DVec3::splat(0.95),
+        position: DVec3::new(-3.5, 5.5, 6.5),
+        target: DVec3::ZERO,
+        half_angle: 0.5,
+        kind: LampKind::Directional,
+    };
+    lamps(key, 5.0, 4.0, 0.22)
+}
+
+/// Ten lamps: the given key light, then coloured ones on a ring around its target.
 pub fn lamps(key: Lamp, radius: f64, height: f64, share: f64) -> Vec<Lamp> {
     const COLORS: [DVec3; 9] = [
         DVec3::new(1.0, 0.35, 0.25),
@@ -54,12 +66,12 @@ pub fn lamps(key: Lamp, radius: f64, height: f64, share: f64) -> Vec<Lamp> {
     ];
     const KINDS: [LampKind; 3] = [LampKind::Point, LampKind::Spot, LampKind::Spot];
     let ring = COLORS.iter().enumerate().map(|(index, color)| {
-        // By the golden angle, so that any number of them is spread evenly.
+        // Placed by the golden angle, so that any number of lamps is spread evenly.
         let (sin, cos) = (2.399_963 * index as f64 + 0.6).sin_cos();
         let kind = KINDS[index % KINDS.len()];
         let place = key.target + DVec3::new(cos, 0.0, sin) * radius * (0.55 + 0.05 * index as f64);
         Lamp {
-            // A point light reaches all that a spot light leaves dark.
+            // A point light also reaches what a spot light leaves dark, so it is dimmer.
             color: *color * share * if kind == LampKind::Point { 0.25 } else { 1.0 },
             position: DVec3::new(place.x, height, place.z),
             target: DVec3::new(place.x, key.target.y, place.z),

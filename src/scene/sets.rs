@@ -1,4 +1,4 @@
-//! The scenes of the pictures: shapes, lamps, materials and a viewer, all by formulas.
+//! The scenes of the pictures: shapes, lamps, materials and a viewer, all made by formulas.
 
 pub use super::maps::{Map, Maps};
 
@@ -8,36 +8,36 @@ use super::shape::Shape;
 use super::view::look_at;
 use super::{maps, palette};
 
-/// Everything that is drawn, and what it is seen with.
+/// Everything that is drawn, and the viewer.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// What is drawn.
     pub objects: Vec<Object>,
     /// Where it is seen from.
     pub eye: Eye,
-    /// Up to ten, the most important one first; the first casts the shadow.
+    /// Up to ten lamps, the most important one first. The first one casts the shadow.
     pub lamps: Vec<Lamp>,
-    /// Of `material=array`: fourteen fronts with their backs.
+    /// The materials for `material=array`: fourteen fronts with their backs.
     pub materials: Vec<[Material; 2]>,
-    /// Light from everywhere: of one colour, from above, from below.
+    /// Ambient light of one colour.
     pub ambient: DVec3,
     /// Ambient light from above.
     pub sky: DVec3,
     /// Ambient light from below.
     pub ground: DVec3,
-    /// What distance fades into, and over which distances.
+    /// The colour into which distance fades.
     pub haze: DVec3,
     /// Distances at which the haze begins and is full.
     pub haze_range: (f64, f64),
-    /// Textures, made when they are asked for.
+    /// Makes the textures. They are made only when they are asked for.
     pub maps: fn() -> Maps,
-    /// Texels along an edge of the shadow map, where it does not follow the picture's size.
+    /// Texels along an edge of the shadow map, if that does not depend on the picture's size.
     pub map_size: Option<u32>,
-    /// Lamps that have a place are drawn there.
+    /// Whether lamps with a position are drawn as objects.
     pub shows_lamps: bool,
 }
 
-/// A shape in its place.
+/// A shape with its place in the scene.
 #[derive(Debug, Clone)]
 pub struct Object {
     /// Corners and triangles.
@@ -46,11 +46,11 @@ pub struct Object {
     pub world_from_object: DMat4,
     /// Multiplied with the colours of the corners.
     pub color: DVec3,
-    /// Of `material=single`.
+    /// The material for `material=single`.
     pub material: Material,
-    /// Of `material=array`.
+    /// The index for `material=array`.
     pub material_index: u32,
-    /// Whether shadow maps have it: lamps would shade themselves.
+    /// Whether it casts a shadow. A drawn lamp must not, since it would shade everything.
     pub casts: bool,
 }
 
@@ -69,11 +69,11 @@ pub struct Eye {
     pub far: f64,
 }
 
-/// A light that may be of any kind: a directional light shines along its axis, a point light to
-/// all sides, a spot light into its cone.
+/// A light that can be of any kind: a directional light shines along its axis, a point light to all
+/// sides, a spot light into its cone.
 #[derive(Debug, Clone, Copy)]
 pub struct Lamp {
-    /// What arrives at the target, whatever the falloff.
+    /// The light that arrives at the target, whatever the falloff is.
     pub color: DVec3,
     /// In world space.
     pub position: DVec3,
@@ -81,7 +81,7 @@ pub struct Lamp {
     pub target: DVec3,
     /// Half the angle of the cone, radians.
     pub half_angle: f64,
-    /// Of `lights=mixed`.
+    /// The kind for `lights=mixed`.
     pub kind: LampKind,
 }
 
@@ -135,7 +135,7 @@ impl Default for Material {
 }
 
 impl Material {
-    /// A highlight of another sharpness, the roughness to match.
+    /// The material with a highlight of another sharpness, and the roughness that fits.
     pub(super) fn shiny(self, shininess: f64) -> Self {
         Self { shininess, roughness: (2.0 / (shininess + 2.0)).powf(0.25), ..self }
     }
@@ -182,7 +182,7 @@ impl Eye {
 }
 
 impl Scene {
-    /// A lamp as it is seen: a bulb, and behind that of a spot light a shade.
+    /// A lamp as it is drawn: a bulb, and for a spot light a shade behind it.
     pub fn bulb(lamp: &Lamp, kind: LampKind) -> Vec<Object> {
         let glow = lamp.color / lamp.color.max_element().max(1e-6);
         let place = DMat4::from_translation(lamp.position);
@@ -194,7 +194,7 @@ impl Scene {
         parts.into_iter().flatten().map(|part| Object { casts: false, ..part }).collect()
     }
 
-    /// Every corner of every object that casts a shadow, in world space.
+    /// Every vertex of every object that casts a shadow, in world space.
     pub fn points(&self) -> Vec<DVec3> {
         let of = |object: &Object| {
             let matrix = object.world_from_object;
@@ -239,12 +239,12 @@ pub fn scene(name: &str) -> Option<Scene> {
     ALL.iter().find(|set| set.name == name).map(|set| (set.make)())
 }
 
-/// A place, turned about y by an angle in radians.
+/// A transformation that rotates about y and then moves.
 fn placed(x: f64, y: f64, z: f64, turn: f64) -> DMat4 {
     DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_rotation_y(turn)
 }
 
-/// What most scenes share: the materials, light from everywhere, haze and textures.
+/// A scene with what most scenes share: the materials, ambient light, haze and textures.
 fn base(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
     Scene {
         objects,

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::mesh::{face_normals, normal_matrix};
 
-/// A corner with everything that `forward` may read.
+/// A vertex, with everything that `forward` may read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
     /// In object space.
@@ -15,15 +15,15 @@ pub struct Vertex {
     pub normal: DVec3,
     /// Linear, multiplied with the colour of the object.
     pub color: DVec3,
-    /// Of textures that repeat.
+    /// Coordinates of textures that repeat.
     pub uv: DVec2,
-    /// Of baked light, [0, 1].
+    /// Coordinates in the lightmap, [0, 1].
     pub light_uv: DVec2,
     /// Along u, of unit length; w is the bitangent's sign.
     pub tangent: DVec4,
 }
 
-/// Indexed triangles; counter-clockwise ones look at you.
+/// Indexed triangles. Front faces wind counter-clockwise.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Shape {
     /// Corners.
@@ -33,8 +33,8 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// A surface over the unit square: `columns` by `rows` quads, the outside where the direction
-    /// along u, crossed with that along v, points.
+    /// A surface over the unit square, of `columns` by `rows` quads. Its front faces along the
+    /// cross product of the directions of u and v.
     pub fn surface(columns: u32, rows: u32, at: impl Fn(f64, f64) -> DVec3) -> Self {
         let mut shape = Self::default();
         for row in 0..=rows {
@@ -99,8 +99,8 @@ impl Shape {
         faces.into_iter().fold(Self::default(), Self::with)
     }
 
-    /// A profile, radius and height from the bottom up, turned around the y axis; smooth between
-    /// its points.
+    /// A profile, given by radius and height from the bottom up, rotated around the y axis. It is
+    /// smooth between its points.
     pub fn lathe(profile: &[DVec2], quads: (u32, u32)) -> Self {
         Self::surface(quads.0, quads.1, |u, v| {
             let point = smooth(profile, v);
@@ -158,12 +158,12 @@ impl Shape {
         self.map(|vertex| vertex.uv *= times)
     }
 
-    /// Three corners of its own for each triangle, with the normal of its face: for shading that
-    /// takes one corner's normal for the whole triangle.
+    /// Gives each triangle three vertices of its own, with the normal of its face. This is for
+    /// shading that uses the normal of one vertex for the whole triangle.
     #[must_use]
     pub fn faceted(&self) -> Self {
         let positions: Vec<DVec3> = self.vertices.iter().map(|vertex| vertex.position).collect();
-        // Indices that no vertex has make no faces.
+        // Indices out of range give no faces.
         let normals = face_normals(&positions, Some(&self.indices)).unwrap_or_default();
         let corners = normals.iter().zip(self.indices.chunks(3));
         let vertices: Vec<Vertex> = corners
@@ -187,7 +187,7 @@ fn around(u: f64, radius: f64) -> DVec3 {
 /// A corner of a surface, with the normal that its neighbourhood has.
 fn vertex(at: &impl Fn(f64, f64) -> DVec3, u: f64, v: f64) -> Vertex {
     const STEP: f64 = 1e-4;
-    // Off the edges, where poles have no direction.
+    // A little away from the edges, since a pole has no direction there.
     let inside = |x: f64| x.clamp(2.0 * STEP, 1.0 - 2.0 * STEP);
     let (s, t) = (inside(u), inside(v));
     let along = at(s + STEP, t) - at(s - STEP, t);

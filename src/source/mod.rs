@@ -10,7 +10,7 @@ pub use read::{ReadFailure, read};
 /// One text an author wrote, as shown in diagnostics.
 #[derive(Debug, Clone)]
 pub struct Source {
-    /// Path as the author would name it, `/` as separator, never absolute by our doing.
+    /// The path as the author would name it, with `/` as separator. We never make it absolute.
     pub path: String,
     /// The whole text.
     pub text: std::sync::Arc<str>,

@@ -53,7 +53,7 @@ pub enum ReadError {
         /// Size of the file.
         bytes: u64,
     },
-    /// The operating system's words.
+    /// The operating system's message.
     Io(String),
 }
 
@@ -70,7 +70,7 @@ pub trait Files: Send + Sync {
         path.to_owned()
     }
 
-    /// Whether a file of this package is one that other programs find under its shown name.
+    /// Whether other programs find a file of this package under the name that is shown.
     fn on_disk(&self, _path: &str) -> bool {
         false
     }
@@ -91,14 +91,14 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// The folder `root`; diagnostics name files as `root` was written.
+    /// The folder `root`. Diagnostics name files as `root` was written.
     pub fn new(root: impl Into<PathBuf>) -> std::io::Result<Self> {
         let shown = root.into();
         let folder = if shown.as_os_str().is_empty() { Path::new(".") } else { &shown };
         Ok(Self { root: folder.canonicalize()?, shown })
     }
 
-    /// Whether the folder is that one or below it, links followed.
+    /// Whether the folder is this one or below it, with links followed.
     pub fn is_below(&self, real: &Path) -> bool {
         self.root.starts_with(real)
     }
@@ -164,8 +164,8 @@ impl Files for Disk {
     }
 }
 
-/// A path as its author would write it: without `.`, and without `..` where the file has a name
-/// below the current folder.
+/// A path as its author would write it: without `.`, and without `..` if the file is below the
+/// current folder.
 pub fn shown(path: &Path) -> String {
     let tidy: PathBuf =
         path.components().filter(|component| *component != Component::CurDir).collect();
@@ -240,7 +240,7 @@ fn has_extension(name: &str, extensions: &[&str]) -> bool {
     name.rsplit_once('.').is_some_and(|(_, extension)| extensions.contains(&extension))
 }
 
-/// Whether a relative path stays below its root on its own words, links aside.
+/// Whether a relative path stays below its root. Links are not considered.
 pub fn is_inside(path: &str) -> bool {
     let mut depth = 0i32;
     Path::new(path).components().all(|component| {
@@ -254,7 +254,7 @@ pub fn is_inside(path: &str) -> bool {
     })
 }
 
-/// The text of a file, without the mark that some editors put first.
+/// The text of a file, without the byte-order mark that some editors write.
 fn decode(mut bytes: Vec<u8>) -> Result<String, ReadError> {
     if bytes.starts_with("\u{feff}".as_bytes()) {
         bytes.drain(..'\u{feff}'.len_utf8());

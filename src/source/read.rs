@@ -5,9 +5,9 @@ use super::{Package, ReadError, SourceId, SourceSet, Span};
 /// Why a file of a package was not read. Becomes a diagnostic with `?`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReadFailure {
-    /// As it was asked for, below the package's root.
+    /// The path that was asked for, below the package's root.
     pub path: String,
-    /// As it is shown to the author.
+    /// The path as the author sees it.
     pub shown: String,
     /// What is wrong.
     pub error: ReadError,
@@ -18,7 +18,7 @@ pub struct ReadFailure {
 /// Reads `path` of `package` into the set. `None` where there is no such file.
 ///
 /// # Errors
-/// The failure has no place of the one who asked for the file.
+/// The failure does not know the place that asked for the file.
 pub fn read(
     sources: &mut SourceSet,
     package: &Package,
@@ -40,10 +40,10 @@ pub fn read(
     }
 }
 
-/// Adds a text that is not UTF-8 as far as it can be shown, and points to its first bad byte.
+/// Adds a text that is not UTF-8, as far as it can be shown, and points to its first wrong byte.
 fn bad_byte(sources: &mut SourceSet, shown: &str, error: &ReadError) -> Option<Span> {
     let ReadError::NotUtf8 { lossy, offset } = error else { return None };
-    // The first bad byte became one replacement character in the lossy text.
+    // The first wrong byte became one replacement character in the lossy text.
     let end = (offset + char::REPLACEMENT_CHARACTER.len_utf8()).min(lossy.len());
     let source = sources.add(shown, lossy.as_str());
     Some(Span::new(source, *offset..end))

@@ -1,11 +1,11 @@
-//! What stands for [`crate::store`] in a build without the feature `store`: folders only.
+//! Replaces [`crate::store`] in a build without the feature `store`: only folders are supported.
 
 use crate::cache::{Folder, Storage};
 
-/// What an address may be, for help.
+/// The help on addresses.
 pub const HELP: &str = "A cache that machines share, asked after the folder: `fs:/path`";
 
-/// The store at `fs:/path`.
+/// Opens the store at `fs:/path`.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     match address.split_once(':') {
         Some(("fs", path)) => Folder::new(path)

@@ -13,21 +13,21 @@ use tokio::time::timeout;
 
 use crate::cache::{MOST_RECORD_BYTES, Storage};
 
-/// What an address may be, for help.
+/// The help on addresses.
 pub const HELP: &str =
     "A cache that machines share, asked after the folder: `fs:/path` or `redis://host:port`";
 
 /// How long a server may take for its first answer.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// How long it may take for each answer after that. A server that is slower is no help, and one
-/// that never answers is left alone after a few.
+/// How long it may take for each later answer. A server that is slower does not help. One that
+/// never answers is not asked any more after a few failures.
 const SHORT_PATIENCE: Duration = Duration::from_secs(2);
 
-/// Names within the store begin with it, so that others can use the same server.
+/// The start of all names in the store, so that others can use the same server.
 const ROOT: &str = "/lamplight";
 
-/// The store at `fs:/path` or `redis://host:port`, if it answers.
+/// Opens the store at `fs:/path` or `redis://host:port`, if it answers.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     let operator = operator(address)?;
     let runtime = Builder::new_multi_thread()
@@ -59,7 +59,7 @@ fn operator(address: &str) -> Result<Operator, String> {
         Some(("redis", _)) => Operator::new(Redis::default().endpoint(address).root(ROOT)),
         _ => {
             return Err(format!(
-                "`{address}` is no store: write `fs:/path` or `redis://host:port`"
+                "`{address}` is not a store: write `fs:/path` or `redis://host:port`"
             ));
         }
     };
@@ -68,12 +68,12 @@ fn operator(address: &str) -> Result<Operator, String> {
 
 struct Store {
     operator: Operator,
-    /// Carries the operator's work; stops with it.
+    /// Runs the operator's work, and ends with it.
     runtime: Runtime,
 }
 
 impl Store {
-    /// An answer, or that there was none in time.
+    /// Waits for an answer, or fails once it takes too long.
     fn asked<T>(
         &self,
         answer: impl Future<Output = opendal::Result<T>>,
@@ -82,8 +82,8 @@ impl Store {
         within.map_err(|_| format!("no answer within {} s", SHORT_PATIENCE.as_secs()))
     }
 
-    /// A record, unless it is longer than any of ours: its length is asked for first, since what is
-    /// read is held in memory.
+    /// Reads a record unless it is longer than any of ours. Its length is asked for first, since a
+    /// record is read into memory.
     async fn bounded(&self, name: &str) -> opendal::Result<Vec<u8>> {
         let length = self.operator.stat(name).await?.content_length();
         if length > MOST_RECORD_BYTES {

@@ -1,8 +1,8 @@
-//! What constants grow to.
+//! Bounds the size of constants.
 //!
-//! naga puts a copy of a constant's whole value wherever it is named, so that a chain of constants
-//! each of which names the one before twice is as large as two to its length. Here only the words
-//! of each are counted, and the counts added up through the names.
+//! naga copies the whole value of a constant to every place that names it. So a chain of constants,
+//! each of which names the one before twice, grows exponentially. Here the words of each constant
+//! are counted, and the counts of the constants that it names are added.
 
 use std::collections::HashMap;
 
@@ -10,21 +10,21 @@ use super::limits::Excess;
 use crate::bundle::Language;
 use crate::limits::{CONSTANT_PARTS, CONSTANT_USES};
 
-/// A constant: its name, the names it uses, and the words it has itself.
+/// A constant: its name, the names that it uses, and how many words it has itself.
 struct Constant<'a> {
     name: &'a str,
     uses: Vec<&'a str>,
     own: u64,
     offset: usize,
-    /// Whether it stands outside of functions, where order does not matter.
+    /// Whether it is outside of functions, where the order does not matter.
     is_global: bool,
 }
 
-/// The first place where constants grow beyond a part of their bounds.
+/// The first place where constants exceed a part of their bounds.
 pub fn scan(text: &str, language: Language, part: u64) -> Option<Excess> {
     let (most_parts, most_uses) = (CONSTANT_PARTS / part, CONSTANT_USES / part);
     let constants = constants(text, language);
-    // One name alone cannot multiply.
+    // A single constant cannot multiply anything.
     if constants.len() < 2 {
         return None;
     }
@@ -47,7 +47,7 @@ pub fn scan(text: &str, language: Language, part: u64) -> Option<Excess> {
     None
 }
 
-/// The parts of every constant by name; the place of one that has too many.
+/// The size of every constant, by name; or the place of one that is too large.
 fn costs<'a>(constants: &[Constant<'a>], most: u64) -> Result<HashMap<&'a str, u64>, usize> {
     let mut costs: HashMap<&str, u64> = HashMap::new();
     let globals: HashMap<&str, usize> = (0..constants.len())
@@ -63,7 +63,8 @@ fn costs<'a>(constants: &[Constant<'a>], most: u64) -> Result<HashMap<&'a str, u
     Ok(costs)
 }
 
-/// The name of a local constant may be that of another: the larger one counts.
+/// Adds a size. Local constants of several functions may share a name, for which the largest
+/// counts.
 fn add<'a>(
     constant: &Constant<'a>,
     costs: &mut HashMap<&'a str, u64>,
@@ -79,14 +80,14 @@ fn add<'a>(
     Ok(())
 }
 
-/// The global constants, each after those that it names. Circles are naga's to refuse.
+/// The global constants, each after those that it names. naga itself refuses cycles.
 fn order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<usize> {
     let mut state = vec![0usize; constants.len()];
     let mut order = Vec::new();
     for root in (0..constants.len()).filter(|index| constants[*index].is_global) {
         let mut open = vec![root];
         while let Some(&index) = open.last() {
-            // The state is one more than the names that were looked at.
+            // The state is one more than the number of names that were visited.
             let at = state[index];
             match constants[index].uses.get(at) {
                 Some(name) => {
@@ -107,8 +108,8 @@ fn order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<usiz
     order
 }
 
-/// Every constant of a text. Its name is the last word before `=` that is in no brackets, which
-/// holds in both languages.
+/// Every constant of a text. Its name is the last word before the `=` that is outside of brackets,
+/// in both languages.
 fn constants(text: &str, language: Language) -> Vec<Constant<'_>> {
     let mut found: Vec<Constant<'_>> = Vec::new();
     let (mut depth, mut open, mut start) = (0usize, None::<Constant<'_>>, 0usize);
@@ -134,7 +135,7 @@ fn constants(text: &str, language: Language) -> Vec<Constant<'_>> {
                 found.extend(open.replace(next));
                 in_value = false;
             }
-            // A parameter that is `const`, as GLSL has it, ends with its list.
+            // In GLSL a parameter can be `const` too. It ends with the list of parameters.
             (")" | "}", Some(_)) if here == 0 => open = None,
             ("," | "{", Some(_)) if here == 0 && !in_value => open = None,
             (word, Some(constant)) if is_word(word) => {
@@ -166,8 +167,8 @@ fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
     tokens(text).filter(|(_, token)| is_word(token))
 }
 
-/// Words, numbers and single other characters with their places; comments are words too, which
-/// at most counts too much.
+/// Words, numbers and other characters with their places. Comments are not skipped, which can only
+/// make the count larger.
 fn tokens(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut at = 0;
     std::iter::from_fn(move || {

@@ -1,23 +1,23 @@
-//! Several mistakes of one text: naga stops at the first, so each declaration is also looked at
-//! with nothing but what it needs.
+//! Finds several mistakes of one text. naga stops at the first one, so each declaration is also
+//! validated alone, with only the declarations that it needs.
 
 use super::{Validated, is_calm, validate};
 use crate::bundle::Language;
 use crate::compose::{Composed, PartKind};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes};
 
-/// Declarations of a text from which on only the first mistake is looked for.
+/// A text with this many declarations is searched only for its first mistake.
 const PARTS: usize = 500;
 
-/// Mistakes after which no more are looked for.
+/// After so many mistakes no more are looked for.
 const MOST: usize = 20;
 
-/// Errors of a text as a whole.
+/// Errors that concern a text as a whole.
 const STOPPING: [&Code; 4] =
     [codes::NAGA_INTERNAL, codes::NAGA_EXHAUSTED, codes::LIMIT_EXCEEDED, codes::NO_ENTRY_POINT];
 
-/// As [`validate`], but goes on after the first mistake. For a text that is known or feared to be
-/// wrong: a mistake costs a run of naga for each declaration.
+/// As [`validate`], but continues after the first mistake. This is for a text that is probably
+/// wrong, since after a mistake naga runs once for each declaration.
 ///
 /// # Errors
 /// Each mistake once, in the order of the composed text's places.
@@ -27,7 +27,7 @@ pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
         Err(errors) => errors,
     };
     let stops = |error: &Diagnostic| STOPPING.contains(&error.code);
-    // A large text is tried in a process of its own, and so would be each of its parts.
+    // A large text is tried in another process, and so would be each of its parts.
     let is_calm = is_calm(composed).unwrap_or(false);
     if !is_calm || composed.parts.len() > PARTS || first.iter().any(stops) {
         return Err(first);
@@ -39,7 +39,8 @@ pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
             break;
         }
         let needed = needed(composed, index);
-        // What is wrong with a part is told there, not again at all that need it.
+        // A mistake in a part is reported for that part, and not again for every part that needs
+        // it.
         if needed.iter().zip(&wrong).any(|(needed, wrong)| *needed && *wrong) {
             continue;
         }
@@ -63,7 +64,7 @@ fn same(one: &Diagnostic, other: &Diagnostic) -> bool {
             == other.labels.first().map(|label| label.span)
 }
 
-/// A part, all that it names, and what is there for the text as a whole.
+/// A part, everything that it names, and what concerns the text as a whole.
 fn needed(composed: &Composed, index: usize) -> Vec<bool> {
     let whole = |kind| matches!(kind, PartKind::Directive | PartKind::Other);
     let mut needed: Vec<bool> = composed.parts.iter().map(|part| whole(part.kind)).collect();
@@ -76,7 +77,7 @@ fn needed(composed: &Composed, index: usize) -> Vec<bool> {
     needed
 }
 
-/// The text with blanks in the place of what is not needed, so that places stay as they are.
+/// The text with blanks instead of what is not needed, so that places do not change.
 fn alone(composed: &Composed, needed: &[bool]) -> Composed {
     let mut bytes = composed.text.clone().into_bytes();
     let left_out = || composed.parts.iter().zip(needed).filter(|(_, needed)| !**needed);

@@ -1,4 +1,4 @@
-//! Large stacks, and panics turned into diagnostics.
+//! Gives naga large stacks, and turns its panics into diagnostics.
 
 use std::cell::{Cell, RefCell};
 use std::panic::{self, AssertUnwindSafe};
@@ -8,12 +8,12 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::diagnostic::{Diagnostic, codes};
 
-/// Bytes of stack for each thread that runs naga: reserved address space, touched only when
-/// needed. With [`super::LIMITS`] it is several times what the deepest accepted text was
-/// measured to take.
+/// The stack of each thread that runs naga. It is reserved address space, of which only the used
+/// part takes memory. With [`super::LIMITS`] it is several times what the deepest accepted text was
+/// measured to need.
 const STACK_BYTES: usize = 128 << 20;
 
-/// Bytes of the composed text that a report of an internal error quotes.
+/// How much of the composed text a report of an internal error quotes, in bytes.
 const QUOTED_BYTES: usize = 16 << 10;
 
 thread_local! {
@@ -22,10 +22,10 @@ thread_local! {
     static PANIC: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Runs `work` on a thread with a large stack, of a pool that is made once.
+/// Runs `work` on a thread with a large stack. The threads form a pool, which is made once.
 ///
-/// Wrap a whole batch in one call: rayon's iterators inside it use the same pool, and nested
-/// calls run in place. Where no thread can be made, `work` runs on the caller's.
+/// Wrap a whole batch in one call: rayon's iterators inside it use the same pool, and nested calls
+/// run in place. Where no thread can be made, `work` runs on the caller's thread.
 pub fn on_large_stack<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         Some(pool) if !ON_LARGE_STACK.get() => pool.install(work),
@@ -33,11 +33,12 @@ pub fn on_large_stack<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     }
 }
 
-/// Runs `work`, which calls naga over `text`; a panic becomes a diagnostic, and prints nothing.
+/// Runs `work`, which calls naga with `text`. A panic becomes a diagnostic and prints nothing.
 pub fn guard<R>(text: &str, work: impl FnOnce() -> R) -> Result<R, Diagnostic> {
     hush();
     let outer = GUARDED.replace(true);
-    // The values `work` may leave half changed are dropped with it: callers keep only its result.
+    // A panic may leave values half changed. They are dropped with `work`, since callers keep only
+    // its result.
     let result = panic::catch_unwind(AssertUnwindSafe(work));
     GUARDED.set(outer);
     result.map_err(|_| {
@@ -63,7 +64,8 @@ fn pool() -> Option<&'static ThreadPool> {
     .as_ref()
 }
 
-/// Puts a panic hook before the present one that keeps guarded panics silent, once.
+/// Installs, once, a panic hook that keeps guarded panics silent and calls the previous hook for
+/// others.
 fn hush() {
     static HUSHED: Once = Once::new();
     HUSHED.call_once(|| {
@@ -78,7 +80,7 @@ fn hush() {
     });
 }
 
-/// The panic's message and the line of naga it came from, without the path of the machine.
+/// The panic's message and its line in naga, without the path on this machine.
 fn describe(info: &panic::PanicHookInfo<'_>) -> String {
     let payload = info.payload();
     let message = payload

@@ -1,4 +1,4 @@
-//! What an unknown name may have meant: an item of the library, or something close.
+//! Suggests what an unknown name may mean: an item of the library, or a similar name.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -55,7 +55,7 @@ const SHARED: &[&str] = &[
     "vec4",
 ];
 
-/// Those of WGSL alone.
+/// Those that only WGSL has.
 const WGSL: &[&str] = &[
     "array",
     "atan2",
@@ -85,7 +85,7 @@ const WGSL: &[&str] = &[
     "vec4u",
 ];
 
-/// Those of GLSL alone.
+/// Those that only GLSL has.
 const GLSL: &[&str] = &[
     "float",
     "int",
@@ -106,7 +106,7 @@ const GLSL: &[&str] = &[
     "uvec4",
 ];
 
-/// Adds what to import, or the nearest name.
+/// Adds the import that is missing, or the nearest name.
 pub fn unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
     if let Some(modules) = library().get(name) {
         return modules.iter().fold(error, |error, module| {
@@ -121,7 +121,7 @@ pub fn unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic
     let here: Vec<&str> =
         declared.chain(SHARED.iter().copied()).chain(own.iter().copied()).collect();
     let of_library = library().keys().map(String::as_str);
-    // One search over all of them: what is nearest is meant, wherever it is.
+    // All names are searched together, so that the nearest one is suggested wherever it comes from.
     match nearest(name, here.iter().copied().chain(of_library)) {
         Some(near) if here.contains(&near) => error.note(format!("help: did you mean `{near}`?")),
         Some(near) => library()[near].iter().fold(error, |error, module| {
@@ -139,7 +139,7 @@ fn import(composed: &Composed, module: &str, name: &str) -> String {
     }
 }
 
-/// The modules of the library by what they declare.
+/// The modules of the library, by the names that they declare.
 fn library() -> &'static BTreeMap<String, Vec<String>> {
     static ITEMS: OnceLock<BTreeMap<String, Vec<String>>> = OnceLock::new();
     ITEMS.get_or_init(|| {
@@ -163,7 +163,7 @@ fn declared(line: &str) -> Option<&str> {
     rest.split(|letter: char| !(letter.is_alphanumeric() || letter == '_')).next()
 }
 
-/// A note with each declaration of a function of the text, for a call that none of them takes.
+/// Adds a note with each declaration of a function, for a call whose arguments fit none of them.
 pub fn signatures(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
     let declares = |part: &&crate::compose::Part| {
         matches!(part.kind, PartKind::Function | PartKind::Prototype)

@@ -1,9 +1,9 @@
 //! Bounds on a composed text, checked in one pass before naga reads it.
 //!
 //! naga's parsers and validator recurse over the syntax tree, and an exhausted stack cannot be
-//! caught. What is bounded here is an upper estimate of that tree's depth: the operators that
-//! may nest in one statement, brackets within brackets, and the length as a whole. The functions
-//! are counted too: naga's time grows with their square.
+//! caught. An upper estimate of the tree's depth is bounded here: the operators that may nest in
+//! one statement, nested brackets, and the length of the text. The number of functions is bounded
+//! too, since naga's time grows with its square.
 
 use super::constants;
 use crate::compose::Composed;
@@ -15,7 +15,7 @@ use crate::limits;
 pub struct Limits {
     /// Bytes of the text.
     pub bytes: usize,
-    /// Brackets of any kind within each other.
+    /// How deeply brackets of any kind nest.
     pub nesting: usize,
     /// Operators of one expression, or branches of one chain of `else if`.
     pub operators: usize,
@@ -23,9 +23,9 @@ pub struct Limits {
     pub bodies: usize,
 }
 
-/// The limits [`super::validate`] uses. Naga's stack overflowed at some 20,000 operators of a
-/// thread of 2 MiB; the whole shader library stays below 40 in one expression. It takes a quarter of a second over
-/// 5,000 functions that call each other, and a minute over 40,000.
+/// The limits that [`super::validate`] uses. naga's stack overflowed at some 20,000 operators on a
+/// thread of 2 MiB; no expression of the shader library has 40. naga takes a quarter of a second
+/// for 5,000 functions that call each other, and a minute for 40,000.
 pub const LIMITS: Limits = Limits {
     bytes: limits::COMPILED_BYTES,
     nesting: limits::COMPILED_NESTING,
@@ -33,8 +33,8 @@ pub const LIMITS: Limits = Limits {
     bodies: limits::BODIES,
 };
 
-/// Refuses a text that might exhaust naga's stack; gives the place where a text that is let pass
-/// is beyond the calm part of a limit.
+/// Refuses a text that might exhaust naga's stack. For a text that is accepted but exceeds the calm
+/// part of a limit, gives the place.
 pub fn check(composed: &Composed) -> Result<Option<Excess>, Diagnostic> {
     let text = &composed.text;
     if text.len() > LIMITS.bytes {
@@ -45,12 +45,12 @@ pub fn check(composed: &Composed) -> Result<Option<Excess>, Diagnostic> {
         );
         return Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message));
     }
-    // Nearly every text is calm, and read once.
+    // Nearly every text is below that part and is read only once.
     let Some(large) = beyond(composed, limits::CALM_PART) else { return Ok(None) };
     beyond(composed, 1).map_or(Ok(Some(large)), |excess| Err(report(composed, &excess)))
 }
 
-/// The first place beyond a part of any limit.
+/// The first place that exceeds a part of any limit.
 fn beyond(composed: &Composed, part: usize) -> Option<Excess> {
     let text = &composed.text;
     let limit = LIMITS.bytes / part;
@@ -60,7 +60,7 @@ fn beyond(composed: &Composed, part: usize) -> Option<Excess> {
         .or(long)
 }
 
-/// What a text has more of than a bound, or a part of it.
+/// What a text has too many of, for a bound or a part of it.
 pub struct Excess {
     pub offset: usize,
     pub what: &'static str,
@@ -73,7 +73,7 @@ fn report(composed: &Composed, excess: &Excess) -> Diagnostic {
     place(composed, error, excess, "the limit is reached")
 }
 
-/// An error with the place of an excess, and what happens there.
+/// Adds the place of an excess to an error, and what is wrong there.
 pub(super) fn place(
     composed: &Composed,
     error: Diagnostic,
@@ -86,12 +86,12 @@ pub(super) fn place(
     }
 }
 
-/// What is open around the byte being read: one for each bracket, and one for the file.
+/// A bracket that is open at the byte being read; the first level is the file.
 #[derive(Default)]
 struct Level {
     /// Operators since the last `,` or `;` of this level.
     operators: usize,
-    /// The most of them before any `,` of this level.
+    /// The most operators between two `,` of this level.
     most: usize,
 }
 
@@ -99,20 +99,20 @@ struct Scan<'a> {
     bytes: &'a [u8],
     at: usize,
     levels: Vec<Level>,
-    /// Operators of all open levels together: an upper estimate of the depth of the tree here.
+    /// The operators of all open levels together: an upper estimate of the tree's depth here.
     open: usize,
-    /// A `}` was just read: unless `else` follows, the statement is over.
+    /// Whether a `}` was just read: unless `else` follows, the statement is over.
     after_block: bool,
-    /// Braces opened at the level of the file.
+    /// Braces that were opened at the level of the file.
     bodies: usize,
-    /// Declarations that end in a semicolon there, and those of them that are overrides.
+    /// Declarations at that level that end in a semicolon, and how many of them are overrides.
     declarations: usize,
     overrides: usize,
     /// Attributes of entry points.
     entries: usize,
-    /// Statements, cases and their values since the last brace at that level.
+    /// Statements, cases and values of cases since the last brace at that level.
     statements: usize,
-    /// Between `case` and its colon or brace.
+    /// Whether this is between `case` and its colon or brace.
     in_case: bool,
 }
 
@@ -141,7 +141,7 @@ fn scan(bytes: &[u8], part: usize) -> Option<Excess> {
 }
 
 impl Scan<'_> {
-    /// What there is more of so far than a part of its bound.
+    /// What exceeds a part of its bound so far, with the bound.
     #[inline]
     fn excess(&self, part: usize) -> Option<(&'static str, usize)> {
         let counts = [
@@ -206,7 +206,7 @@ impl Scan<'_> {
         self.bytes.get(self.at).copied()
     }
 
-    /// An identifier or keyword; words that nest statements without brackets count.
+    /// Reads an identifier or keyword. Keywords that nest statements without brackets count.
     fn word(&mut self) {
         let start = self.at - 1;
         while self.peek().is_some_and(|byte| byte.is_ascii_alphanumeric() || byte == b'_') {
@@ -259,7 +259,7 @@ impl Scan<'_> {
         }
     }
 
-    /// A bracket nests as deep as its deepest part, and is itself one step.
+    /// Closes a bracket. It is as deep as its deepest part, and one step more.
     fn close(&mut self) {
         if self.levels.len() > 1
             && let Some(inner) = self.levels.pop()
@@ -275,8 +275,8 @@ impl Scan<'_> {
         }
     }
 
-    /// Block comments nest in WGSL and not in GLSL; stopping at the first end is the estimate
-    /// that sees more text.
+    /// Skips a block comment. They nest in WGSL but not in GLSL. Stopping at the first end reads
+    /// more text, so it can only raise the estimate.
     fn skip_block(&mut self) {
         self.at += 1;
         while self.at < self.bytes.len()

@@ -1,7 +1,8 @@
-//! naga's parser and validator over a composed text, its errors in the author's words and places.
+//! Runs naga's parser and validator on a composed text, and reports errors in the author's terms
+//! and places.
 //!
-//! naga recurses over what it reads and panics on some inputs, so that every call into it is
-//! bounded first ([`limits`]), runs on a large stack and has its panics caught ([`guard`]).
+//! naga recurses over what it reads, and it panics on some inputs. So its input is bounded first
+//! ([`limits`]), and every call runs on a large stack with panics caught ([`guard`]).
 
 mod constants;
 mod every;
@@ -39,8 +40,9 @@ pub struct Validated {
     pub info: ModuleInfo,
 }
 
-/// What every target of the crate has: sample shading and cube arrays, which naga takes for
-/// granted, and no type of 16 or 64 bits. Cube arrays are refused by the targets without them.
+/// What every target of the crate supports. Sample shading and cube arrays are included, since naga
+/// takes them for granted; the targets without cube arrays refuse them. Types of 16 or 64 bits are
+/// not included.
 pub const CAPABILITIES: Capabilities =
     Capabilities::MULTISAMPLED_SHADING.union(Capabilities::CUBE_ARRAY_TEXTURES);
 
@@ -55,7 +57,7 @@ pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
     read(composed)
 }
 
-/// As [`validate`], of a text that was rehearsed with what is done to it afterwards.
+/// As [`validate`], for a text that was rehearsed together with what is done to it afterwards.
 pub(crate) fn validate_rehearsed(composed: &Composed) -> Result<Validated, Diagnostics> {
     limits::check(composed).map_err(|error| vec![error])?;
     read(composed)
@@ -97,7 +99,7 @@ fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     }
 }
 
-/// Whether no type or value of a module is too large for what is written of it.
+/// Whether no type or value of a module is too large to be written out.
 pub fn is_bounded(module: &naga::Module) -> bool {
     sizes::check(module).is_none()
 }
@@ -120,8 +122,8 @@ fn analyse(composed: &Composed, module: naga::Module) -> Result<Validated, Diagn
     Ok(Validated { language: composed.language, module, info })
 }
 
-/// A compute shader that takes what only another stage could give: naga lets it pass, and its
-/// writers stop at it with an internal error.
+/// Finds a compute shader with an input that only another stage could give. naga accepts it, and
+/// its writers fail on it with an internal error.
 fn compute_with_inputs(module: &naga::Module) -> Option<&str> {
     let is_location =
         |binding: &Option<naga::Binding>| matches!(binding, Some(naga::Binding::Location { .. }));

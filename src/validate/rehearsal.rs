@@ -1,4 +1,5 @@
-//! Texts so large that naga could exhaust the process over them are tried in another one first.
+//! Rehearses large texts: naga could exhaust the memory or stack of the process on them, so they
+//! are tried in another process first.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,10 +9,10 @@ use crate::compose::{Composed, lean};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::rehearse;
 
-/// The stage of [`rehearse::rehearse`] that is naga's.
+/// The stage of [`rehearse::rehearse`] that runs naga.
 pub const STAGE: &str = "naga";
 
-/// What the other process does: it validates a text, and writes it where that is asked for.
+/// What the other process does: it validates a text and, if asked to, writes it.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Job {
     /// Language of the text.
@@ -20,11 +21,11 @@ pub struct Job {
     pub stage: Option<Stage>,
     /// The text, without comments and layout.
     pub text: String,
-    /// What is written of it.
+    /// What is written from it.
     pub outputs: Option<Outputs>,
 }
 
-/// An entry point, the targets that it is written for, and the clip space, by their names.
+/// An entry point, the targets to write it for, and the clip space, by their names.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outputs {
     /// Name of the entry point.
@@ -35,11 +36,11 @@ pub struct Outputs {
     pub clip: String,
 }
 
-/// Tries a text in another process if it is beyond its calm part of any limit. Places in errors are
-/// those of `placed`, of which the text may be the lean form.
+/// Tries a text in another process if it exceeds the calm part of any limit. Errors have the places
+/// of `placed`, whose lean form the text may be.
 ///
 /// # Errors
-/// `limit-exceeded` where it is beyond a limit, `naga-exhausted` where the other process died.
+/// `limit-exceeded` where it exceeds a limit, `naga-exhausted` where the other process died.
 pub fn rehearse(
     composed: &Composed,
     placed: &Composed,
@@ -48,7 +49,7 @@ pub fn rehearse(
     if limits::check(composed)?.is_none() {
         return Ok(());
     }
-    // A text and its lean form are tried once.
+    // A text and its lean form share one rehearsal.
     let text = lean(composed).text;
     let (language, stage) = (composed.language, composed.stage);
     let job = Job { language, stage, text, outputs: outputs() };

@@ -1,4 +1,4 @@
-//! naga's errors as diagnostics in the author's text.
+//! Turns naga's errors into diagnostics about the author's text.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
 /// An error of the WGSL parser, with all its labels and notes.
 ///
-/// Its kinds are naga's own, so that its sentences are taken over, in our spelling.
+/// naga does not publish the kinds of these errors, so its sentences are used, in our style.
 pub fn wgsl(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
     let message = sentence(error.message());
     let mut diagnostic = Diagnostic::error(codes::WGSL_ERROR, &*message);
@@ -28,7 +28,7 @@ pub fn wgsl(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
     }
 }
 
-/// What naga's sentences say before a name that nothing declares.
+/// How naga's sentences begin before a name that nothing declares.
 const UNKNOWN: &[&str] =
     &["no definition in scope for identifier: `", "unknown type: `", "unknown identifier: `"];
 
@@ -60,7 +60,8 @@ pub fn glsl(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
         .collect()
 }
 
-/// naga says the same of a function that is not there and of one that takes other arguments.
+/// naga reports a function that does not exist and one with other arguments in the same way. This
+/// tells them apart.
 fn called(
     composed: &Composed,
     text: &str,
@@ -82,7 +83,7 @@ fn called(
     hints::unknown(place(error, composed, range, "here"), composed, name)
 }
 
-/// An error of the validator in our words, its spans as labels.
+/// An error of the validator as a diagnostic, with its spans as labels.
 pub fn validation(
     composed: &Composed,
     module: &Module,
@@ -92,8 +93,8 @@ pub fn validation(
         Language::Wesl => codes::WGSL_ERROR,
         Language::Glsl => codes::GLSL_ERROR,
     };
-    // The shortest span says most: it becomes the diagnostic's place. A type stands where it was
-    // first written, which may be anywhere: it comes last.
+    // The shortest span is the most precise, so it becomes the place of the diagnostic. The span of
+    // a type comes last: it is where the type was first written, which may be anywhere.
     let mut spans: Vec<_> =
         error.spans().map(|(span, context)| (span.to_range(), kind(context))).collect();
     spans.sort_by_key(|(range, words)| {
@@ -110,7 +111,7 @@ pub fn validation(
     said.notes.into_iter().fold(diagnostic, Diagnostic::note)
 }
 
-/// A label where the range has an author, else a note that quotes the composed text.
+/// A label if the range has an author, else a note that quotes the composed text.
 fn place(
     diagnostic: Diagnostic,
     composed: &Composed,
@@ -131,10 +132,10 @@ fn place(
     diagnostic.note(format!("{label}: in text the composer wrote, `{quoted}`"))
 }
 
-/// What a label says of a type.
+/// The label for a type.
 const TYPE: &str = "this type";
 
-/// What a span of the validator stands for; naga names the Rust type of its arena.
+/// What a span of the validator is, since naga names the Rust type of the arena.
 fn kind(context: &str) -> &'static str {
     const KINDS: [(&str, &str); 8] = [
         ("::GlobalVariable", "this variable"),
@@ -149,11 +150,11 @@ fn kind(context: &str) -> &'static str {
     KINDS.iter().find(|(name, _)| context.contains(name)).map_or("here", |(_, words)| words)
 }
 
-/// naga's message in our style: a lower-case start, unless a name starts it, and texts of the
-/// shader in backticks.
+/// naga's message in our style: it starts in lower case, unless with a name, and quotes the
+/// shader's text in backticks.
 fn sentence(message: &str) -> String {
     let message = message.trim().replace(['"', '\''], "`");
-    // An apostrophe is no quote.
+    // An apostrophe is not a quote.
     let message =
         APOSTROPHES.iter().fold(message, |message, (wrong, right)| message.replace(wrong, right));
     let first_word = message.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();

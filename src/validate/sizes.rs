@@ -1,9 +1,8 @@
-//! What the types of a module amount to, by checked arithmetic.
+//! Bounds the sizes of a module's types, with checked arithmetic.
 //!
-//! Some outputs spell out a zero for each scalar of a variable, a member for each gap of a
-//! structure, or a load for each part of a value. A declaration of a few bytes can so stand for
-//! gigabytes. The module that naga's parser gives has every type with its size; nothing behind the
-//! parser sees a module whose types are too large.
+//! Some outputs write a zero for each scalar of a variable, a member for each gap of a structure,
+//! or a load for each part of a value. So a declaration of a few bytes can become gigabytes. Sizes
+//! are known once naga has parsed the text, and a module whose types are too large goes no further.
 
 use naga::{
     AddressSpace, ArraySize, Expression, Function, GlobalVariable, Handle, Module, Span, Type,
@@ -26,7 +25,8 @@ struct Value<'m> {
     span: Span,
 }
 
-/// The size of each type, in the order of the types: parts come before what they are in.
+/// The size of each type, in the order of the types, in which parts come before the types that have
+/// them.
 struct Sizes<'m> {
     module: &'m Module,
     scalars: Vec<u64>,
@@ -52,7 +52,7 @@ pub fn check(module: &Module) -> Option<Large> {
 }
 
 impl Sizes<'_> {
-    /// Scalars of a value, and how deep its types are.
+    /// How many scalars a value has, and how deeply its types nest.
     fn measure(&self, inner: &TypeInner) -> (u64, usize) {
         let part = |ty: Handle<Type>| (self.scalars_of(ty), self.depth_of(ty));
         match *inner {
@@ -84,7 +84,8 @@ impl Sizes<'_> {
         self.depths.get(ty.index()).copied().unwrap_or(1)
     }
 
-    /// Bytes between the members of a structure, which HLSL spells out.
+    /// Reports gaps between the members of a structure that are too large, since HLSL fills them
+    /// with members.
     fn padding(&self, ty: &Type) -> Option<String> {
         let TypeInner::Struct { ref members, span } = ty.inner else { return None };
         let mut used = 0u64;
@@ -99,7 +100,7 @@ impl Sizes<'_> {
         })
     }
 
-    /// The first value with which all together have too many scalars.
+    /// The first value at which the total number of scalars is too large.
     fn values(&self) -> Option<Large> {
         let functions = self.module.functions.iter().map(|(_, function)| function);
         let points = self.module.entry_points.iter().map(|point| &point.function);
@@ -135,7 +136,7 @@ impl Sizes<'_> {
         }))
     }
 
-    /// Variables of a function, and values that are spelt out in it.
+    /// The variables of a function, and values that are written out in it.
     fn of_function<'f>(&self, function: &'f Function) -> impl Iterator<Item = Value<'f>> {
         let (variables, expressions) = (&function.local_variables, &function.expressions);
         let locals = variables.iter().map(|(handle, local)| Value {
@@ -156,7 +157,7 @@ impl Sizes<'_> {
 }
 
 impl Value<'_> {
-    /// Tells that there is no room for it.
+    /// The error about a value that is too large.
     fn large(&self, scalars: u64) -> Large {
         let (what, name) = (self.what, self.name.unwrap_or("_"));
         let message = format!(

@@ -1,9 +1,10 @@
-//! Derivatives, and samples that choose their level by them, where neighbouring fragments may
-//! have taken another branch: undefined on GPUs, refused by browsers, accepted by naga.
+//! Warns of derivatives in non-uniform control flow, and of samples that choose their level by
+//! derivatives there. GPUs give undefined results, browsers refuse such shaders, and naga accepts
+//! them.
 //!
-//! What differs between fragments is followed from the inputs of the fragment stage through
-//! expressions, variables, arguments and results. What cannot be followed is taken for uniform:
-//! a lint must not cry wolf.
+//! Values that differ between fragments are followed from the inputs of the fragment stage through
+//! expressions, variables, arguments and results. What cannot be followed counts as uniform, since
+//! a lint should not give false alarms.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,8 @@ use super::Validated;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 
-/// Rounds in which knowledge travels between functions; deeper chains of calls stay unknown.
+/// The most rounds in which facts move from function to function. Longer chains of calls stay
+/// unknown.
 const ROUNDS: usize = 8;
 
 /// Warnings about the fragment entry points of a module, in the order of its text.
@@ -24,7 +26,7 @@ pub fn lint(composed: &Composed, validated: &Validated) -> Diagnostics {
         .collect()
 }
 
-/// Whether there is something to warn of, wherever the text came from.
+/// Whether there is anything to warn of, whatever text it is in.
 pub fn has_lints(validated: &Validated) -> bool {
     !findings(validated).is_empty()
 }
@@ -62,10 +64,10 @@ fn warning(
     Some(warning.note(help))
 }
 
-/// A place that should not be where it is.
+/// A derivative in non-uniform control flow.
 struct Finding {
     sample: bool,
-    /// The condition that parted the fragments.
+    /// The condition that made control flow non-uniform.
     cause: Span,
 }
 
@@ -75,15 +77,17 @@ struct Known {
     arguments: Vec<bool>,
     locals: Vec<bool>,
     result: bool,
-    /// It is called where fragments have parted, by this condition.
+    /// The condition because of which it is called in non-uniform control flow, if it is.
     parted: Option<Span>,
-    /// Conditions by which some fragments leave a loop before others, by its number.
+    /// For each loop, by number: a condition because of which some fragments leave it before
+    /// others.
     loops: BTreeMap<usize, Span>,
 }
 
 struct Flow<'a> {
     module: &'a naga::Module,
-    /// Those of the module, then the fragment entry points and nothing of the others.
+    /// The functions of the module, then its fragment entry points. Other entry points are left
+    /// out.
     functions: Vec<Known>,
     globals: Vec<bool>,
     found: BTreeMap<(usize, usize), Finding>,
@@ -115,7 +119,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Walks every function once, callees first; whether anything new was learnt.
+    /// Walks every function once, callees first. Returns whether anything new was learnt.
     fn round(&mut self) -> bool {
         self.changed = false;
         let module = self.module;
@@ -147,7 +151,8 @@ impl<'a> Flow<'a> {
         walk.block(&function.body, parted);
     }
 
-    /// Whether each expression differs between fragments. Operands come before their users.
+    /// Whether each expression differs between fragments. Operands come before the expressions that
+    /// use them.
     fn varying(&self, index: usize, function: &Function) -> Vec<bool> {
         let known = &self.functions[index];
         let mut varying: Vec<bool> = Vec::with_capacity(function.expressions.len());
@@ -186,17 +191,17 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// One function being walked.
+/// The walk over one function.
 struct Walk<'w, 'a> {
     varying: Vec<bool>,
     flow: &'w mut Flow<'a>,
     index: usize,
     function: &'a Function,
-    /// Some fragments have returned, by this condition.
+    /// The condition because of which some fragments have returned.
     returned: Option<Span>,
-    /// Some have left the round of the innermost loop.
+    /// The condition because of which some have left this iteration of the innermost loop.
     left: Option<Span>,
-    /// Loops met so far.
+    /// How many loops were met so far.
     loops: usize,
 }
 
@@ -223,7 +228,7 @@ impl<'a> Walk<'_, 'a> {
             }
             Statement::Switch { selector, cases } => {
                 let parted = self.parted_by(*selector, parted);
-                // A `break` in a case leaves the switch only.
+                // A `break` in a case only leaves the switch.
                 let outer = self.left;
                 for case in cases {
                     self.block(&case.body, parted);
@@ -255,7 +260,8 @@ impl<'a> Walk<'_, 'a> {
         }
     }
 
-    /// What leaves one round of a loop parts the rounds after it: known in the next walk.
+    /// Notes that fragments left an iteration of a loop at different times. The iterations after it
+    /// are then non-uniform, which the next walk uses.
     fn leave(&mut self, number: usize) {
         let loops = &mut self.flow.functions[self.index].loops;
         if let Some(cause) = self.left.filter(|_| !loops.contains_key(&number)) {
@@ -281,7 +287,7 @@ impl<'a> Walk<'_, 'a> {
         }
     }
 
-    /// The variable behind a pointer holds what differs between fragments.
+    /// Notes that the variable behind a pointer holds a value that differs between fragments.
     fn store(&mut self, pointer: Handle<Expression>, varies: bool) {
         let mut root = pointer;
         while let Expression::Access { base, .. } | Expression::AccessIndex { base, .. } =

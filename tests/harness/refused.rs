@@ -72,7 +72,7 @@ const CASE_ERRORS: &[(&str, &str)] = &[
     ),
     (
         "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { rises = \"x\" }\n",
-        "mine.toml:5:8: error[case-invalid]: this table is no law",
+        "mine.toml:5:8: error[case-invalid]: this table is not a law",
     ),
     (
         "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { continuous = \"x\", slop = 1 }\n",

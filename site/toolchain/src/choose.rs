@@ -207,7 +207,7 @@ pub fn parsed(
 }
 
 /// No program has that name.
-pub fn unknown(name: &str) -> lamplight::diagnostic::Diagnostic {
+fn unknown(name: &str) -> lamplight::diagnostic::Diagnostic {
     let message = format!("there is no program `{name}`");
     lamplight::diagnostic::Diagnostic::error(lamplight::diagnostic::codes::UNKNOWN_PROGRAM, message)
 }

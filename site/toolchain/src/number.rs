@@ -9,7 +9,7 @@ use lamplight::diagnostic::{self, Diagnostics, codes};
 use lamplight::eval::{Bounded, Number};
 use lamplight::execute::executors::eval::EXECUTOR;
 use lamplight::execute::interpreter::Interpreter;
-use lamplight::execute::kernel::{self, Kernel};
+use lamplight::execute::kernel;
 use lamplight::project::LIBRARY;
 use lamplight::proof::expression;
 use lamplight::proof::library::Library;
@@ -132,7 +132,6 @@ pub struct Curve {
 /// A kernel that is ready, with the text it was made of: sliders ask for the same one again.
 struct Kept {
     text: String,
-    kernel: Kernel,
     interpreter: Interpreter,
 }
 
@@ -182,7 +181,7 @@ fn drawn(
             return Err(vec![diagnostic::Diagnostic::error(codes::UNTESTABLE_FUNCTION, message)]);
         }
         let interpreter = Interpreter::new(&kernel).map_err(one)?;
-        *kept = Some(Kept { text: text.clone(), kernel, interpreter });
+        *kept = Some(Kept { text: text.clone(), interpreter });
     }
     let kept = kept.as_ref().ok_or_else(|| vec![stopped()])?;
     let samples = request.samples.clamp(2, SAMPLES);
@@ -205,7 +204,6 @@ fn curve(kept: &Kept, inputs: &[f64], parameter: f64) -> Result<Curve, diagnosti
         double: Vec::with_capacity(size),
         error: Vec::with_capacity(size),
     };
-    debug_assert_eq!(kept.kernel.input_words(), 2);
     for x in inputs {
         let row = [(*x as f32).to_bits(), (parameter as f32).to_bits()];
         let first = |found: Option<f64>| found.unwrap_or(f64::NAN);

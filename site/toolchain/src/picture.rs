@@ -5,11 +5,12 @@
 //! there; it ends where a frame is missing, with the drawing that gives it. The code between is
 //! that of `lamplight render`.
 
+mod told;
+
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-use lamplight::bundle::{Language, Native, Reflection, Target};
+use lamplight::bundle::{Language, Target};
 use lamplight::catalogue::preset::{self, Number, Preset};
 use lamplight::catalogue::probe::{self, Probe};
 use lamplight::diagnostic::{self, Diagnostics, codes};
@@ -18,230 +19,18 @@ use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, T
 use lamplight::execute::frame::{self, Buffers, EntryPoint, Frame, Side, VertexFormat};
 use lamplight::execute::kernel::Kernel;
 use lamplight::execute::shipped::Shipped;
-use lamplight::permute::{Quoted, key};
 use lamplight::picture::frame::Programs;
 use lamplight::picture::{self, Plan, Shot, Surroundings};
 use lamplight::scene::{ENVIRONMENTS, environment, sets};
-use serde::{Deserialize, Serialize};
-use tsify::{Ts, Tsify};
+use tsify::Ts;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use crate::diagnostic::{Diagnostic, diagnostics};
 use crate::{Answer, answer};
-
-/// What is drawn, as `lamplight render` takes it.
-#[derive(Clone, Deserialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct PictureRequest {
-    /// A published example.
-    #[serde(default)]
-    #[tsify(optional)]
-    pub preset: Option<String>,
-    /// The program; that of the preset, or `forward`.
-    #[serde(default)]
-    #[tsify(optional)]
-    pub program: Option<String>,
-    /// A permutation of it; that of the preset, or the default.
-    #[serde(default)]
-    #[tsify(optional)]
-    pub key: Option<String>,
-    /// One of `scenes`.
-    #[serde(default)]
-    #[tsify(optional)]
-    pub scene: Option<String>,
-    /// One of `environments`.
-    #[serde(default)]
-    #[tsify(optional)]
-    pub environment: Option<String>,
-    pub width: u32,
-    pub height: u32,
-    /// Places in each pixel that are averaged.
-    pub samples: u32,
-    /// Factor on all light, in powers of two.
-    #[serde(default)]
-    #[tsify(optional)]
-    pub exposure: f64,
-    /// Whether the GLSL programs are drawn.
-    #[serde(default)]
-    #[tsify(optional)]
-    pub glsl: bool,
-    /// Numbers of uniforms by group and field, over those of the preset: `light.position`.
-    #[serde(default)]
-    #[tsify(optional, type = "Record<string, Record<string, number[]>>")]
-    pub numbers: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
-    /// What the page draws with: `wgsl` for WebGPU, `essl300` for WebGL2.
-    pub target: String,
-}
-
-/// What is to be done next.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Step {
-    /// Draw this and hand the words to `pictureFrames`.
-    pub drawing: Option<Drawing>,
-    /// The picture is done.
-    pub picture: Option<Pixels>,
-    pub diagnostics: Vec<Diagnostic>,
-}
-
-/// Colours as a screen has them.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Pixels {
-    pub width: u32,
-    pub height: u32,
-    /// Four bytes a pixel, row by row from the top.
-    #[serde(serialize_with = "as_bytes")]
-    #[tsify(type = "Uint8Array")]
-    pub rgba: Vec<u8>,
-}
-
-/// One draw, into a frame for each view. Bytes are little-endian words.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Drawing {
-    pub vertex: Stage,
-    /// Without one, depth alone is drawn.
-    pub fragment: Option<Stage>,
-    /// Words of four 32-bit numbers each that the fragment stage gives, at its locations.
-    pub targets: u32,
-    pub meshes: Vec<Mesh>,
-    pub views: Vec<Vec<Buffer>>,
-    pub buffers: Vec<Buffer>,
-    pub textures: Vec<TextureInfo>,
-    pub samplers: Vec<SamplerInfo>,
-    pub width: u32,
-    pub height: u32,
-    pub depth_test: bool,
-    pub keep_depth: bool,
-    /// `front`, `back` or `none`.
-    pub cull: String,
-    /// Whether front faces wind clockwise.
-    pub mirrored: bool,
-    /// Polygon offset: a share of the slope, and smallest steps.
-    pub offset: [f32; 2],
-}
-
-/// A stage in the target of the request.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Stage {
-    pub text: String,
-    #[tsify(type = "Native")]
-    pub native: Native,
-    #[tsify(type = "Reflection")]
-    pub reflection: Reflection,
-}
-
-/// Triangles with buffers of their own.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Mesh {
-    pub attributes: Vec<Attribute>,
-    pub stride: u32,
-    /// Without attributes, one triangle that the vertex stage makes from the index.
-    pub vertices: u32,
-    #[serde(serialize_with = "as_bytes")]
-    #[tsify(type = "Uint8Array")]
-    pub words: Vec<u8>,
-    /// Three for each triangle; empty where every three vertices in order are one.
-    #[serde(serialize_with = "as_bytes")]
-    #[tsify(type = "Uint8Array")]
-    pub indices: Vec<u8>,
-    pub buffers: Vec<Buffer>,
-}
-
-/// An attribute of a vertex.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Attribute {
-    pub location: u32,
-    /// As WebGPU calls it: `float32x3`.
-    pub format: String,
-    pub offset: u32,
-}
-
-/// A uniform buffer.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Buffer {
-    pub group: u32,
-    pub binding: u32,
-    #[serde(serialize_with = "as_bytes")]
-    #[tsify(type = "Uint8Array")]
-    pub bytes: Vec<u8>,
-}
-
-/// A texture in f32: of depth one number a texel, of colour four.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct TextureInfo {
-    pub group: u32,
-    pub binding: u32,
-    pub depth: bool,
-    /// Six layers: +x, -x, +y, -y, +z, -z.
-    pub cube: bool,
-    /// The largest first.
-    pub levels: Vec<Level>,
-}
-
-/// A level of a texture.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Level {
-    pub width: u32,
-    pub height: u32,
-    #[serde(serialize_with = "as_bytes")]
-    #[tsify(type = "Uint8Array")]
-    pub bytes: Vec<u8>,
-}
-
-/// How a texture is read.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct SamplerInfo {
-    pub group: u32,
-    pub binding: u32,
-    /// As WebGPU calls it: `less-equal`.
-    pub compare: Option<String>,
-    pub linear: bool,
-    /// As WebGPU calls it: `clamp-to-edge`.
-    pub address: String,
-}
-
-fn as_bytes<S: serde::Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
-    to.serialize_bytes(bytes)
-}
-
-/// What there is to choose for pictures.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Studio {
-    pub scenes: Vec<Named>,
-    pub environments: Vec<String>,
-    pub presets: Vec<PresetInfo>,
-}
-
-/// A name with one line about it.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct Named {
-    pub name: String,
-    pub about: String,
-}
-
-/// A published example.
-#[derive(Serialize, Tsify)]
-#[serde(rename_all = "camelCase")]
-pub struct PresetInfo {
-    pub name: String,
-    pub doc: String,
-    pub source: String,
-    pub program: String,
-    pub key: String,
-    pub scene: String,
-    pub deviations: Vec<String>,
-}
+use told::{
+    Attribute, Buffer, Drawing, Level, Mesh, Named, PictureRequest, Pixels, PresetInfo,
+    SamplerInfo, Stage, Step, Studio, TextureInfo,
+};
 
 /// What stays the same over pictures.
 struct Kept {
@@ -402,7 +191,8 @@ fn plan(kept: &Kept, request: &PictureRequest) -> Result<Plan, Diagnostics> {
         (Some(plan), None) => plan,
         (of_preset, key) => {
             let name = request.program.as_deref().or(preset.map(|preset| preset.program.as_str()));
-            let point = of_point(kept, name.unwrap_or("forward"), key.as_deref().unwrap_or(""))?;
+            let key = key.as_deref().unwrap_or("");
+            let point = Plan::of_key(&kept.programs, name.unwrap_or("forward"), key)?;
             match of_preset {
                 Some(plan) => Plan { passes: point.passes, ..plan },
                 None => point,
@@ -424,21 +214,6 @@ fn number_of(components: &[f64]) -> Number {
         [one] => Number::Scalar(*one),
         more => Number::Vector(more.to_vec()),
     }
-}
-
-fn of_point(kept: &Kept, name: &str, text: &str) -> Result<Plan, Diagnostics> {
-    let program = kept.programs.manifest().program(name);
-    let program = program.ok_or_else(|| vec![crate::choose::unknown(name)])?;
-    let point = kept.programs.with_texts(|texts| {
-        let id = texts.add("key", text.to_owned());
-        key::parse(&program.space, &Quoted::whole(texts, id))
-    })?;
-    if let Some(constraint) = program.space.broken(&point).next() {
-        let sentence = constraint.doc.as_ref().unwrap_or(&constraint.text);
-        let message = format!("`{text}` is no permutation of `{name}`: {sentence}");
-        return Err(vec![diagnostic::Diagnostic::error(codes::INVALID_PERMUTATION, message)]);
-    }
-    Plan::of_point(&kept.programs, program, &point)
 }
 
 fn shot(request: &PictureRequest) -> Result<Shot, Diagnostics> {
@@ -485,17 +260,13 @@ impl Session for Page<'_> {
         let mut told = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if let Some(frames) = self.given.get(told.used) {
             told.used += 1;
-            return Ok(frames.iter().map(copied).collect());
+            return Ok(frames.clone());
         }
         if told.wanted.is_none() {
             told.wanted = Some((described(drawing, self.target)?, layout(drawing)));
         }
         Err(refused("not drawn yet"))
     }
-}
-
-fn copied(frame: &Frame) -> Frame {
-    Frame { targets: frame.targets.clone(), depth: frame.depth.clone(), detour: None }
 }
 
 fn layout(drawing: &frame::Drawing<'_>) -> Layout {

@@ -1,24 +1,24 @@
-//! What is checked beside checksums: parts lie where a writer puts them, and what they add up to
-//! is in proportion to the file, so that a small file cannot ask for much memory or time.
+//! Checks beyond checksums. Parts must be where a writer puts them, and their total size must be in
+//! proportion to the file. So a small file cannot ask for much memory or time.
 
 use super::*;
 use crate::limits::{BUNDLE_BYTES, BUNDLE_FACTOR, Steps};
 
-/// Bytes that may still be handed out.
+/// How many bytes may still be asked for.
 struct Budget {
     left: Steps,
     part: &'static str,
 }
 
 impl Budget {
-    /// What a file of that size may ask for in one part.
+    /// The budget of one part, for a file of that size.
     fn new(bytes: usize, part: &'static str) -> Self {
         let most = BUNDLE_BYTES.saturating_add(BUNDLE_FACTOR.saturating_mul(bytes as u64));
         Self { left: Steps::new(most), part }
     }
 
     fn spend(&mut self, bytes: usize) -> Result<(), Error> {
-        // An empty part costs time too.
+        // An empty part costs time too, so it counts as a byte.
         self.left.spend(bytes as u64 + 1).map_err(|_| {
             let mib = BUNDLE_BYTES >> 20;
             let reason = format!("it holds more than {mib} MiB and {BUNDLE_FACTOR} times the file");
@@ -48,7 +48,7 @@ impl Packed {
         Ok(())
     }
 
-    /// Reads tables only: nothing is decompressed, parsed or copied.
+    /// Reads only tables: nothing is decompressed, parsed or copied.
     pub(super) fn within_budget(&self) -> Result<(), Error> {
         let mut groups = Budget::new(self.bytes.len(), "data");
         for group in 0..self.meta.groups {
@@ -88,7 +88,8 @@ impl Packed {
             .map(|length| length as usize)
     }
 
-    /// The length of each blob. Blobs follow each other through the groups, none within another.
+    /// The length of each blob. Blobs must follow each other through the groups, and none may
+    /// overlap another.
     fn blob_lengths(&self) -> Result<Vec<usize>, Error> {
         let table = self.section(BLOBS)?;
         let (mut lengths, mut group, mut next) = (Vec::new(), 0, 0);
@@ -127,7 +128,7 @@ impl Packed {
         }
     }
 
-    /// The groups fill DATA without a gap, so that their checksums cover it.
+    /// Checks that the groups fill DATA without a gap, so that their checksums cover all of it.
     fn verify_groups(&self) -> Result<(), Error> {
         let mut next = 0;
         for group in 0..self.meta.groups {
@@ -148,7 +149,7 @@ impl Packed {
         }
     }
 
-    /// Keys are sorted, found by their hashes, and have units.
+    /// Checks that keys are sorted, are found by their hashes, and have units.
     fn verify_keys(&self) -> Result<(), Error> {
         for (number, entry) in self.entries.iter().enumerate() {
             let mut previous: Option<String> = None;

@@ -1,5 +1,5 @@
-//! What functions and axes cost: a table at each function, a page of sorted tables, a table at each
-//! program.
+//! Writes what functions and axes cost: a table for each function, a page of sorted tables, and a
+//! table for each program.
 
 use std::cmp::Reverse;
 use std::fmt::Write as _;
@@ -37,7 +37,7 @@ pub fn of_function(text: &mut String, item: &Item, costs: &Costs) {
     }
 }
 
-/// The page: the functions of each module, the dearest first.
+/// The page: the functions of each module, the most expensive first.
 pub fn page(modules: &[Module], costs: &Costs) -> String {
     let mut text = HEAD.to_owned();
     let Some(shown) = costs.shown() else { return text };
@@ -93,7 +93,7 @@ pub fn of_program(text: &mut String, program: &str, costs: &Costs) {
     for row in rows {
         let AxisCost { axis, value, pairs, instructions, vgprs, waves, inverse_throughput, .. } =
             row;
-        let stage = format!("{:?}", row.stage).to_lowercase();
+        let stage = row.stage.name();
         let [least, median, most] = instructions;
         let [before, after] = waves;
         let _ = writeln!(

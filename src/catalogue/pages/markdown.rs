@@ -1,6 +1,6 @@
-//! Documentation text as Markdown.
+//! Writes documentation as Markdown.
 
-/// Text with what is outside of backticks kept from meaning anything to Markdown.
+/// The text, with everything outside of backticks escaped.
 pub fn prose(text: &str) -> String {
     let parts = text
         .split('`')
@@ -9,7 +9,7 @@ pub fn prose(text: &str) -> String {
     parts.collect::<Vec<_>>().join("`")
 }
 
-/// The same in a table, where bars end a cell within backticks too.
+/// The same for a cell of a table, where a bar ends the cell even within backticks.
 pub fn cell(text: &str) -> String {
     prose(text).replace('|', "\\|")
 }

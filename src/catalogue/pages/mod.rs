@@ -1,4 +1,5 @@
-//! The catalogue as Markdown: an index, a page for each module, one for programs, one for presets.
+//! Writes the catalogue as Markdown: an index, a page for each module, one for programs, one for
+//! presets.
 
 mod cost;
 mod markdown;

@@ -8,10 +8,10 @@ use super::super::{Item, Kind, Module, SECTIONS};
 use super::cost;
 use super::markdown::{block, cell, prose};
 
-/// Sections printed as paragraphs; the parameters are a table.
+/// The sections that are printed as paragraphs. The parameters are a table.
 const PARAGRAPHS: std::ops::RangeFrom<usize> = 1..;
 
-/// The page: the module's own words, a table of contents, every item.
+/// The page: the module's comment, a table of contents, every item.
 pub fn page(module: &Module, plots: &BTreeMap<String, String>, costs: &Costs) -> String {
     let mut text = format!("# {}\n", module.path);
     for paragraph in &module.doc {

@@ -1,6 +1,6 @@
-//! From values to places on the page, and the numbers at the axes.
+//! Maps values to places on the page, and chooses the numbers at the axes.
 
-/// An interval of values drawn over an interval of the page.
+/// An interval of values, and the interval of the page on which it is drawn.
 pub struct Scale {
     pub from: f64,
     pub to: f64,
@@ -14,7 +14,7 @@ impl Scale {
         self.start + (value - self.from) / (self.to - self.from) * (self.end - self.start)
     }
 
-    /// Round values within the interval, about as many as asked for.
+    /// Round values within the interval, about `count` of them.
     pub fn ticks(&self, count: f64) -> Vec<f64> {
         let step = step((self.to - self.from) / count);
         let (first, last) =
@@ -23,7 +23,8 @@ impl Scale {
     }
 }
 
-/// Bounds of the values, opened to the next tick; an interval even where they are all the same.
+/// Bounds of the values, extended to the next tick. The interval is not empty even if all values
+/// are the same.
 pub fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values
         .filter(|value| value.is_finite())
@@ -31,14 +32,15 @@ pub fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if low > high {
         return (0.0, 1.0);
     }
-    // Functions of light mostly start at 0: a scale that nearly does, does.
+    // Most functions of light start at 0, so a scale that nearly starts there does.
     let low = if low > 0.0 && low < 0.4 * high { 0.0 } else { low };
     let step = step((high - low).max(high.abs().max(1e-6) * 0.01) / 4.0);
     let (from, to) = ((low / step + 1e-6).floor() * step, (high / step - 1e-6).ceil() * step);
     if to > from { (from, to) } else { (from - step, from + step) }
 }
 
-/// The tick's step nearest above a size: 1, 2 or 5 times a power of ten, or 45 and 90 for degrees.
+/// The smallest step for ticks above a size: 1, 2 or 5 times a power of ten, or 45 and 90 for
+/// degrees.
 fn step(size: f64) -> f64 {
     let power = 10f64.powf(size.log10().floor());
     let degrees = [15.0, 30.0, 45.0, 90.0];
@@ -52,7 +54,7 @@ fn step(size: f64) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-/// A tick's value, as short as it goes.
+/// A tick's value, as short as possible.
 pub fn number(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     let text = if rounded == 0.0 { "0".to_owned() } else { rounded.to_string() };

@@ -1,4 +1,4 @@
-//! A plot as SVG: two axes with numbers, curves, nothing that moves.
+//! Draws a plot as SVG: two axes with numbers, and curves.
 //!
 //! Colours have enough contrast on white and on near-black, since a picture in a page cannot
 //! know the page's theme.
@@ -15,12 +15,12 @@ const RIGHT: f64 = 544.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 252.0;
 
-/// Lines and letters.
+/// The colour of lines and letters.
 const INK: &str = "#7d8794";
-/// One for each curve, in order; told apart by dashes too.
+/// A colour and a dash for each curve, in order.
 const CURVES: [(&str, &str); 4] =
     [("#3987e5", ""), ("#e0701b", "8 4"), ("#2da05a", "2 3"), ("#b05fd0", "10 3 2 3")];
-/// Points nearer to a line than this are on it.
+/// Points nearer to a line than this are left out.
 const FLAT: f64 = 0.04;
 
 /// The plot with the values of its curves, each at the [`SAMPLES`] inputs of the plot.
@@ -93,7 +93,7 @@ fn dashed(dashes: &str) -> String {
     if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{dashes}\"") }
 }
 
-/// The name, the legend, what was fixed, and what the horizontal axis is.
+/// The name, the legend, the note, and the label of the horizontal axis.
 fn captions(svg: &mut String, title: &str, plot: &Plot) {
     let _ = writeln!(
         svg,
@@ -140,7 +140,7 @@ fn legend(plot: &Plot) -> Vec<String> {
         .collect()
 }
 
-/// The curve within the frame: broken where a value is not finite, straight where it is.
+/// A curve within the frame. It is interrupted where a value is not finite.
 fn path(values: &[f64], x: &Scale, y: &Scale) -> String {
     let step = (x.to - x.from) / (SAMPLES - 1) as f64;
     let points: Vec<Option<(f64, f64)>> = values
@@ -171,7 +171,8 @@ fn piece_path(points: &[(f64, f64)]) -> String {
     format!("M{}", corners.collect::<Vec<_>>().join("L"))
 }
 
-/// Marks the points that a line from the first to the last would miss (Douglas and Peucker).
+/// Marks the points that are too far from a line between the first and the last (Douglas and
+/// Peucker).
 fn keep(points: &[(f64, f64)], kept: &mut [bool], first: usize, last: usize) {
     let distance = |index: usize| {
         let ((ax, ay), (bx, by), (px, py)) = (points[first], points[last], points[index]);
@@ -188,7 +189,7 @@ fn keep(points: &[(f64, f64)], kept: &mut [bool], first: usize, last: usize) {
     }
 }
 
-/// A tenth of a unit: below what shows, above what rounding changes.
+/// Rounded to a tenth of a unit: finer than can be seen, coarser than differences of rounding.
 fn place(value: f64) -> String {
     let rounded = (value * 10.0).round() / 10.0;
     rounded.to_string()

@@ -1,4 +1,4 @@
-//! A rule for make and ninja: the outputs, and the files that they were made of.
+//! Writes a rule for make and ninja: the outputs, and the files that they depend on.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use crate::cli::failure::Failure;
 use crate::output::{self, Replace};
 use crate::source::SourceSet;
 
-/// Writes the rule. The library is in the program and no file.
+/// Writes the rule. The library is part of this program, so it is not listed.
 pub fn write(
     path: &Path,
     outputs: impl Iterator<Item = PathBuf>,
@@ -22,13 +22,13 @@ pub fn write(
     let outputs: Vec<String> = outputs.map(|path| escaped(&path.to_string_lossy())).collect();
     let inputs: String = inputs.iter().map(|path| format!(" \\\n  {}", escaped(path))).collect();
     let rule = format!("{}:{inputs}\n", outputs.join(" "));
-    // What is there may be replaced if it is a rule for the same outputs.
+    // A file that is there may be replaced if it is a rule for the same outputs.
     let is_ours =
         |known: &[u8]| outputs.first().is_some_and(|output| known.starts_with(output.as_bytes()));
     Ok(output::write_file(path, rule.as_bytes(), is_ours, replace)?)
 }
 
-/// A name as make reads it.
+/// A name in the syntax of make.
 fn escaped(path: &str) -> String {
     let mut text = String::with_capacity(path.len());
     for letter in path.chars() {

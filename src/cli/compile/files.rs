@@ -20,7 +20,7 @@ pub struct File {
     bytes: Vec<u8>,
 }
 
-/// Endings of root modules, which their outputs do not have: `forward.frag.glsl` has two.
+/// Endings of root modules, which are removed for outputs: `forward.frag.glsl` has two.
 const ENDINGS: &[&str] = &[".wesl", ".wgsl", ".glsl", ".vert", ".frag", ".comp"];
 
 /// The name of a root module without its endings.
@@ -74,7 +74,8 @@ fn stage(stage: naga::ShaderStage) -> &'static str {
     }
 }
 
-/// Files of several targets must not share a name; GLSL files end as glslang expects.
+/// The ending of a file. Files of several targets must not share a name, and GLSL files end as
+/// glslang expects.
 pub fn ending(target: Target, stage: &str, extension: &str) -> String {
     match target {
         Target::GLSL450 | Target::GLSL330 | Target::ESSL300 => format!("{target}.{stage}"),
@@ -82,7 +83,7 @@ pub fn ending(target: Target, stage: &str, extension: &str) -> String {
     }
 }
 
-/// Two root modules may have one name, in folders of their own.
+/// Fails if two shaders would have the same name. Root modules in different folders may share one.
 pub fn distinct(files: &[File]) -> Result<(), Failure> {
     let mut names = BTreeSet::new();
     match files.iter().find(|file| !names.insert(&file.name)) {
@@ -94,7 +95,7 @@ pub fn distinct(files: &[File]) -> Result<(), Failure> {
     }
 }
 
-/// Writes files into a folder, and says where.
+/// Writes files into a folder, and prints their paths.
 pub fn write(files: &[File], folder: &Path, replace: Replace) -> Result<(), Failure> {
     let named = files.iter().map(|file| (file.name.as_str(), &*file.bytes));
     output::write_folder(folder, named, replace)?;
@@ -104,7 +105,8 @@ pub fn write(files: &[File], folder: &Path, replace: Replace) -> Result<(), Fail
     Ok(())
 }
 
-/// Text goes to standard output, with file names where there are several; one binary alone may too.
+/// Writes text to standard output, with file names if there are several files. A single binary may
+/// go there too.
 pub fn print(files: &[File]) -> Result<(), Failure> {
     if files.iter().any(|file| file.binary) && (files.len() > 1 || is_terminal()) {
         return Err(Failure::usage("a binary target needs `-o DIR`"));

@@ -67,7 +67,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
                 made.extend(files);
                 sources
             }
-            // What is wrong with one file does not hide what is wrong with the next.
+            // Errors in one file do not hide those in the next.
             Err(Failure::Input(sources, errors)) => {
                 warn(&sources, &errors, form);
                 failed = Some(Failure::Input(sources.clone(), Vec::new()));
@@ -118,7 +118,7 @@ fn compile(
     }
 }
 
-/// What two entry points share is told once.
+/// A warning about something that two entry points share is printed once.
 fn warnings(context: &Context, shaders: &[Shader]) -> Diagnostics {
     let mut found = Diagnostics::new();
     for warning in shaders.iter().flat_map(|shader| &shader.made.warnings) {

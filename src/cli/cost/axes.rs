@@ -40,7 +40,7 @@ pub fn changes_table(changes: &[Change]) -> String {
         let waves = of("subgroups_per_simd");
         vec![
             change.gpu.to_owned(),
-            format!("{:?}", change.stage).to_lowercase(),
+            change.stage.name().to_owned(),
             change.pairs.to_string(),
             signed("instructions"),
             format!("{least:+} to {most:+}"),

@@ -31,7 +31,7 @@ use crate::generate::Progress;
 use crate::input::read;
 use crate::output;
 
-/// Bytes of a file of recorded costs.
+/// The most bytes of a file of recorded costs.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// Tell what functions, permutations and shaders cost on GPUs that are not there.
@@ -113,7 +113,7 @@ impl Gpus {
         Self { gpu: Vec::new() }.open()
     }
 
-    /// The GPUs, opened. To be called while the process has one thread.
+    /// Opens the GPUs. Call this while the process has only one thread.
     pub fn open(&self) -> Opened {
         let named: BTreeSet<&Gpu> = self.gpu.iter().copied().collect();
         let is_wanted = |gpu: &&Gpu| match named.is_empty() {
@@ -161,7 +161,7 @@ fn recorded_in(path: &Path) -> Result<Option<Baseline>, Failure> {
     let bytes = read(path, MOST_BYTES).map_err(|error| told(error.to_string()))?;
     Baseline::parse(&bytes)
         .map(Some)
-        .map_err(|reason| told(format!("these are no recorded costs: {reason}")))
+        .map_err(|reason| told(format!("this is not a file of recorded costs: {reason}")))
 }
 
 fn compare(recorded: &Baseline, driver: &str, costs: &[Cost], share: f64) -> Result<(), Failure> {
@@ -204,7 +204,7 @@ fn print(arguments: &Arguments, driver: &str, costs: &[Cost]) -> Result<(), Fail
         .map(|cost| {
             let figures = if arguments.whole { &cost.stage_figures } else { cost.figures() };
             let mut row = vec![cost.gpu.name.to_owned()];
-            row.extend(several_stages.then(|| format!("{:?}", cost.stage).to_lowercase()));
+            row.extend(several_stages.then(|| cost.stage.name().to_owned()));
             row.extend(FIGURES.iter().map(|figure| figure.of(figures).to_string()));
             row.push(cost.name.clone());
             row

@@ -1,5 +1,5 @@
-//! What the catalogue shows of costs: every function on every generation, every value of every axis
-//! on one GPU.
+//! Measures what the catalogue shows of costs: every function on every generation, every value of
+//! every axis on one GPU.
 
 use std::collections::BTreeMap;
 

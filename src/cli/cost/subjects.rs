@@ -1,4 +1,4 @@
-//! What is measured: functions of the library, permutations, shaders of files.
+//! Finds what is measured: functions of the library, permutations, shaders in files.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -43,8 +43,8 @@ pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subje
     Ok(subjects)
 }
 
-/// Paths of the library, and keys: what has a sign of a key in it, or is one word that is no path of
-/// the library and an axis of the program.
+/// Separates paths of the library from keys. A key has a sign that only keys have, or it is a word
+/// that names an axis of the program and no path of the library.
 fn parted<'a>(
     arguments: &Arguments,
     items: &[&Item],
@@ -72,7 +72,7 @@ fn axes(arguments: &Arguments) -> Result<Vec<String>, Failure> {
     Ok(axes.map(|axis| axis.name.clone()).collect())
 }
 
-/// Whether a path is what is named, or in it.
+/// Whether a path is the one that is named, or is below it.
 fn is_below(path: &str, named: &str) -> bool {
     let named = named.strip_prefix("lamplight::").unwrap_or(named);
     path == named || path.strip_prefix(named).is_some_and(|rest| rest.starts_with("::"))
@@ -88,8 +88,8 @@ fn language(arguments: &Arguments) -> Language {
     arguments.input.chosen_language().unwrap_or(Language::Wesl)
 }
 
-/// The subjects of a file: its vertex and its fragment stage together, where it has one of each,
-/// else each entry point by itself.
+/// The subjects of a file: its vertex and its fragment stage together, if it has one of each;
+/// otherwise each entry point.
 fn shaders(
     arguments: &Arguments,
     file: &Path,

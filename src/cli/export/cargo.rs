@@ -22,7 +22,7 @@ pub fn contents(modules: Contents) -> Contents {
         .collect()
 }
 
-/// A workspace of its own, so that it builds wherever it was written to.
+/// The manifest. It is a workspace of its own, so that the crate builds wherever it is written.
 fn manifest() -> String {
     format!(
         r#"[package]

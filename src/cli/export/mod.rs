@@ -47,7 +47,7 @@ const LICENSES: [(&str, &str); 2] = [
     ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE")),
 ];
 
-/// What search finds the packages by; the first three are the community's for shader packages.
+/// Keywords for search. The first three are the community's for shader packages.
 const KEYWORDS: [&str; 5] = ["WGSL", "WESL", "WebGPU", "lighting", "shadow"];
 
 const DESCRIPTION: &str = "Lighting and shadow functions for WGSL, tested function by function";
@@ -74,7 +74,7 @@ fn files() -> Result<Contents, Failure> {
     Ok(contents)
 }
 
-/// What the files are, and of which version.
+/// Describes the files and their version.
 fn readme() -> String {
     let version = env!("CARGO_PKG_VERSION");
     let (license, repository) = (env!("CARGO_PKG_LICENSE"), env!("CARGO_PKG_REPOSITORY"));
@@ -86,7 +86,8 @@ fn readme() -> String {
     )
 }
 
-/// What others import. Programs are entry points, with conditions over axes of Lamplight's.
+/// The modules that others can import. Programs are left out: they are entry points with conditions
+/// over axes of Lamplight.
 fn modules() -> Result<Contents, Failure> {
     Ok(texts(&["wesl", "wgsl"])?
         .into_iter()
@@ -111,8 +112,8 @@ fn licenses() -> impl Iterator<Item = (String, String)> {
     LICENSES.into_iter().map(|(path, text)| (path.to_owned(), text.to_owned()))
 }
 
-/// A package's `wesl.toml`: in a table as the specification has it, and at the top for tools that
-/// came before it.
+/// A package's `wesl.toml`. Its keys are in a table, as the specification has it, and also at the
+/// top for older tools.
 fn wesl_toml(manager: &str, root: &str) -> String {
     let keys = format!(
         "edition = \"{EDITION}\"\npackage-manager = \"{manager}\"\nroot = \"{root}\"\ninclude = [\"**/*.wesl\"]\n"

@@ -23,8 +23,8 @@ pub fn contents(modules: Contents, glsl: Contents) -> Contents {
         .collect()
 }
 
-/// By hand, since the order of conditions matters: tools take the first that they know, and `types`
-/// has to come before `import`.
+/// Written by hand, since the order of conditions matters: tools take the first one that they know,
+/// and `types` must come before `import`.
 fn manifest() -> String {
     let (name, description) = (json!(NAME), json!(DESCRIPTION));
     let keywords = json!(KEYWORDS);
@@ -51,7 +51,7 @@ fn manifest() -> String {
     )
 }
 
-/// JSON is JavaScript: the module is one object, its texts as strings.
+/// The module: one object in JSON, which is JavaScript too, with its texts as strings.
 fn bundle(modules: &Contents) -> String {
     let bundle = json!({ "name": LIBRARY, "edition": EDITION, "modules": modules });
     format!(

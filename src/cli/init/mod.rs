@@ -28,7 +28,7 @@ const FILES: &[(&str, &str)] = &[
 
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let folder = &arguments.folder;
-    // All or nothing: a package of which a part belongs to somebody else is none.
+    // All or nothing: nothing is written if a file of the package is there already.
     if let Some((path, _)) =
         FILES.iter().find(|(path, _)| folder.join(path).symlink_metadata().is_ok())
     {
@@ -57,7 +57,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     Ok(writeln!(stdout(), "next: {enter}lamplight lint && lamplight check && lamplight gen")?)
 }
 
-/// The folder's name as a package may have it.
+/// The folder's name in the form of a package's name.
 fn name(folder: &Path) -> String {
     let real = folder.canonicalize().or_else(|_| std::path::absolute(folder));
     let last = real.ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));

@@ -13,7 +13,7 @@ use crate::picture::gallery::{self, Card, Exhibit, StripCard};
 use crate::picture::strip::{self, Comparison};
 use crate::picture::{Plan, Shot};
 
-/// Files that are not named after a preset.
+/// Files of the gallery that are not named after a preset.
 const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
 
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
@@ -60,7 +60,7 @@ pub fn run(
     )?)
 }
 
-/// What is not ours is found before minutes of drawing, not after.
+/// Finds files that are not ours before the drawing, which takes minutes.
 fn check(folder: &Folder, presets: &[Preset], compared: &[Comparison]) -> Result<(), Failure> {
     let drawn = presets.iter().flat_map(|preset| gallery::files(&preset.name));
     let strips = compared.iter().map(|comparison| gallery::strip_file(&comparison.name));
@@ -71,7 +71,7 @@ fn check(folder: &Folder, presets: &[Preset], compared: &[Comparison]) -> Result
     Ok(())
 }
 
-/// Draws all comparisons into the folder; gives what the page says of them, and who drew them.
+/// Draws all comparisons into the folder. Returns what the page says about them, and who drew them.
 fn draw_strips(
     painter: &mut dyn Session,
     programs: &Programs,

@@ -89,7 +89,7 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// A number of stops. That no number is meant by `nan` is said where it is asked for.
+/// A number of stops. `nan` parses as a number and is refused here.
 fn stops(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
     number.ok_or_else(|| "expected a number".to_owned())
@@ -219,7 +219,7 @@ fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<P
         return Ok(plan);
     }
     let program = program(programs, arguments.program.as_deref().unwrap_or(&preset.program))?;
-    // Another permutation needs other passes; numbers and scene are the preset's.
+    // Another permutation needs other passes. Numbers and scene are still the preset's.
     let changed = of_point(
         programs,
         arguments,
@@ -248,7 +248,7 @@ fn program<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Failur
     programs.manifest().program(name).ok_or_else(|| unknown("program", name, known))
 }
 
-/// A name that nothing has: with the nearest, or with all where they are few.
+/// The error about an unknown name, with the nearest name, or with all names if there are few.
 fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Failure {
     const FEW: usize = 12;
     let hint = match nearest(name, known.clone()) {
@@ -271,7 +271,7 @@ fn of_point(
     Plan::of_point(programs, program, &point).map_err(|problems| input(programs, problems))
 }
 
-/// The point of the program's space that is asked for, over that of a key.
+/// The point of the program's space that is asked for, over the point of a key.
 fn point(
     programs: &Programs,
     arguments: &Arguments,
@@ -327,7 +327,7 @@ fn surroundings(name: &str) -> Result<Surroundings, Failure> {
     Ok(Surroundings::Image(Arc::new(image)))
 }
 
-/// A name that promises another form is no reason to fail, but its user wants to know.
+/// Warns of a file name that promises another format. That is not an error.
 fn told_form(path: &std::path::Path) {
     const OTHERS: [&str; 6] = ["jpg", "jpeg", "webp", "gif", "bmp", "hdr"];
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());

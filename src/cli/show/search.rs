@@ -1,11 +1,11 @@
-//! Things by a word: in their names first, then in what is said of them.
+//! Searches for a word: first in names, then in documentation.
 
 use serde_json::json;
 
 use super::{Library, Shown};
 use crate::cli::text;
 
-/// What has the word, or all of several words; nothing where nothing has.
+/// Everything with the word, or with all of several words; `None` if there is nothing.
 pub fn search(library: &Library, asked: &str) -> Option<Shown> {
     let words: Vec<String> = asked.split_whitespace().map(str::to_lowercase).collect();
     let has = |text: &str| {

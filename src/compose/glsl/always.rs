@@ -1,20 +1,20 @@
-//! Conditions that ask whether a setting is defined: settings always are.
+//! Warns of conditions that ask whether a setting is defined. Every setting always is.
 
 use super::expand::Expander;
 use super::table::Meaning;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::glsl::{Directive, Module, Part, Symbol, known};
 
-/// A warning about the branch of a conditional at `index`, if it asks that.
+/// The warning about the branch at `index`, if it asks whether a setting is defined.
 pub fn warning(expander: &Expander<'_, '_>, module: &Module, index: usize) -> Option<Diagnostic> {
     let Part::Directive(directive, span) = module.parts.get(index)? else { return None };
     let (name, negated) = asked(module, directive)?;
-    // What is on is defined, as whoever asks expects.
+    // A setting that is on is defined, as whoever asks expects.
     match expander.table.get(name)? {
         Meaning::Setting(setting) if !expander.reads.is_on(setting) => {}
         _ => return None,
     }
-    // A default for compilers that know no settings.
+    // `#ifndef` around a `#define` gives a default, for compilers that know no settings.
     let gives_default = |part: &Part| matches!(part, Part::Directive(Directive::Define(given), _) if given.name == name);
     if negated && module.parts.get(index + 1).is_some_and(gives_default) {
         return None;
@@ -30,7 +30,7 @@ pub fn warning(expander: &Expander<'_, '_>, module: &Module, index: usize) -> Op
     )
 }
 
-/// The macro that a directive asks for the existence of, and whether it should be missing.
+/// The macro that a directive asks about, and whether the branch is for its absence.
 fn asked(module: &Module, directive: &Directive) -> Option<(Symbol, bool)> {
     match directive {
         Directive::Ifdef { name: Ok(name), negated, .. } => Some((*name, *negated)),

@@ -1,4 +1,4 @@
-//! The value of an `#if`: integer arithmetic in 32 bits that wrap, as in GLSL.
+//! Evaluates the condition of an `#if`, in integers of 32 bits that wrap around, as in GLSL.
 
 use super::expand::Expander;
 use super::token::{NO_SETTING, Tok};
@@ -67,7 +67,8 @@ impl Parser<'_, '_, '_> {
         Ok(token)
     }
 
-    /// Operators of at least this precedence. `live` is false in operands that are skipped.
+    /// An expression of operators with at least this precedence. `live` is false in operands that
+    /// are skipped.
     fn binary(&mut self, least: u8, live: bool) -> Result<i32, Diagnostic> {
         let mut left = self.unary(live)?;
         while let Some(operator) = self.peek() {
@@ -209,7 +210,8 @@ impl Parser<'_, '_, '_> {
 
     fn undefined(&self, token: &Tok, live: bool) -> Result<i32, Diagnostic> {
         if !live {
-            // A call of a macro that is not defined cannot be skipped: it is not an expression.
+            // The parentheses of a macro that is not defined cannot be skipped: they need not hold
+            // an expression.
             return Ok(0);
         }
         let name = self.expander.table.spellings.text(token.symbol);

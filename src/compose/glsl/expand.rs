@@ -30,13 +30,13 @@ pub struct Expander<'g, 's> {
     pub table: Table<'g>,
     pub reads: Reads<'s>,
     pub errors: Vec<Diagnostic>,
-    /// What `#line` added to the line numbers of the current file.
+    /// What `#line` directives added to line numbers so far.
     pub line_shift: i64,
-    /// `__FILE__`.
+    /// The value of `__FILE__`.
     pub file_number: i64,
-    /// GLSL ES has no `##`.
+    /// GLSL ES, which has no `##`.
     pub es: bool,
-    /// In a condition `defined NAME` leaves the name alone.
+    /// Whether this is a condition, in which the name after `defined` is not expanded.
     pub in_condition: bool,
     frames: Vec<Frame>,
     work: usize,
@@ -76,7 +76,7 @@ impl<'g, 's> Expander<'g, 's> {
     /// Appends the expansion of the whole input.
     pub fn run(&mut self, mut input: Input<'_>, out: &mut Vec<Tok>) -> Result<(), Fatal> {
         let floor = self.frames.len();
-        // Where a macro expanded to nothing, the blanks before it come before the next token.
+        // Where a macro expanded to nothing, the white space before it precedes the next token.
         let mut gap = None;
         loop {
             if self.frames.len() == floor {
@@ -94,7 +94,7 @@ impl<'g, 's> Expander<'g, 's> {
         }
     }
 
-    /// Counts included text as expansion too.
+    /// Counts work against the limit of an expansion. Included text counts too.
     pub fn spend(
         &mut self,
         tokens: usize,
@@ -122,7 +122,7 @@ impl<'g, 's> Expander<'g, 's> {
         &self.graph.modules
     }
 
-    /// Copies up to the next name of a macro.
+    /// Copies tokens up to the next name of a macro.
     fn copy_plain(&mut self, input: &mut Input<'_>, out: &mut Vec<Tok>) {
         let defined = if self.in_condition { known::DEFINED } else { known::HASH };
         let is_plain = |kind, symbol| {
@@ -153,8 +153,8 @@ impl<'g, 's> Expander<'g, 's> {
         }
     }
 
-    /// The next token, from expansions above `floor` first. The name of a macro inside its own
-    /// expansion is marked, so that it is not expanded again.
+    /// The next token: from the expansions above `floor` first, then from the input. The name of a
+    /// macro inside its own expansion is marked, so that it is not expanded again.
     fn next(&mut self, floor: usize, input: &mut Input<'_>) -> Option<Tok> {
         let mut token = self.take(floor, input)?;
         if token.kind == Kind::Identifier && self.table.is_active(token.symbol) {
@@ -252,7 +252,7 @@ impl<'g, 's> Expander<'g, 's> {
         }
     }
 
-    /// `defined NAME` or `defined(NAME)`, unexpanded.
+    /// Copies `defined NAME` or `defined(NAME)` without expanding it.
     fn copy_defined(
         &mut self,
         token: Tok,

@@ -44,13 +44,13 @@ fn piece(rest: &str) -> Piece<'_> {
     Piece::Space(&rest[..slash.map_or(rest.len(), |end| end + 1)])
 }
 
-/// Newlines that no `\` continues.
+/// Newlines without a `\` before them.
 fn newlines(space: &[u8]) -> usize {
     let continued = |at: usize| matches!(space[..at], [.., b'\\'] | [.., b'\\', b'\r']);
     (0..space.len()).filter(|at| space[*at] == b'\n' && !continued(*at)).count()
 }
 
-/// Bytes of a `//` comment, over line continuations.
+/// Length of a `//` comment, line continuations included.
 fn line_comment(rest: &str) -> usize {
     let mut end = 0;
     for line in rest.split_inclusive('\n') {
@@ -63,8 +63,9 @@ fn line_comment(rest: &str) -> usize {
     end
 }
 
-/// The part of the gap before an item that belongs to it: the comments that no blank line parts
-/// from it. `after_item` where an item ends just before the gap: the rest of that line is its.
+/// The part of the gap before an item that belongs to the item: the comments without a blank line
+/// between them and it. With `after_item` another item ends just before the gap, and the rest of
+/// that line belongs to that one.
 pub fn attached(gap: &str, after_item: bool) -> std::ops::Range<usize> {
     let mut start = None;
     let mut own_line = !after_item;

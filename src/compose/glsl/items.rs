@@ -14,7 +14,8 @@ pub struct Item {
     pub tokens: Range<usize>,
     /// Whether it is a function or a prototype.
     pub function: bool,
-    /// Kept whatever is reached: statements without a name, and text that is not understood.
+    /// Kept whether or not anything names it: a statement without a name, or text that is not
+    /// understood.
     pub always: bool,
 }
 
@@ -25,7 +26,8 @@ pub struct Items {
     pub names: Vec<(Symbol, u32)>,
 }
 
-/// Cuts at top level. Brackets nest to a limit; text that does not end is an item of its own.
+/// Cuts tokens into items at top level. Brackets nest up to a limit. Text without an end is an item
+/// of its own.
 pub fn split(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnostic> {
     let mut items = Items::default();
     let mut start = 0;
@@ -80,7 +82,7 @@ fn end_of(tokens: &[Tok], start: usize) -> Result<usize, &Tok> {
     Ok(tokens.len())
 }
 
-/// Gives the names an item declares; whether it is a function.
+/// Gives the names that an item declares. Returns whether the item is a function.
 fn names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     match item {
         [first, ..] if first.symbol == known::PRECISION => false,
@@ -92,7 +94,7 @@ fn names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     }
 }
 
-/// The same for items other than `precision`, `invariant` and `precise` statements.
+/// The same, for items other than `precision`, `invariant` and `precise` statements.
 fn declared_names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     let mut at = 0;
     let mut is_struct = false;

@@ -1,4 +1,4 @@
-//! Composes GLSL: preprocesses, keeps what is reached, writes it down.
+//! Composes GLSL: preprocesses it, keeps the items that are reached, and writes them.
 
 mod always;
 mod condition;
@@ -27,12 +27,12 @@ use preprocess::{Preprocessed, preprocess};
 use token::{NO_SETTING, Tok};
 use write::Writer;
 
-/// Tokens for which room is kept from one composition to the next.
+/// The most tokens whose memory is kept for the next composition.
 const ROOM_TOKENS: usize = 1 << 16;
 
 thread_local! {
-    /// The tokens of the thread's last composition: as many are needed again, and a new allocation
-    /// of that size is slow.
+    /// The memory of the thread's last composition. The next one needs about as much, and a new
+    /// allocation of that size is slow.
     static ROOM: Cell<Vec<Tok>> = const { Cell::new(Vec::new()) };
 }
 
@@ -69,7 +69,7 @@ pub fn compose(
     })
 }
 
-/// A shader without a version is one of GLSL 1.10 to other compilers.
+/// Warns of a shader without a version, which other compilers read as GLSL 1.10.
 fn unversioned(
     graph: &Graph,
     preprocessed: &Preprocessed<'_, '_>,
@@ -89,7 +89,7 @@ fn unversioned(
     )
 }
 
-/// File name endings.
+/// What the names of files end with.
 const STAGES: &[(&str, Stage)] =
     &[("vert", Stage::Vertex), ("frag", Stage::Fragment), ("comp", Stage::Compute)];
 
@@ -144,17 +144,18 @@ fn write<'a>(
     (writer, written)
 }
 
-/// Bytes of what was written.
+/// Where each piece of the output was written.
 struct Written {
     /// The directives.
     header: Range<usize>,
     /// The kept items, in order.
     items: Vec<Range<usize>>,
-    /// An entry point that the text needs and the author did not give.
+    /// The entry point that was added because the text needs one.
     main: Option<Range<usize>>,
 }
 
-/// Those of the conditions, then those whose values stand in the kept items.
+/// The settings that were read: those of the conditions, then those whose values are in the kept
+/// items.
 fn reads(
     graph: &Graph,
     preprocessed: Preprocessed<'_, '_>,

@@ -1,4 +1,4 @@
-//! The declarations of the output, for those who take it apart.
+//! Finds the declarations of the output, and what each of them names.
 
 use std::ops::Range;
 
@@ -9,8 +9,8 @@ use super::token::Tok;
 use crate::compose::{Part, PartKind};
 use crate::parse::glsl::{Kind, Symbol, known};
 
-/// Declarations of one name after which a text has no parts: only overloads share a name, and to
-/// follow each of very many would take too long.
+/// The most declarations of one name: a text with more gets no parts. Only overloads share a name,
+/// and following very many would take too long.
 const OF_ONE_NAME: usize = 64;
 
 /// The directives as one part, then a part for each kept item; none where too many share a name.
@@ -56,11 +56,12 @@ pub fn parts(
     parts
 }
 
-/// Parts by the names that they declare.
+/// The parts that declare each name.
 struct Declared {
-    /// For each symbol one more than the number of the last of `links` that declares it; 0 for none.
+    /// For each symbol, one more than the index in `links` of the last part that declares it; 0 for
+    /// none.
     heads: Vec<u32>,
-    /// Part, and the link before it of the same name in the same form.
+    /// A part, and the link before it for the same name, in the same form.
     links: Vec<(u32, u32)>,
 }
 
@@ -93,7 +94,7 @@ fn kind(tokens: &[Tok], item: &Item) -> PartKind {
     let has = |symbol: Symbol| tokens.iter().any(|token| token.symbol == symbol);
     let ends = |symbol: Symbol| tokens.last().is_some_and(|token| token.symbol == symbol);
     let first = tokens.first().map(|token| token.symbol);
-    // What follows the brace of a structure declares variables with it.
+    // A variable may be declared with the structure, behind its closing brace.
     let only_struct = tokens.len() > 2 && tokens[tokens.len() - 2].symbol == known::CLOSE_BRACE;
     match item {
         Item { always: true, .. } => PartKind::Other,
@@ -107,17 +108,18 @@ fn kind(tokens: &[Tok], item: &Item) -> PartKind {
     }
 }
 
-/// The parts that an item names, itself left out.
+/// The parts that an item names, except itself.
 fn uses(item: &[Tok], own: u32, declared: &Declared, parts: &[Part]) -> Vec<u32> {
     let mut uses = Vec::new();
     let mut previous = known::SEMICOLON;
     for (index, token) in item.iter().enumerate() {
-        // A function is named only to be called; a local variable may have its name.
+        // A function is named only where it is called. Elsewhere the name is that of a local
+        // variable.
         let is_call = item.get(index + 1).is_some_and(|next| next.symbol == known::OPEN);
         let is_use = |part: &u32| {
             *part != own && (is_call || parts[*part as usize].kind != PartKind::Function)
         };
-        // What follows a dot is a member, not a name of this scope.
+        // After a dot the name is a member's, not one of this scope.
         if token.kind == Kind::Identifier && previous != known::DOT {
             uses.extend(declared.of(token.symbol).filter(is_use));
         }

@@ -1,4 +1,4 @@
-//! Runs the directives of the root file and of what it includes under some settings.
+//! Runs the directives of the root file and of the files that it includes, for given settings.
 
 mod branch;
 
@@ -31,9 +31,10 @@ pub struct Preprocessed<'g, 's> {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Preprocesses the root of a graph; all errors that were found, at least one, otherwise.
+/// Preprocesses the root of a graph. If anything is wrong, the result is all errors that were
+/// found.
 ///
-/// `tokens` is room for the active text.
+/// `tokens` is memory to use again for the active text.
 pub fn preprocess<'g, 's>(
     graph: &'g Graph,
     settings: &'s Settings,
@@ -79,7 +80,7 @@ fn language(root: &Module) -> (u32, bool) {
 struct State<'g, 's> {
     graph: &'g Graph,
     expander: Expander<'g, 's>,
-    /// The files being read, each included by the one before.
+    /// The files that are being read, each included by the one before it.
     open: Vec<Open>,
     once: Vec<bool>,
     tokens: Vec<Tok>,
@@ -125,14 +126,14 @@ impl<'g> State<'g, '_> {
         }
     }
 
-    /// Adds to new errors how their file came to be included.
+    /// Adds to new errors the chain of includes that led to their file.
     fn add_chain(&mut self, before: usize, chain: usize) {
         for error in &mut self.expander.errors[before..] {
             for pair in self.open[..chain.min(self.open.len())].windows(2).rev() {
                 if let Some(directive) = pair[1].directive {
                     let line = self.graph.modules[pair[0].module].line(directive.start);
                     let note = format!("included from {}:{line}", self.graph.paths[pair[0].module]);
-                    // In a cycle the same places come again and again.
+                    // In a cycle of includes the same places repeat.
                     if !error.notes.contains(&note) {
                         error.notes.push(note);
                     }
@@ -164,7 +165,7 @@ impl<'g> State<'g, '_> {
             Directive::If { .. } | Directive::Ifdef { .. } => {
                 return self.choose(open.module, open.part - 1);
             }
-            // These are reached from the branch before, which was active.
+            // Reached from the branch before, which was active: the others are skipped.
             Directive::Elif { end, .. } | Directive::Else { end } => self.jump(*end),
             Directive::Endif | Directive::Empty => {}
             Directive::Error(words) => self.author_error(*words, span),
@@ -172,7 +173,7 @@ impl<'g> State<'g, '_> {
             Directive::Version { line, .. } => self.version(open, *line),
             Directive::Extension { name, line } => {
                 let name = self.graph.symbols.text(*name);
-                // Includes are resolved, so the output needs neither of the extensions for them.
+                // Includes are resolved, so the output does not need the extensions for them.
                 if name != "GL_GOOGLE_include_directive"
                     && name != "GL_ARB_shading_language_include"
                 {
@@ -245,7 +246,7 @@ impl<'g> State<'g, '_> {
             Some(first) => {
                 self.expander.errors.push(error.at(line, "a second one").at(first, "the first one"))
             }
-            // Its part was counted already.
+            // This part was counted already, so the `#version` is the first.
             None if open.module == 0 && open.part == 1 && self.open.len() == 1 => {
                 self.version = Some(line)
             }
@@ -259,7 +260,7 @@ impl<'g> State<'g, '_> {
         }
     }
 
-    /// `#line N` or `#line N FILE`, which say what `__LINE__` and `__FILE__` are from the next line on.
+    /// `#line N` or `#line N FILE`: sets `__LINE__` and `__FILE__` from the next line on.
     fn line(&mut self, open: Open, tokens: Range<u32>, span: Span) -> Result<(), Fatal> {
         let mut expanded = Vec::new();
         self.expander.run(

@@ -1,4 +1,4 @@
-//! Which items stay.
+//! Finds which items are kept.
 
 use super::items::Items;
 use super::table::Spellings;
@@ -7,8 +7,8 @@ use crate::compose::Keep;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::glsl::{Kind, Symbol, known};
 
-/// For each item whether it stays: what `keep` names, and all that it reaches by name.
-/// Overloads share a name, so they stay together.
+/// Whether each item is kept: those that `keep` names, and those that they reach by name. Overloads
+/// share a name, so they are kept together.
 pub fn reach(
     tokens: &[Tok],
     items: &Items,
@@ -24,7 +24,7 @@ pub fn reach(
     match keep {
         Keep::Items(names) => start_at(&mut search, items, spellings, names)?,
         Keep::EntryPoints if search.declares(known::MAIN) => search.name(known::MAIN),
-        // A module without an entry point is wanted for all that it declares itself.
+        // A module without an entry point is composed for everything that it declares itself.
         _ => (0..items.list.len())
             .filter(|index| tokens[items.list[*index].tokens.start].module == 0)
             .for_each(|index| search.keep(index as u32)),
@@ -64,9 +64,10 @@ fn start_at(
 struct Search {
     kept: Vec<bool>,
     work: Vec<u32>,
-    /// For each symbol one more than the number of the first of `links` that declares it; 0 for none, or seen.
+    /// For each symbol, one more than the index in `links` of the first item that declares it; 0
+    /// for none, or for one that was visited.
     heads: Vec<u32>,
-    /// Item, and one more than the number of the next link of the same name.
+    /// An item, and one more than the index of the next link of the same name.
     links: Vec<(u32, u32)>,
 }
 
@@ -105,7 +106,7 @@ impl Search {
             let range = items.list[item as usize].tokens.clone();
             let mut previous = known::SEMICOLON;
             for token in &tokens[range] {
-                // What follows a dot is a member, not a name of this scope.
+                // After a dot the name is a member's, not one of this scope.
                 if token.kind == Kind::Identifier && previous != known::DOT {
                     self.name(token.symbol);
                 }

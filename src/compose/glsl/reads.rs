@@ -4,13 +4,14 @@ use super::table::{Meaning, Table};
 use crate::parse::glsl::Symbol;
 use crate::permute::{Setting, Settings};
 
-/// The settings by number, and the numbers of those that were read, in order.
+/// The settings by number, and which of them were read, in order.
 pub struct Reads<'s> {
     entries: Vec<Entry<'s>>,
     order: Vec<u16>,
-    /// How often any was read.
+    /// How many reads there were.
     pub count: usize,
-    /// The value of an undefined macro in a condition; an error if there is none.
+    /// The value of an undefined macro in a condition. If there is none, it is an error to ask for
+    /// one.
     pub undeclared: Option<bool>,
 }
 
@@ -24,7 +25,7 @@ struct Entry<'s> {
 }
 
 impl<'s> Reads<'s> {
-    /// None read yet.
+    /// No setting was read yet.
     pub fn new(settings: &'s Settings) -> Self {
         let entries = settings.values.iter().map(|(name, setting)| Entry {
             name,
@@ -66,7 +67,8 @@ impl<'s> Reads<'s> {
         *self.entries[usize::from(setting)].setting == Setting::Bool(true)
     }
 
-    /// The value of a setting, which counts as read; the declared name and value if it has none.
+    /// The value of a setting, which now counts as read. The error holds the name and the value
+    /// where the axis does not declare that value.
     pub fn read(&mut self, setting: u16) -> Result<i64, (&'s str, &'s Setting)> {
         self.count += 1;
         let entry = &mut self.entries[usize::from(setting)];

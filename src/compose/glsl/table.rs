@@ -1,4 +1,4 @@
-//! The macros that are defined at some point of a composition.
+//! The macros that are defined at one point of a composition.
 
 use std::collections::HashMap;
 
@@ -7,12 +7,12 @@ use crate::parse::glsl::{Macro, Symbol, Symbols, known};
 /// What a name expands to.
 #[derive(Debug, Clone, Copy)]
 pub enum Meaning<'g> {
-    /// The author's macro, and whether it is being expanded right now.
+    /// The author's macro, and whether it is being expanded now.
     User {
         definition: &'g Macro,
         active: bool,
     },
-    /// The value of a setting, by number in [`Reads`].
+    /// The value of a setting, by its number in [`Reads`].
     Setting(u16),
     /// A fixed number.
     Number(Symbol),
@@ -20,7 +20,7 @@ pub enum Meaning<'g> {
     File,
 }
 
-/// Spellings of the graph and those made while composing.
+/// The spellings of the graph, and those made while composing.
 pub struct Spellings<'g> {
     base: &'g Symbols,
     added: Vec<Box<str>>,
@@ -28,7 +28,7 @@ pub struct Spellings<'g> {
 }
 
 impl<'g> Spellings<'g> {
-    /// Those of the graph.
+    /// The spellings of the graph.
     pub fn new(base: &'g Symbols) -> Self {
         Self { base, added: Vec::new(), index: HashMap::new() }
     }
@@ -57,7 +57,7 @@ impl<'g> Spellings<'g> {
         }
     }
 
-    /// How many there are.
+    /// How many spellings there are.
     pub fn count(&self) -> usize {
         self.base.count() + self.added.len()
     }
@@ -70,7 +70,7 @@ pub struct Table<'g> {
     meanings: Vec<Meaning<'g>>,
 }
 
-/// In `by_symbol`: not defined.
+/// In `by_symbol`: the name is not defined.
 const UNDEFINED: u32 = 0;
 
 impl<'g> Table<'g> {
@@ -88,7 +88,8 @@ impl<'g> Table<'g> {
         } else {
             table.number("GL_core_profile", 1);
         }
-        // The version of the Vulkan semantics (GL_KHR_vulkan_glsl), which come with `#version 450`.
+        // The version of Vulkan's semantics (GL_KHR_vulkan_glsl), which exist from `#version 450`
+        // on.
         if !es && version >= 440 {
             table.number("VULKAN", 100);
         }
@@ -110,12 +111,12 @@ impl<'g> Table<'g> {
         }
     }
 
-    /// Whether a name is a macro; the fast path over plain text.
+    /// Whether a name is a macro. This is the fast path over text without macros.
     pub fn has(&self, name: Symbol) -> bool {
         self.by_symbol.get(name.index()).is_some_and(|index| *index != UNDEFINED)
     }
 
-    /// Defines a name, whatever it meant.
+    /// Defines a name, whatever it meant before.
     pub fn set(&mut self, name: Symbol, meaning: Meaning<'g>) {
         if name.index() >= self.by_symbol.len() {
             self.by_symbol.resize(self.spellings.count(), UNDEFINED);

@@ -9,24 +9,24 @@ pub const NONE: u32 = u32::MAX;
 /// No setting.
 pub const NO_SETTING: u16 = u16::MAX;
 
-/// A token of the result, or on its way there.
+/// A token of the result, or one that is still being expanded.
 #[derive(Debug, Clone, Copy)]
 pub struct Tok {
     pub symbol: Symbol,
-    /// Bytes in the author's file: its own, or the use of the macro it came from.
+    /// Its bytes in the author's file. A token from a macro has those of the macro's use.
     pub start: u32,
     pub end: u32,
-    /// Index of the module of those bytes.
+    /// Index of the module that has these bytes.
     pub module: u32,
     /// The author's token whose leading space and comments precede this one; `NONE` inside expansions.
     pub before: u32,
     /// The author's token whose trailing comments follow this one.
     pub after: u32,
-    /// The setting whose value this is.
+    /// The setting whose value this token is, if it is one.
     pub setting: u16,
     pub kind: Kind,
     pub spaced: bool,
-    /// Not to be expanded any more.
+    /// Never to be expanded again.
     pub painted: bool,
     /// Made by a macro rather than copied.
     pub expanded: bool,

@@ -1,4 +1,4 @@
-//! Kept items as text with a source map.
+//! Writes the kept items, with a source map.
 
 use super::gap::{self, Piece};
 use super::items::Item;
@@ -17,7 +17,7 @@ pub struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// Nothing written.
+    /// Nothing is written yet.
     pub fn new(modules: &'a [Module], spellings: &'a Spellings<'a>, capacity: usize) -> Self {
         Self {
             modules,
@@ -27,13 +27,13 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Text of the composer's own.
+    /// Writes text of the composer's own.
     pub fn made(&mut self, text: &str) {
         self.segment(None, false);
         self.text.push_str(text);
     }
 
-    /// A directive's line.
+    /// Writes the line of a directive.
     pub fn line(&mut self, line: Span) {
         if let Some(module) = self.modules.iter().find(|module| module.source == line.source) {
             self.segment(Some(line), true);
@@ -42,7 +42,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// An item, with its comments, ending in a newline.
+    /// Writes an item with its comments; it ends with a newline.
     pub fn item(&mut self, tokens: &[Tok], item: &Item) {
         let tokens = &tokens[item.tokens.clone()];
         self.leading(&tokens[0]);
@@ -63,7 +63,7 @@ impl<'a> Writer<'a> {
         self.map.push(Segment { start: self.text.len() as u32, span, verbatim });
     }
 
-    /// How many tokens from the first on can be copied as one piece of their file.
+    /// How many of the tokens, from the first on, can be copied in one go from their file.
     fn run(&self, tokens: &[Tok]) -> usize {
         let first = &tokens[0];
         let is_spliced =
@@ -122,7 +122,7 @@ impl<'a> Writer<'a> {
         &self.modules[tok.module as usize].text[span.range()]
     }
 
-    /// Comments attached to the first token of an item.
+    /// Writes the comments that belong to the first token of an item.
     fn leading(&mut self, first: &Tok) {
         if first.before == NONE {
             return;
@@ -154,7 +154,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// What stands between two tokens of an item.
+    /// Writes what stands between two tokens of an item.
     fn gap(&mut self, left: &Tok, right: &Tok) {
         if right.before == NONE || left.after == NONE {
             return self.minimal_gap(left, right);
@@ -168,7 +168,7 @@ impl<'a> Writer<'a> {
         }
         let after = self.gap_after(left);
         let text = self.source(left, after);
-        // Between the two stands a directive, so each is at the edge of its part; or else a macro
+        // Between the two there is a directive, so that each is at the edge of its part, or a macro
         // that expanded to nothing.
         let ends_part = self.modules[left.module as usize]
             .tokens
@@ -178,7 +178,7 @@ impl<'a> Writer<'a> {
         self.pieces(&[left, (before, self.source(right, before))], ends_part);
     }
 
-    /// A space where the author has one, or where two tokens would become another without.
+    /// Writes a space where the author has one, or where the two tokens would otherwise become one.
     fn minimal_gap(&mut self, left: &Tok, right: &Tok) {
         let first = self.spellings.text(left.symbol).chars().next_back();
         let second = self.spellings.text(right.symbol).chars().next();
@@ -187,7 +187,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Comments as they are; white space with at most one blank line and without trailing blanks.
+    /// Writes comments as they are, and white space with at most one blank line and no trailing
+    /// blanks.
     fn pieces(&mut self, gaps: &[(Span, &str)], new_line: bool) {
         let (mut newlines, mut indent, mut any) = (0, "", false);
         for (span, text) in gaps {

@@ -1,11 +1,11 @@
-//! Declarations that depend on themselves.
+//! Finds declarations that depend on themselves.
 
 use super::reached::{Dependency, Reached, Thing, name_of};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl::ItemKind;
 use crate::resolve::wesl::Graph;
 
-/// Reports circles among constants, overrides, aliases, structs and variables: one error each.
+/// Reports cycles among constants, overrides, aliases, structs and variables: one error for each.
 pub fn check(graph: &Graph, reached: &Reached, errors: &mut Diagnostics) {
     let mut edges: Vec<Dependency> = reached
         .dependencies
@@ -31,7 +31,7 @@ fn is_function(graph: &Graph, thing: Thing) -> bool {
     }
 }
 
-/// Depth first from the user of the edge `start`, without recursion.
+/// A depth-first search from the user of the edge `start`, without recursion.
 fn search(
     graph: &Graph,
     reached: &Reached,
@@ -41,7 +41,7 @@ fn search(
     errors: &mut Diagnostics,
 ) {
     let first = |thing: Thing| edges.partition_point(|edge| edge.user < thing);
-    // Things on the path, each with the next of its edges to follow.
+    // The path so far: each thing, with the next of its edges to follow.
     let mut path: Vec<(Thing, usize)> = vec![(edges[start].user, first(edges[start].user))];
     let mut on_path = vec![false; done.len()];
     on_path[reached.index(edges[start].user)] = true;
@@ -65,7 +65,7 @@ fn search(
     }
 }
 
-/// The most steps of a circle that a message lists.
+/// The most steps of a cycle that a message lists.
 const TOLD: usize = 12;
 
 fn report(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) -> Diagnostic {

@@ -1,4 +1,4 @@
-//! Conditions under one choice of settings, each at most once.
+//! Evaluates conditions for one choice of settings, each at most once.
 
 use std::collections::{HashMap, HashSet};
 
@@ -15,7 +15,7 @@ enum State {
     Unknown,
     False,
     True,
-    /// False since one before it in its chain is true.
+    /// False, since an earlier one in its chain is true.
     Passed,
 }
 
@@ -24,7 +24,7 @@ pub struct Evaluator<'a> {
     graph: &'a Graph,
     settings: &'a Settings,
     states: Vec<State>,
-    /// In the order of asking.
+    /// The settings in the order in which they were asked for.
     pub reads: Vec<(String, Setting)>,
     pub errors: Diagnostics,
     unknown: HashSet<Name>,
@@ -120,8 +120,8 @@ impl<'a> Evaluator<'a> {
         answer
     }
 
-    /// The default of a setting whose number is left open. Not recorded: the text is the same
-    /// whatever the value.
+    /// The default of a setting whose number stays open. It is not recorded, since the text is the
+    /// same whatever the value is.
     pub fn open(&self, name: Name) -> Option<Setting> {
         self.settings
             .open
@@ -135,30 +135,33 @@ impl<'a> Evaluator<'a> {
         self.settings.constants.get(self.graph.names.text(name)).map(String::as_str)
     }
 
-    /// The value of an axis that is used as a constant. What undeclared features are says nothing
-    /// of numbers.
+    /// The value of an axis that is used as a constant. The value for undeclared features does not
+    /// apply to numbers.
     pub fn number(&mut self, name: Name, span: Span) -> Option<Setting> {
         let text = self.graph.names.text(name);
         if self.settings.values.contains_key(text) {
             return self.setting(name, span);
         }
         if self.unknown.insert(name) {
-            let error = Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value"))
-                .at(span, "asked for here")
-                .note(format!("help: give it one with `--constant {text}=VALUE`"));
+            let error = Diagnostic::error(
+                codes::UNKNOWN_FEATURE,
+                format!("the constant `{text}` has no value"),
+            )
+            .at(span, "asked for here")
+            .note(format!("help: give it one with `--constant {text}=VALUE`"));
             let known = self.settings.constants.keys().chain(self.settings.values.keys());
             self.errors.push(error.suggest(text, known.map(String::as_str)));
         }
         None
     }
 
-    /// The value of a setting, recorded; an error at `span` if it has none.
+    /// The value of a setting, which is recorded; an error at `span` if it has none.
     pub fn setting(&mut self, name: Name, span: Span) -> Option<Setting> {
         let text = self.graph.names.text(name);
         let Some(value) = self.settings.value(text) else {
             if self.unknown.insert(name) {
                 let error =
-                    Diagnostic::error(codes::UNKNOWN_FEATURE, format!("`{text}` has no value"))
+                    Diagnostic::error(codes::UNKNOWN_FEATURE, format!("unknown feature `{text}`"))
                         .at(span, "asked for here");
                 let places = self.places.get_or_insert_with(|| places(self.graph));
                 let others = places.remove(&name).unwrap_or_default().into_iter();

@@ -1,4 +1,4 @@
-//! Lints of conditions: those that have the same value in every permutation.
+//! Warns of conditions that have the same value in every permutation.
 
 use super::evaluate::Evaluator;
 use crate::diagnostic::{Diagnostic, codes};
@@ -7,10 +7,10 @@ use crate::permute::Settings;
 use crate::resolve::wesl::Graph;
 use crate::source::Span;
 
-/// The outcomes so far of the root package's conditions, over the permutations shown to it.
+/// How the conditions of the root package came out in the permutations that were shown so far.
 pub struct Outcomes<'g> {
     graph: &'g Graph,
-    /// Those that have had one outcome only.
+    /// Those that had the same value each time.
     open: Vec<Condition>,
 }
 
@@ -19,7 +19,7 @@ struct Condition {
     id: ConditionId,
     held: bool,
     failed: bool,
-    /// It asks for something that the permutations have no value for.
+    /// It asks for something that has no value in the permutations.
     unknown: bool,
 }
 
@@ -39,12 +39,12 @@ impl<'g> Outcomes<'g> {
         Self { graph, open: open.collect() }
     }
 
-    /// Whether no further permutation can change the result.
+    /// Whether no further permutation can change the outcome.
     pub fn is_settled(&self) -> bool {
         self.open.is_empty()
     }
 
-    /// Evaluates what is open for one permutation.
+    /// Evaluates the remaining conditions for one permutation.
     pub fn see(&mut self, settings: &Settings) {
         let mut evaluator = Evaluator::new(self.graph, settings);
         for condition in &mut self.open {
@@ -61,7 +61,7 @@ impl<'g> Outcomes<'g> {
         });
     }
 
-    /// Where the conditions stand that are watched.
+    /// The places of the conditions that are evaluated.
     pub fn places(&self) -> impl Iterator<Item = Span> {
         self.graph.nodes.iter().filter(|node| node.package == 0).flat_map(|node| {
             let conditions = conditions(&node.module)
@@ -70,7 +70,7 @@ impl<'g> Outcomes<'g> {
         })
     }
 
-    /// A warning for each condition that had one outcome only.
+    /// A warning for each condition that always had the same value.
     pub fn warnings(&self) -> impl Iterator<Item = Diagnostic> {
         self.open.iter().filter(|condition| condition.held || condition.failed).filter_map(
             |condition| {
@@ -92,12 +92,13 @@ pub fn constant(span: Span, held: bool) -> Diagnostic {
     warning.at(span, if held { "decides nothing" } else { "what it guards is in no permutation" })
 }
 
-/// The last branch of a chain may cover all that is left: it only has to hold once.
+/// Whether it may be the last branch of a chain, which covers all that is left: such a branch only
+/// has to hold once.
 fn is_later(graph: &Graph, condition: &Condition) -> bool {
     graph.nodes[condition.node as usize].module.conditions[condition.id as usize].after.is_some()
 }
 
-/// Conditions that ask for something: `@if(true)` is meant as it stands.
+/// The conditions that ask for a setting; one like `@if(true)` is meant as it stands.
 fn conditions(module: &Module) -> impl Iterator<Item = ConditionId> {
     let asks = |(_, condition): &(usize, &crate::parse::wesl::Condition)| {
         condition.expression.is_some_and(|root| place(module, root).is_some())

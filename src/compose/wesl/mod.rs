@@ -1,6 +1,7 @@
 //! WESL: one permutation of a graph as WGSL text.
 //!
-//! Reach what is kept, choose names, copy slices of the authors' text. Nothing is parsed here.
+//! It finds what is kept, chooses names, and copies slices of the authors' text. Nothing is parsed
+//! here.
 
 mod cycle;
 mod evaluate;
@@ -19,7 +20,7 @@ use crate::parse::wesl::ConditionId;
 use crate::permute::Settings;
 use crate::resolve::wesl::Graph;
 
-/// Composes the graph's root module for the settings. Pure: same input, same bytes.
+/// Composes the graph's root module for the settings. The same input always gives the same bytes.
 ///
 /// Errors carry the chain of imports that led to the module they are in.
 pub fn compose(
@@ -50,11 +51,11 @@ pub fn compose(
     })
 }
 
-/// Answers to the conditions of a graph's modules under some settings.
+/// Evaluates the conditions of a graph's modules for some settings.
 pub struct Conditions<'a>(evaluate::Evaluator<'a>);
 
 impl<'a> Conditions<'a> {
-    /// Nothing is asked yet.
+    /// No condition was evaluated yet.
     pub fn new(graph: &'a Graph, settings: &'a Settings) -> Self {
         Self(evaluate::Evaluator::new(graph, settings))
     }
@@ -66,7 +67,7 @@ impl<'a> Conditions<'a> {
 }
 
 fn traced(graph: &Graph, errors: Diagnostics) -> Diagnostics {
-    // An error that several uses have is reported once.
+    // An error that occurs at several uses is reported once.
     let mut known = BTreeSet::new();
     let is_new = |error: &Diagnostic| {
         error.labels.first().is_none_or(|label| known.insert((error.code.name, label.span)))

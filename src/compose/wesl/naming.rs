@@ -1,4 +1,5 @@
-//! Names in the output: as declared, or the qualified path where two things have the same name.
+//! Chooses the names in the output: a declaration keeps its name, or gets its qualified path where
+//! two have the same name.
 
 use std::collections::HashSet;
 
@@ -10,7 +11,7 @@ use crate::resolve::wesl::Graph;
 
 /// The new names of the things that do not keep theirs.
 pub struct Renames {
-    /// By thing: one more than an index of `texts`; 0 keeps the name.
+    /// For each thing, one more than its index in `texts`; 0 where it keeps its name.
     indices: Vec<u32>,
     texts: Vec<String>,
 }
@@ -25,10 +26,10 @@ impl Renames {
     }
 }
 
-/// Which of two things with the same name keeps it.
+/// How firmly a thing holds its name against another of the same name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Hold {
-    /// Imported: the other thing keeps the name.
+    /// Imported: renamed where something else has the name.
     Loose,
     /// Of the root module: renamed only where the name would change what a use means.
     Root,
@@ -98,16 +99,16 @@ fn hold(graph: &Graph, thing: Thing) -> Hold {
     }
 }
 
-/// Which names are wanted, by name.
+/// Who claims each name, by name.
 struct Table<'a> {
     graph: &'a Graph,
     reached: &'a Reached,
     claims: Vec<u32>,
-    /// Used for something predeclared.
+    /// Whether the name is used for something predeclared.
     free: Vec<bool>,
-    /// The thing that is never renamed.
+    /// The thing that has the name and is never renamed.
     firm: Vec<Option<Thing>>,
-    /// The last thing that may be renamed.
+    /// The last thing that has the name and may be renamed.
     loose: Vec<Option<Thing>>,
 }
 
@@ -133,7 +134,7 @@ impl<'a> Table<'a> {
         table
     }
 
-    /// The text, with a number behind it if something else has that name.
+    /// The text, with a number appended if something else has that name.
     fn unique(&self, text: String, made: &HashSet<String>) -> String {
         let mut candidate = text.clone();
         let mut number = 2;
@@ -160,8 +161,8 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The underscore form of the specification: the path's parts joined by single underscores,
-/// those within a part doubled.
+/// The underscore form of the WESL specification: the parts of the path joined by single
+/// underscores, with the underscores inside a part doubled.
 fn mangle(graph: &Graph, thing: Thing) -> String {
     let name = graph.names.text(name_of(graph, thing));
     let label = match thing {
@@ -178,7 +179,7 @@ fn mangle(graph: &Graph, thing: Thing) -> String {
     text
 }
 
-/// A character of a part; those no identifier has (in file names) become underscores.
+/// A character of a part. Those that no identifier has, from file names, become underscores.
 fn escaped(letter: char) -> impl Iterator<Item = char> {
     let allowed = unicode_ident::is_xid_continue(letter) && letter != '_';
     [if allowed { letter } else { '_' }, '_'].into_iter().take(if allowed { 1 } else { 2 })
@@ -195,7 +196,7 @@ fn conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
     let name = graph.names.text(name_of(graph, thing));
     let (code, message) = match node_of(thing) == node_of(other) {
         true => (codes::DUPLICATE_ITEM, format!("`{name}` is declared twice")),
-        false => (codes::NAME_CONFLICT, format!("two things must both be named `{name}`")),
+        false => (codes::NAME_CONFLICT, format!("two declarations must both be named `{name}`")),
     };
     declared(
         graph,

@@ -1,4 +1,4 @@
-//! What a permutation keeps: from the roots along every live use.
+//! Finds what a permutation keeps: from its roots along every use whose condition holds.
 
 use super::evaluate::Evaluator;
 use super::reached::{Dependency, Meaning, Reached, Thing, name_of};
@@ -10,7 +10,7 @@ use crate::permute::Setting;
 use crate::resolve::wesl::{Graph, PLACES, Target};
 use crate::source::Span;
 
-/// Finds what is kept; errors go to the evaluator's.
+/// Finds what is kept. Errors are added to those of the evaluator.
 pub fn reach(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Options) -> Reached {
     let things = graph.totals.items as usize + graph.constants.len();
     let reached = Reached {
@@ -44,7 +44,7 @@ struct Walk<'a, 'b, 'c> {
     graph: &'a Graph,
     evaluator: &'c mut Evaluator<'b>,
     all: bool,
-    /// Items were asked for by name: what is wrong elsewhere in their module does not matter.
+    /// Whether items were asked for by name: errors elsewhere in their module do not count then.
     some: bool,
     reached: Reached,
     queue: Vec<(u32, u32)>,
@@ -66,7 +66,7 @@ impl Walk<'_, '_, '_> {
         for index in 0..self.graph.nodes[0].module.items.len() as u32 {
             self.item_if(0, index);
             let name = self.graph.nodes[0].module.items[index as usize].name;
-            // Only one of each name may be left, whether anything uses it or not.
+            // Of each name only one item may be left, whether anything uses it or not.
             if self.graph.nodes[0].sets.get(&name).is_some_and(|set| set.first() == Some(&index)) {
                 self.chosen(0, name);
             }
@@ -91,7 +91,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Keeps an item if its condition holds; says whether.
+    /// Keeps an item if its condition holds. Returns whether it does.
     fn item_if(&mut self, node: u32, item: u32) -> bool {
         let condition = self.graph.nodes[node as usize].module.items[item as usize].condition;
         let holds = condition.is_none_or(|condition| self.evaluator.holds(node, condition));
@@ -143,7 +143,8 @@ impl Walk<'_, '_, '_> {
         });
     }
 
-    /// The first time something of a module is kept: its `const_assert`s come, and its errors count.
+    /// Called when something of a module is first kept: its `const_assert`s are kept too, and its
+    /// errors count.
     fn node(&mut self, node: u32) {
         if std::mem::replace(&mut self.reached.nodes[node as usize], true) {
             return;
@@ -272,7 +273,7 @@ impl Walk<'_, '_, '_> {
         chosen
     }
 
-    /// No candidate is left: the name is predeclared, or the use is an error.
+    /// Handles a use without candidates: the name is predeclared, or the use is an error.
     fn nothing(
         &mut self,
         node: u32,

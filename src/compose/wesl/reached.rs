@@ -4,7 +4,7 @@ use crate::parse::wesl::Name;
 use crate::resolve::wesl::Graph;
 use crate::source::Span;
 
-/// An item, or a number of the virtual module `constants`.
+/// An item, or a number from the virtual module `constants`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Thing {
     Item { node: u32, item: u32 },
@@ -20,7 +20,7 @@ pub enum Meaning {
     Thing(Thing),
 }
 
-/// A live use of something by a declaration that is not a function.
+/// A use, by a declaration that is not a function, whose condition holds.
 #[derive(Debug, Clone, Copy)]
 pub struct Dependency {
     pub user: Thing,
@@ -28,19 +28,19 @@ pub struct Dependency {
     pub span: Span,
 }
 
-/// What is kept.
+/// Everything that is kept. Tables are over all items of all nodes, with the constants after them.
 pub struct Reached {
-    /// By item over all nodes, then by constant.
+    /// Whether each thing is kept.
     pub(super) things: Vec<bool>,
-    /// Those that a local of the same name would hide at a place of use.
+    /// Whether a local of the same name would hide it at a place where it is used.
     pub(super) hidden: Vec<bool>,
     pub(super) nodes: Vec<bool>,
-    /// By binding over all nodes.
+    /// For each binding of all nodes, its meaning.
     pub(super) meanings: Vec<Meaning>,
     pub(super) order: Vec<u32>,
     pub(super) items: u32,
     pub(super) bases: Vec<u32>,
-    /// By constant: its value as text.
+    /// For each constant, its value as text.
     pub constants: Vec<Option<(&'static str, String)>>,
     pub dependencies: Vec<Dependency>,
     /// Predeclared names that are used although the module has a disabled item of that name.
@@ -48,7 +48,7 @@ pub struct Reached {
 }
 
 impl Reached {
-    /// Where a thing is in tables over all things.
+    /// The index of a thing in the tables over all things.
     pub fn index(&self, thing: Thing) -> usize {
         match thing {
             Thing::Item { node, item } => (self.bases[node as usize] + item) as usize,
@@ -68,7 +68,7 @@ impl Reached {
         self.things.len()
     }
 
-    /// The nodes with something kept, in the order of the output.
+    /// The nodes of which something is kept, in the order of the output.
     pub fn nodes(&self) -> impl Iterator<Item = u32> {
         self.order.iter().copied().filter(|node| self.nodes[*node as usize])
     }

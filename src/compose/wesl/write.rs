@@ -1,4 +1,4 @@
-//! The output: directives, numbers, imported modules by path, the root module.
+//! Writes the output: directives, numbers, imported modules by path, and the root module.
 
 use std::ops::Range;
 
@@ -47,16 +47,16 @@ struct Writer<'a> {
     names: &'a Renames,
     text: String,
     map: SourceMap,
-    /// Where the last copied text ended, while nothing else followed it.
+    /// Where the last copied text ended, as long as nothing else was written after it.
     copied: Option<Span>,
     /// What was written so far. Uses are indices into the tables over all things.
     parts: Vec<Part>,
-    /// By thing: its number among the parts.
+    /// For each thing, its index among the parts.
     numbers: Vec<u32>,
 }
 
 impl Writer<'_> {
-    /// Text of our own.
+    /// Writes text of the composer's own.
     fn own(&mut self, text: &str) {
         if self.copied.take().is_some() || self.text.is_empty() {
             self.map.push(Segment { start: self.text.len() as u32, span: None, verbatim: false });
@@ -86,7 +86,7 @@ impl Writer<'_> {
         self.text.push_str(name);
     }
 
-    /// A blank line, unless at the start.
+    /// Writes a blank line, except at the start.
     fn gap(&mut self) {
         if !self.text.is_empty() {
             self.own("\n");
@@ -143,7 +143,7 @@ impl Writer<'_> {
         if items.is_empty() {
             return;
         }
-        // The root module needs no banner where it stands alone.
+        // The root module needs no banner where it is the only module.
         if node != 0 || !self.text.is_empty() {
             self.gap();
             self.own("// ");
@@ -209,7 +209,7 @@ impl Writer<'_> {
         self.parts.push(Part { kind, names, range, uses: Vec::new(), aliases: Vec::new() });
     }
 
-    /// The parts, whose uses become numbers of parts now that all are written.
+    /// The parts, with their uses as indices of parts, which are known once everything is written.
     fn parts(&mut self) -> Vec<Part> {
         let mut parts = std::mem::take(&mut self.parts);
         for part in &mut parts {
@@ -221,7 +221,7 @@ impl Writer<'_> {
         parts
     }
 
-    /// A name: part of the text around it, if it is written as it was.
+    /// Writes a name. Where it does not change, it is copied together with the text around it.
     fn name(&mut self, module: &Module, thing: Thing, at: &mut u32, range: Range<u32>) {
         let names = self.names;
         let name = names.text(self.graph, self.reached, thing);
@@ -245,7 +245,7 @@ fn part_kind(kind: ItemKind) -> PartKind {
     }
 }
 
-/// Whether a directive says something no earlier one does.
+/// Whether a directive says something that no earlier one said.
 fn is_new(seen: &mut Vec<(Name, Vec<Name>)>, directive: &Directive) -> bool {
     let known = match directive.keyword {
         Name::DIAGNOSTIC => seen
@@ -264,7 +264,8 @@ fn is_new(seen: &mut Vec<(Name, Vec<Name>)>, directive: &Directive) -> bool {
     !known
 }
 
-/// Whether no blank line parts two items in the author's text, what stands between them included.
+/// Whether there is no blank line between two items in the author's text, or in what stands between
+/// them.
 fn adjacent(module: &Module, last: u32, next: u32) -> bool {
     module.items[last as usize..=next as usize].windows(2).all(|pair| {
         let gap = &module.text[pair[0].range.end as usize..pair[1].range.start as usize];

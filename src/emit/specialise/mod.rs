@@ -1,8 +1,8 @@
 //! Overrides that stay open in languages whose writers know only constants.
 //!
 //! naga replaces overrides by their values before it writes anything but WGSL. Here they become
-//! private variables instead, which every writer knows, under names that are found again in what
-//! it wrote; there each turns into what the language has for it: a specialisation constant in
+//! private variables instead, which every writer knows. Their names are found again in the output,
+//! where each variable becomes what the language has for overrides: a specialisation constant in
 //! SPIR-V, a function constant in MSL, a macro elsewhere.
 
 mod spirv;
@@ -18,29 +18,29 @@ use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::{CAPABILITIES, Validated};
 
-/// One override.
+/// An override that stays open.
 struct Open {
     /// As the author calls it.
     name: String,
-    /// Of the variable that stands for it.
+    /// Name of the variable that stands for it.
     variable: String,
     kind: ScalarKind,
-    /// Number for SPIR-V and MSL: the author's, or the first that is free.
+    /// Its number in SPIR-V and MSL: the author's, or the first that is free.
     id: u32,
-    /// The literal's bits, and its text in C-like languages.
+    /// The bits of its default, and the default as C-like languages write it.
     bits: u32,
     text: String,
 }
 
 impl Open {
-    /// The macro, or the function constant, that chooses the value.
+    /// The name of the macro, or of the function constant, that chooses the value.
     fn symbol(&self) -> String {
         format!("LAMPLIGHT_{}", self.name.to_uppercase())
     }
 }
 
-/// Refuses overrides whose default is not a number, as of those that depend on others: no target
-/// but WGSL has a place for such a default, and naga's writer of WGSL none either.
+/// Refuses overrides whose default is not a number, such as one that depends on another override.
+/// Only WGSL could express such a default, and naga's writer of WGSL cannot.
 ///
 /// # Errors
 /// `dependent-override` for each, in the author's place where `composed` knows it.
@@ -54,7 +54,7 @@ pub fn check(composed: &Composed, validated: &Validated) -> Result<(), Diagnosti
     if found.is_empty() { Ok(()) } else { Err(found) }
 }
 
-/// Fails as [`check`] does, without places.
+/// Fails as [`check`] does, but without places.
 pub fn refuse(module: &Module) -> Result<(), Diagnostic> {
     dependent(module).next().map_or(Ok(()), |(name, _)| Err(refusal(name)))
 }
@@ -76,11 +76,11 @@ fn dependent(module: &Module) -> impl Iterator<Item = (&str, naga::Span)> {
     })
 }
 
-/// A number, itself or by the name of a constant.
+/// A number, written as a literal or as the name of a constant.
 pub fn literal(module: &Module, expression: Handle<Expression>) -> Option<Literal> {
     match module.global_expressions[expression] {
         Expression::Literal(literal) => Some(literal),
-        // Constants come before those that use them.
+        // A constant can only use earlier ones, so this recursion ends.
         Expression::Constant(constant) => {
             literal_before(module, module.constants[constant].init, expression)
         }
@@ -100,8 +100,8 @@ fn literal_before(
     if expression < user { literal(module, expression) } else { None }
 }
 
-/// Writes an entry point with its overrides open; `None` where one of them is no plain scalar
-/// with a default.
+/// Writes an entry point with its overrides open; `None` where one of them is not a scalar with a
+/// default.
 pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, String>> {
     let opens = opens(source.module)?;
     Some(opened(source, &opens).and_then(|(module, info)| {
@@ -119,7 +119,7 @@ pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, Stri
 }
 
 fn finish(mut emitted: Emitted, opens: &[Open], target: Target) -> Result<Emitted, String> {
-    // A variable that the entry point does not use is not written.
+    // Writers leave out a variable that the entry point does not use.
     let choices = if target == Target::SPIRV {
         spirv::open(&mut emitted.bytes, opens)?
     } else {
@@ -173,7 +173,8 @@ fn open(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open>
     })
 }
 
-/// The module with variables for its overrides: through WGSL, where that is a change of one word.
+/// The module with private variables for its overrides. It is written as WGSL for this, where only
+/// one word of each declaration changes.
 fn opened(
     source: &Source<'_>,
     opens: &[Open],

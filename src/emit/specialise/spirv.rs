@@ -1,4 +1,4 @@
-//! Private variables as specialisation constants, in SPIR-V's words.
+//! Turns private variables into specialisation constants, in the words of SPIR-V.
 //!
 //! A variable is found by its debug name. `OpVariable` becomes `OpSpecConstant` under the same
 //! id, every `OpLoad` of it an `OpCopyObject`, and a `SpecId` joins the decorations.
@@ -20,11 +20,11 @@ const OP_VARIABLE: u32 = 59;
 const OP_LOAD: u32 = 61;
 const OP_DECORATE: u32 = 71;
 const OP_COPY_OBJECT: u32 = 83;
-/// The first instructions after all decorations: types and constants.
+/// Opcodes of types and constants, which follow all decorations.
 const OP_TYPES: std::ops::RangeInclusive<u32> = 19..=39;
 const SPEC_ID: u32 = 1;
 
-/// Opens the module's variables; those it has.
+/// Opens the variables of overrides; returns how each is chosen.
 pub fn open(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> {
     let words = spirv::words(bytes);
     let variables = variables(&words, opens)?;
@@ -70,7 +70,7 @@ fn constant(out: &mut Vec<u32>, ty: u32, id: u32, open: &Open) {
     }
 }
 
-/// The overrides by the id of their variable.
+/// The overrides, by the id of their variable.
 fn variables<'a>(words: &[u32], opens: &'a [Open]) -> Result<BTreeMap<u32, &'a Open>, String> {
     let mut variables = BTreeMap::new();
     for instruction in instructions(words) {

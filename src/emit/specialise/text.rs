@@ -1,4 +1,4 @@
-//! Private variables as macros or function constants, in the text of a writer.
+//! Turns private variables into macros or function constants, in the text that naga wrote.
 
 use naga::ScalarKind;
 
@@ -40,7 +40,7 @@ pub fn open(bytes: &mut Vec<u8>, opens: &[Open], target: Target) -> Result<Vec<C
     Ok(choices)
 }
 
-/// Where the `=` of the variable's declaration is, if the line is that.
+/// The index of the `=`, if the line declares the variable.
 fn initialiser(line: &str, variable: &str) -> Option<usize> {
     let (before, _) = line.split_once('=')?;
     let mut words = before.split_whitespace();
@@ -50,7 +50,8 @@ fn initialiser(line: &str, variable: &str) -> Option<usize> {
     (last == variable && typed && line.ends_with(';')).then_some(before.len())
 }
 
-/// After what must come first: `#version`, extensions and precisions, or Metal's own headers.
+/// The index of the first line after those that must come first: `#version`, extensions and
+/// precisions, or Metal's headers.
 fn first_line(lines: &[String], target: Target) -> usize {
     match target {
         Target::HLSL => 0,
@@ -58,7 +59,7 @@ fn first_line(lines: &[String], target: Target) -> usize {
     }
 }
 
-/// The host defines the macro, or the default holds.
+/// The lines that define the value: the host's macro if it is defined, the default otherwise.
 fn definition(open: &Open) -> Vec<String> {
     let symbol = open.symbol();
     vec![

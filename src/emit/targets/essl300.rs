@@ -23,7 +23,7 @@ pub const TARGET: Entry = Entry {
 };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
-    // naga writes `sampler1D` here, which no driver of this version knows.
+    // naga would write `sampler1D` here, which no driver of this version knows.
     let is_line = |ty: Handle<Type>| {
         matches!(source.module.types[ty].inner, TypeInner::Image { dim: ImageDimension::D1, .. })
     };

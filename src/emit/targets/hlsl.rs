@@ -39,7 +39,7 @@ const INDEX_SPACE: u8 = u8::MAX;
 const HEAPS: [(&str, Kind); 2] =
     [("nagaSamplerHeap", Kind::Sampler), ("nagaComparisonSamplerHeap", Kind::ComparisonSampler)];
 
-/// Words of HLSL that naga does not keep from authors.
+/// Reserved words of HLSL that naga does not avoid.
 const WORDS: &[&str] = &[
     "SubpassInput",
     "SubpassInputMS",
@@ -50,8 +50,8 @@ const WORDS: &[&str] = &[
     "samplerCUBE",
 ];
 
-/// How functions and types begin that naga adds: it does not keep such names from authors. What
-/// begins with `naga_` it does.
+/// How names begin that naga gives to functions and types of its own, and does not avoid. It does
+/// avoid `naga_`.
 const PREFIXES: &[&str] =
     &["Construct", "GetMat", "Naga", "SetMat", "ZeroValue", "nagaComparison", "nagaGroup", "nagaSampler", "ret_"];
 

@@ -25,8 +25,8 @@ pub const TARGET: Entry = Entry {
     write,
 };
 
-/// Metal cannot tell the length of a buffer: naga asks for it in a buffer of lengths, here the
-/// last of the 31.
+/// Metal does not know the length of a buffer, so naga reads it from a buffer of lengths. Here that
+/// is the last of the 31.
 const SIZES_BUFFER: u8 = 30;
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {

@@ -36,9 +36,8 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     Ok(Emitted { bytes, native: native(source, source.entry, Numbering::Author) })
 }
 
-/// The module with the variables of each function in the order of their ids, which is the
-/// author's. naga writes them in the order of a hash map, which a machine of 32 bits, or one with
-/// other vectors, has otherwise.
+/// The module with the variables of each function in the order of their ids, which is the author's.
+/// naga writes them in the order of a hash map, which differs between processors.
 fn ordered(words: &[u32]) -> Vec<u32> {
     const VARIABLE: u32 = 59;
     const FUNCTION: u32 = 7;

@@ -25,7 +25,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let written = Writer::new(&mut text, WriterFlags::empty()).write(source.module, source.info);
     written.map_err(|error| text.explain(error))?;
     let text = text.0;
-    // naga says not what it calls things: it adds to names that end with a digit.
+    // naga does not tell the names that it wrote, and it appends to names that end with a digit.
     let entry = named(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;
     let mut native = native(source, entry, Numbering::Author);
     let overrides = source.module.overrides.iter().map(|(_, constant)| constant);
@@ -39,8 +39,8 @@ fn choice((constant, written): (&naga::Override, &str)) -> Option<Choice> {
     Some(Choice { name, id: constant.id.map(u32::from), symbol })
 }
 
-/// The names of declarations that begin with a word, in the order of the text; of those behind a
-/// line that begins with `after`, if that is given.
+/// The names of declarations that begin with `keyword`, in the order of the text. With `after`,
+/// only those that follow a line which begins with it.
 fn named<'t>(
     text: &'t str,
     word: &'static str,
@@ -51,7 +51,7 @@ fn named<'t>(
         after.is_none_or(|after| before.starts_with(after))
     });
     lines.filter_map(move |(_, line)| {
-        // An override may have its number in front.
+        // `@id(...)` may stand before an override.
         let line = line.strip_prefix("@id(").and_then(|line| line.split_once(") ")).map_or(line, |(_, line)| line);
         let rest = line.strip_prefix(word)?.strip_prefix(' ')?;
         rest.split(['(', ':', ' ']).next()

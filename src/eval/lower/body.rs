@@ -1,4 +1,4 @@
-//! A body while it is lowered: what every kind of expression and statement needs of it.
+//! Lowers a body: what all kinds of expressions and statements share.
 
 use naga::{Arena, Expression, Handle, Span, TypeInner};
 
@@ -57,7 +57,7 @@ impl<'b, 'm> Body<'b, 'm> {
             .ok_or_else(|| Error::unsupported("an operation on this type"))
     }
 
-    /// Slots of one value: components are spread over them, or share one.
+    /// The operand of a value, whose components have slots of their own or share one.
     pub(super) fn operand(&mut self, handle: Handle<Expression>) -> Result<Operand, Error> {
         match self.loc(handle)? {
             Loc::Value { operand, .. } => Ok(operand),
@@ -72,7 +72,7 @@ impl<'b, 'm> Body<'b, 'm> {
         Ok(if single { Operand { stride: 0, ..operand } } else { operand })
     }
 
-    /// The first of the slots of a value, each component in its own.
+    /// The first slot of a value whose components each have a slot of their own.
     pub(super) fn dense(&mut self, handle: Handle<Expression>) -> Result<Slot, Error> {
         let (operand, n) = (self.operand(handle)?, self.slots(handle)?);
         if operand.stride == 1 || n == 1 {

@@ -1,4 +1,4 @@
-//! Expressions. Most of naga's are only names for slots: no instruction is needed.
+//! Lowers expressions. Most of naga's only name slots, so that no instruction is needed.
 
 use super::{Body, Loc};
 use crate::eval::code::{Axis, Instruction, Operand, Slot};
@@ -9,7 +9,8 @@ use naga::{
 };
 
 impl Body<'_, '_> {
-    /// Where an expression's value is; those that need no statement are made on first use.
+    /// Where an expression's value is. An expression that no statement emits is computed on first
+    /// use.
     pub(super) fn loc(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
         match self.locs[handle.index()] {
             Some(loc) => Ok(loc),
@@ -23,7 +24,7 @@ impl Body<'_, '_> {
         }
     }
 
-    /// Emits what computes the expression.
+    /// Emits the instructions that compute the expression.
     pub(super) fn evaluate(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
         let loc =
             self.lowered(handle).map_err(|error| error.or_at(self.expressions.get_span(handle)))?;
@@ -103,7 +104,7 @@ impl Body<'_, '_> {
     }
 
     fn global_value(&mut self, init: Handle<Expression>) -> Result<Loc, Error> {
-        // While the constants themselves are lowered, the table of them is not there yet.
+        // While the constants themselves are lowered, the table of constants does not exist yet.
         let known = if self.build.constants.is_empty() {
             self.locs.get(init.index())
         } else {

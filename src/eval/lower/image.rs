@@ -1,4 +1,4 @@
-//! Accesses to textures.
+//! Lowers accesses to textures.
 
 use super::{Body, Loc};
 use crate::eval::code::{Access, Ask, Instruction, Level, Slot};
@@ -87,7 +87,7 @@ impl Body<'_, '_> {
         Ok(match level {
             SampleLevel::Auto => Level::Auto,
             SampleLevel::Zero => Level::Zero,
-            // The level of a depth texture is an integer: made a float here.
+            // The level of a depth texture is an integer, which is converted to a float here.
             SampleLevel::Exact(level) if self.kind(level)? != Kind::Float => {
                 Level::Exact(self.float_of(level)?)
             }

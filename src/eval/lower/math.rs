@@ -1,4 +1,4 @@
-//! Built-in functions.
+//! Lowers built-in functions.
 
 use super::{Body, Loc};
 use crate::eval::code::{
@@ -11,7 +11,7 @@ use naga::{Expression, Handle, MathFunction, TypeInner};
 /// A handle of an argument that may be missing.
 type Argument = Option<Handle<Expression>>;
 
-/// What a built-in becomes on floats.
+/// The instruction that a built-in function becomes for floats.
 enum OnFloats {
     One(Unary),
     Two(Binary),

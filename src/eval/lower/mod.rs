@@ -1,4 +1,4 @@
-//! From naga's module to a register program, once per module.
+//! Lowers naga's module to a program, once per module.
 
 mod body;
 mod expression;
@@ -19,15 +19,15 @@ use std::collections::BTreeMap;
 /// Where an expression's value is.
 #[derive(Debug, Clone, Copy)]
 enum Loc {
-    /// In slots; constant ones are never written by functions.
+    /// In slots. If `constant`, functions never write to them.
     Value { operand: Operand, constant: bool },
-    /// A pointer known now.
+    /// A pointer to a slot that is known now.
     Place(Slot),
-    /// A pointer in a slot, plus an offset.
+    /// A pointer that a slot holds, plus an offset.
     Through { slot: Slot, offset: u32 },
 }
 
-/// The program while it grows.
+/// The program that is being built.
 struct Build<'m> {
     module: &'m Module,
     layout: Layout<'m>,
@@ -39,7 +39,7 @@ struct Build<'m> {
     constants: Vec<Option<Loc>>,
 }
 
-/// One body of expressions while it is lowered.
+/// A body of expressions that is being lowered.
 struct Body<'b, 'm> {
     build: &'b mut Build<'m>,
     expressions: &'m Arena<Expression>,
@@ -50,7 +50,7 @@ struct Body<'b, 'm> {
     arguments: Vec<Slot>,
     function: u32,
     span: Span,
-    /// Whether instructions go to the constants' part.
+    /// Whether instructions go to the part that computes constants.
     constant: bool,
     breaks: Vec<Vec<usize>>,
     continues: Vec<Vec<usize>>,
@@ -99,7 +99,7 @@ impl<'m> Build<'m> {
         }
     }
 
-    /// Fresh slots, all zero before anything runs.
+    /// Allocates new slots, which are zero before anything runs.
     fn alloc(&mut self, slots: u32) -> Result<Slot, Error> {
         let first = self.program.slots;
         match first.checked_add(slots) {
@@ -113,7 +113,7 @@ impl<'m> Build<'m> {
         }
     }
 
-    /// The slot that holds a constant, the same for the same bits.
+    /// The slot of a constant. Constants with the same bits share one.
     fn literal(&mut self, value: Constant) -> Result<Slot, Error> {
         let key = match value {
             Constant::Word(word) => (0, u64::from(word)),
@@ -132,8 +132,8 @@ impl<'m> Build<'m> {
         self.literal(Constant::Word(word))
     }
 
-    /// Lowers module-scope constants and overrides to code that runs once per machine. One that
-    /// is not supported is missing, and an error where it is used.
+    /// Lowers module-scope constants and overrides to instructions that run once per machine. One
+    /// that is not supported is left out, and is an error where it is used.
     fn constants(&mut self, info: &'m ModuleInfo) -> Result<(), Error> {
         let expressions = &self.module.global_expressions;
         let types = expressions
@@ -225,7 +225,7 @@ impl<'m> Build<'m> {
         Ok((Role::Runtime { address, count, element }, Loc::Through { slot: address, offset: 0 }))
     }
 
-    /// Lowers a function; what goes wrong is kept with it.
+    /// Lowers a function. An error is kept with the function.
     fn function(&mut self, name: String, function: &'m naga::Function, info: &'m FunctionInfo) {
         let entry = Function {
             name,
@@ -302,8 +302,8 @@ impl<'m> Build<'m> {
         body.whole(function)
     }
 
-    /// A parameter with the kinds of its scalars. What a pointer leaves behind comes after the
-    /// first `results` scalars of the result.
+    /// A parameter with the kinds of its scalars. What is behind a pointer after the call follows
+    /// the first `results` scalars of the result.
     fn parameter(
         &mut self,
         argument: &naga::FunctionArgument,
@@ -319,7 +319,7 @@ impl<'m> Build<'m> {
         Ok((Parameter { slot: self.alloc(slots)?, n, pointee }, kinds))
     }
 
-    /// The buffers a function and its callees use, by index.
+    /// The buffers that a function and its callees use, by index.
     fn buffers(&self, info: &FunctionInfo) -> Vec<u32> {
         let used =
             self.module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());

@@ -1,4 +1,4 @@
-//! Operators and conversions.
+//! Lowers operators and conversions.
 
 use super::{Body, Loc};
 use crate::eval::code::{
@@ -10,7 +10,7 @@ use naga::{
     BinaryOperator, Expression, Handle, RelationalFunction, ScalarKind, TypeInner, UnaryOperator,
 };
 
-/// Float, signed and unsigned meaning of an operator; none where it has no such meaning.
+/// What an operator is for floats, signed and unsigned integers; `None` where it does not exist.
 type Meaning = (BinaryOperator, Option<Binary>, Option<Word2>, Option<Word2>);
 
 const MEANINGS: &[Meaning] = &[
@@ -108,7 +108,7 @@ impl Body<'_, '_> {
         }
     }
 
-    /// Products with a matrix that are not by component.
+    /// Lowers products with a matrix, which are not computed component by component.
     fn product(
         &mut self,
         handle: Handle<Expression>,

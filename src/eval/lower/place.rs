@@ -1,4 +1,4 @@
-//! Pointers, and parts of values.
+//! Lowers pointers and accesses to parts of values.
 
 use super::{Body, Loc};
 use crate::eval::code::{Instruction, Operand, Slot};
@@ -54,7 +54,7 @@ impl Body<'_, '_> {
     ) -> Result<Loc, Error> {
         let n = self.slots(handle)?;
         let loc = self.loc(pointer)?;
-        // What no statement can write needs no copy.
+        // No statement can write to these address spaces, so no copy is needed.
         if let (Loc::Place(slot), Some(AddressSpace::Uniform | AddressSpace::Immediate)) =
             (loc, self.inner(pointer).pointer_space())
         {

@@ -1,4 +1,4 @@
-//! Statements: blocks become jumps.
+//! Lowers statements. Blocks become jumps.
 
 use super::{Body, Loc};
 use crate::eval::code::{Instruction, Table};
@@ -22,7 +22,7 @@ impl Body<'_, '_> {
             self.span = function.local_variables.get_span(handle);
             match variable.init {
                 Some(init) => {
-                    // A constant expression that no statement emits.
+                    // This constant expression is one that no statement emits.
                     self.constant = true;
                     let from = self.operand(init)?;
                     self.constant = false;
@@ -45,7 +45,7 @@ impl Body<'_, '_> {
         if let Some(branch) = branch {
             self.mark(branch);
             if block.is_empty() {
-                // An arm that is not written lies where its statement does.
+                // A branch that is not written has the place of its statement.
                 self.cover(whole);
             }
         }
@@ -61,7 +61,7 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    /// Starts a block that coverage counts.
+    /// Begins a block that coverage counts.
     fn mark(&mut self, branch: Branch) {
         let points = &mut self.build.program.points;
         let point = points.len() as u32;
@@ -204,7 +204,8 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    /// The lane goes on as a helper of its quad; a function that ends so gives zero.
+    /// Implements `discard`: the lane continues as a helper of its quad, and a function that ends
+    /// so returns zero.
     fn kill(&mut self) -> Result<(), Error> {
         let function = &self.build.program.functions[self.function as usize];
         let (to, n) = (function.result_slot, function.returned);
@@ -247,7 +248,7 @@ impl Body<'_, '_> {
         self.here() - 1
     }
 
-    /// Lets a jump end here.
+    /// Makes a jump end here.
     fn land(&mut self, jump: usize) {
         let here = self.here() as u32;
         match &mut self.build.program.code[jump] {

@@ -1,4 +1,4 @@
-//! Instructions that only read and write memory.
+//! Runs the instructions that only read and write memory.
 
 use super::super::code::{Convert, Instruction, Operand, Product};
 use super::super::number::Number;
@@ -6,7 +6,7 @@ use super::geometry::geometry;
 use super::packing::pack;
 use super::word::{extract_bits, insert_bits, word1, word2};
 
-/// Runs one instruction; `doubt` as for [`Number`].
+/// Runs one instruction. `doubt` is as for [`Number`].
 #[inline(always)]
 pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: &mut bool) {
     match *instruction {
@@ -101,7 +101,8 @@ pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: 
 #[inline(always)]
 fn copy<N: Number>(m: &mut [N], to: u32, from: u32, n: u32) {
     let (to, from, n) = (to as usize, from as usize, n as usize);
-    // An address outside can only come from a buffer that is not bound; it reads nothing.
+    // An address outside the memory can only come from a buffer that is not bound. It reads
+    // nothing.
     if from + n <= m.len() && to + n <= m.len() {
         m.copy_within(from..from + n, to);
     }
@@ -136,7 +137,7 @@ fn convert<N: Number>(m: &mut [N], op: Convert, n: u8, to: u32, a: Operand, doub
     });
 }
 
-/// An integer as a number, rounded as f32 must.
+/// An integer as a number, rounded as an f32 must be.
 fn whole<N: Number>(value: f64) -> N {
     let rounded = f64::from(value as f32);
     N::with_error(value, 2.0 * (value - rounded).abs())
@@ -159,7 +160,7 @@ fn product<N: Number>(
         a as usize,
         b as usize,
     );
-    // Element k of row r of `a`; the vector on the left of a matrix is its only row.
+    // Element k of row r of `a`. A vector on the left of a matrix has one row.
     let stride = if op == Product::VectorMatrix { 1 } else { rows };
     for column in 0..columns {
         let mut right = [N::default(); 4];

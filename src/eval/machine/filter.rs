@@ -1,17 +1,17 @@
-//! Filtering within one level of a texture.
+//! Filters the texels of one level of a texture.
 
 use super::super::number::Number;
 use super::super::resources::{Address, Filter, Level, Sampler, Shape, Texture};
 
-/// Finest step of the fraction between two texels that hardware must have, as a share.
+/// The precision of the fraction between two texels that hardware must have.
 ///
 /// Eight bits, as Direct3D asks for and Mesa's drivers have; Vulkan alone would allow four.
 const SUBTEXEL: f64 = 1.0 / 256.0;
-/// Texels on each side that are looked at for the error of a filter: further off than that, the
-/// error is that of a whole footprint anyway.
+/// How many texels on each side are looked at for the error of a filter. Where a coordinate's error
+/// is larger, the error of the result is that of a whole footprint anyway.
 const WIDEST: f64 = 2.0;
 
-/// A place in a texture: coordinates in [0, 1] on a layer, and the bound of their errors.
+/// A place in a texture: coordinates in [0, 1] on a layer, with a bound of their errors.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     shape: Shape,
@@ -21,7 +21,7 @@ pub(super) struct Point {
     face: usize,
 }
 
-/// What one lookup reads.
+/// Everything that one lookup depends on.
 pub(super) struct Footprint<'t, N> {
     pub texture: &'t Texture,
     pub sampler: &'t Sampler,
@@ -29,11 +29,11 @@ pub(super) struct Footprint<'t, N> {
     pub filter: Filter,
     pub point: Point,
     pub shift: [i64; 3],
-    /// Compared with each texel before filtering: the reference is on the left.
+    /// The reference that is compared with each texel before filtering. It is the left operand.
     pub reference: Option<N>,
 }
 
-/// A texel of the footprint with its weight.
+/// A texel of the footprint and its weight.
 struct Tap {
     weight: f64,
     texel: [f64; 4],
@@ -42,7 +42,8 @@ struct Tap {
 /// An axis and its sign.
 type Signed = (usize, f64);
 
-/// Major axis, sign, and the axes and signs of s and t for each face: +x, -x, +y, -y, +z, -z.
+/// For each face, +x, -x, +y, -y, +z, -z: the major axis, its sign, and the axes and signs of s and
+/// t.
 const FACES: [(usize, f64, Signed, Signed); 6] = [
     (0, 1.0, (2, -1.0), (1, -1.0)),
     (0, -1.0, (2, 1.0), (1, -1.0)),
@@ -52,7 +53,7 @@ const FACES: [(usize, f64, Signed, Signed); 6] = [
     (2, -1.0, (0, -1.0), (1, -1.0)),
 ];
 
-/// The place a coordinate means; a direction becomes a face and a place on it.
+/// The place that a coordinate stands for. A direction becomes a face and a place on it.
 pub(super) fn project(shape: Shape, coordinate: [f64; 3], error: [f64; 3], layer: u32) -> Point {
     if shape != Shape::Cube {
         return Point { shape, at: coordinate, error, layer, face: 0 };
@@ -83,11 +84,11 @@ impl Point {
 
 /// The filtered value of each component, with its error.
 ///
-/// A device may look up any place within the coordinate's error, and rounds the fractions between
-/// texels to [`SUBTEXEL`]. A linear filter is a surface whose slope along an axis is at most the
-/// difference of two texels, so the error is that reach times the spread of all texels within it:
-/// one more row or column than is filtered, where the place may cross the middle of a texel or
-/// the seam of a cube.
+/// A device may look up any place within the coordinate's error, and it rounds the fractions
+/// between texels to [`SUBTEXEL`]. A linear filter is a continuous surface. Its slope along an axis
+/// is at most the difference of two neighbouring texels. So the error is at most this reach times
+/// the largest difference of the texels within it. Those are one row or column more than are
+/// filtered, since the place may cross the middle of a texel or the seam of a cube.
 pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> [(f64, f64); 4] {
     let level = &footprint.texture.levels[footprint.level];
     let mut values = [0.0; 4];
@@ -125,7 +126,7 @@ fn reach<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
     std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { point.error[i] * size[i] + SUBTEXEL })
 }
 
-/// Largest difference of two texels within reach, for each component.
+/// The largest difference of two texels within reach, for each component.
 fn spread<N: Number>(
     footprint: &Footprint<N>,
     level: &Level,
@@ -156,7 +157,7 @@ fn spread<N: Number>(
     std::array::from_fn(|i| high[i] - low[i])
 }
 
-/// One component of the four texels around: (0, 1), (1, 1), (1, 0), (0, 0).
+/// One component of the four texels that are gathered: (0, 1), (1, 1), (1, 0), (0, 0).
 pub(super) fn gathered<N: Number>(
     footprint: &Footprint<N>,
     component: usize,
@@ -171,14 +172,14 @@ pub(super) fn gathered<N: Number>(
     })
 }
 
-/// Sizes of the filtered directions; 0 for those there are not.
+/// The sizes of the directions that are filtered; 0 for the others.
 fn size<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
     let depth = if footprint.point.shape == Shape::D3 { level.layers } else { 0 };
     let height = if footprint.point.shape == Shape::D1 { 0 } else { level.height };
     [level.width, height, depth].map(f64::from)
 }
 
-/// The texel down left of the place, as linear filters count.
+/// The texel of the footprint with the lowest coordinates.
 fn base<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
     let size = size(footprint, level);
     std::array::from_fn(|i| {
@@ -206,7 +207,7 @@ fn linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(Tap))
     }
 }
 
-/// The texel of the place, and whether the error reaches one that differs.
+/// The nearest texel, and whether the error reaches a texel that differs from it.
 fn nearest<N: Number>(footprint: &Footprint<N>, level: &Level) -> ([f64; 4], bool) {
     let (size, point) = (size(footprint, level), &footprint.point);
     let at = |sides: [f64; 3]| {
@@ -236,8 +237,8 @@ impl<N: Number> Footprint<'_, N> {
 }
 
 impl<N> Footprint<'_, N> {
-    /// The texel at column and row with its weight. Beyond the corner of a cube there is none: its
-    /// weight goes to the three texels that meet there.
+    /// Calls back with the texel at a column and a row, and its weight. Beyond the corner of a cube
+    /// there is none: its weight is divided among the three texels that meet there.
     fn taps(&self, level: &Level, at: [i64; 3], weight: f64, add: &mut impl FnMut(Tap)) {
         let inside = |i: usize| at[i].clamp(0, i64::from(level.width) - 1);
         if self.point.shape != Shape::Cube || inside(0) == at[0] || inside(1) == at[1] {
@@ -272,7 +273,8 @@ impl<N> Footprint<'_, N> {
         level.texel(place).unwrap_or_default()
     }
 
-    /// A texel of a cube; beyond the edge of its face it lies on the neighbouring one.
+    /// The position of a texel of a cube. Beyond the edge of its face it is on the neighbouring
+    /// face.
     fn around(&self, level: &Level, [x, y, _]: [i64; 3]) -> [i64; 3] {
         let side = f64::from(level.width);
         let (major, sign, s, t) = FACES[self.point.face];

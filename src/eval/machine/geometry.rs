@@ -1,5 +1,5 @@
-//! Functions of whole vectors and matrices, written with the number's own operations so that
-//! errors follow from WGSL's definitions.
+//! Functions of whole vectors and matrices. They are written with the operations of [`Number`], so
+//! that their errors follow from the definitions in WGSL.
 
 use super::super::code::{Binary, Compare, Geometry, Unary};
 use super::super::number::Number;
@@ -132,7 +132,7 @@ fn apply_square<N: Number>(x: N) -> N {
     N::dot(&[x], &[x])
 }
 
-/// By the first column.
+/// The determinant, expanded along the first column.
 fn determinant<N: Number>(matrix: &[N], n: usize, doubt: &mut bool) -> N {
     if n == 1 {
         return matrix[0];
@@ -149,7 +149,7 @@ fn determinant<N: Number>(matrix: &[N], n: usize, doubt: &mut bool) -> N {
     sum
 }
 
-/// The matrix without a column and a row.
+/// Writes the matrix without one column and one row.
 fn remove<N: Number>(matrix: &[N], n: usize, column: usize, row: usize, minor: &mut [N; 9]) {
     let kept = (0..n * n).filter(|i| i / n != column && i % n != row);
     kept.zip(minor).for_each(|(i, to)| *to = matrix[i]);
@@ -171,13 +171,13 @@ fn inverse<N: Number>(m: &mut [N], n: usize, to: usize, from: usize, doubt: &mut
     }
 }
 
-/// Fraction in [0.5, 1) and exponent.
+/// A fraction in [0.5, 1) and an exponent.
 fn frexp<N: Number>(x: N) -> (N, i32) {
     let value = x.value();
     if value == 0.0 || !value.is_finite() {
         return (x, 0);
     }
-    // A subnormal is raised into the normal range to read its exponent from the bits.
+    // A subnormal is scaled into the normal range, so that the bits have its exponent.
     let raised = value.abs() < f64::MIN_POSITIVE;
     let bits = (if raised { value * 64f64.exp2() } else { value }).to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i32 - 1022 - if raised { 64 } else { 0 };

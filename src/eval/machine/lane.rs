@@ -1,4 +1,4 @@
-//! One thread of the shader: memory, a place in the code, and the loop that steps it.
+//! One thread of the shader: its memory, its position in the code, and the loop that runs it.
 
 use super::super::code::Instruction;
 use super::super::error::{Error, Kind};
@@ -16,10 +16,10 @@ use crate::limits::EVAL_STEPS;
 pub(super) struct Lane<N> {
     pub memory: Vec<N>,
     pub pc: u32,
-    /// Where calls go back to.
+    /// The instructions that calls return to.
     pub calls: Vec<u32>,
     pub trips: u64,
-    /// Instructions of this call so far, copies by their length.
+    /// Steps of this call so far. A copy counts by its length.
     pub steps: u64,
     pub killed: bool,
 }
@@ -30,7 +30,7 @@ pub(super) struct Env<'e> {
     pub program: &'e Program,
     pub resources: &'e Resources,
     pub loop_limit: u64,
-    /// Whether the lane has neighbours.
+    /// Whether the lane is part of a quad.
     pub quad: bool,
 }
 

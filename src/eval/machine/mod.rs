@@ -1,4 +1,4 @@
-//! Memory for a program, and the calls.
+//! The memory of a program, and calls of its functions.
 
 mod compute;
 mod filter;
@@ -21,24 +21,24 @@ use watch::Watch;
 
 use std::collections::BTreeMap;
 
-/// Loop trips one call may make unless set otherwise, all loops together.
+/// How many loop iterations one call may make unless set otherwise, all loops together.
 pub const LOOP_LIMIT: u64 = crate::limits::LOOP_TRIPS;
 
-/// A program with memory. Calls reuse it: none allocates.
+/// A program with its memory. Calls use the memory again, and none of them allocates.
 #[derive(Debug)]
 pub struct Machine<'p, N> {
     program: &'p Program,
     resources: Resources,
     lane: Lane<N>,
-    /// Lanes of a quad, once one has run, and which of them were discarded.
+    /// The lanes of a quad, once one has run, and which of them were discarded.
     quad: Vec<Lane<N>>,
     killed: [bool; 4],
     watch: Watch,
-    /// Arguments of `call_words`, kept for their memory.
+    /// The arguments of `call_words`; the memory is used again.
     words: Vec<N>,
     /// Which globals have a buffer.
     bound: Vec<bool>,
-    /// Loop trips one call may make, all loops together.
+    /// How many loop iterations one call may make, all loops together.
     pub loop_limit: u64,
 }
 
@@ -46,7 +46,7 @@ impl<'p, N: Number> Machine<'p, N> {
     /// Memory for the program, with constants computed and nothing bound.
     ///
     /// # Errors
-    /// What computing the constants meets.
+    /// The error of a constant that cannot be computed.
     pub fn new(program: &'p Program) -> Result<Self, Error> {
         let mut lane =
             Lane { memory: vec![N::default(); program.slots as usize], ..Lane::default() };
@@ -72,16 +72,16 @@ impl<'p, N: Number> Machine<'p, N> {
         Ok(machine)
     }
 
-    /// The program this is the memory of.
+    /// The program that this is the memory of.
     pub fn program(&self) -> &'p Program {
         self.program
     }
 
-    /// Binds buffers, textures and samplers by group and binding. What stays unbound is an error
-    /// where it is used.
+    /// Binds buffers, textures and samplers by group and binding. Using one that is not bound is an
+    /// error.
     ///
     /// # Errors
-    /// `eval-too-large` for a buffer that is.
+    /// `eval-too-large` for a buffer that is too large.
     pub fn bind(&mut self, resources: Resources) -> Result<(), Error> {
         self.lane.memory.truncate(self.program.slots as usize);
         for (index, global) in self.program.globals.iter().enumerate() {
@@ -111,7 +111,7 @@ impl<'p, N: Number> Machine<'p, N> {
         Ok(())
     }
 
-    /// Binds other buffers, textures and samplers as they are.
+    /// Binds other buffers and keeps the textures and samplers.
     ///
     /// # Errors
     /// Those of [`Self::bind`].
@@ -120,7 +120,7 @@ impl<'p, N: Number> Machine<'p, N> {
         self.bind(Resources { buffers, ..resources })
     }
 
-    /// Refuses a function one of whose buffers is missing.
+    /// Refuses a function whose buffers are not all bound.
     fn check_buffers(&self, function: &Function) -> Result<(), Error> {
         match function.buffers.iter().find(|index| !self.bound[**index as usize]) {
             None => Ok(()),
@@ -134,7 +134,7 @@ impl<'p, N: Number> Machine<'p, N> {
         }
     }
 
-    /// Places a buffer that ends in a runtime-sized array behind the memory.
+    /// Adds a buffer that ends in a runtime-sized array behind the memory.
     fn append(
         &mut self,
         slots: Vec<N>,
@@ -147,7 +147,7 @@ impl<'p, N: Number> Machine<'p, N> {
         if first + slots.len() > super::layout::MAX_SLOTS as usize {
             return Err(Error::too_large("a buffer is too large for the CPU executor"));
         }
-        // The least size counts one element; all before it is fixed.
+        // The least size counts one element of the array. Everything before that is fixed.
         let fixed = (least - element) as usize;
         let elements = slots.len().saturating_sub(fixed) / element.max(1) as usize;
         self.lane.memory.extend(slots);
@@ -206,7 +206,7 @@ impl<'p, N: Number> Machine<'p, N> {
         Ok(())
     }
 
-    /// Runs code on the one lane to its end.
+    /// Runs code on the single lane until it ends.
     fn run(&mut self, entry: u32) -> Result<(), Error> {
         (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
         self.lane.steps = 0;
@@ -239,7 +239,7 @@ impl<'p, N: Number> Machine<'p, N> {
         function.map_or(&[], |function| outcome(&self.lane, function))
     }
 
-    /// Loop trips of the last call.
+    /// Loop iterations of the last call.
     pub fn trips(&self) -> u64 {
         self.lane.trips
     }
@@ -250,7 +250,7 @@ impl<'p, N: Number> Machine<'p, N> {
         self.watch.sanitize = on;
     }
 
-    /// What was noticed since the last [`Self::forget`], by kind and place.
+    /// What was reported since the last [`Self::forget`], by kind and place.
     pub fn findings(&self) -> Vec<Finding> {
         self.watch.findings(self.program)
     }

@@ -65,10 +65,11 @@ fn signed(word: u32, width: u32, index: usize) -> f64 {
     f64::from((part(word, width, index) << (32 - width)) as i32 >> (32 - width))
 }
 
-/// `floor(0.5 + scale * clamp(x, low, 1))`, with doubt where the error reaches the next one.
+/// `floor(0.5 + scale * clamp(x, low, 1))`. There is doubt where the error reaches the next
+/// integer.
 fn norm<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
     let clamped = x.value().clamp(low, 1.0);
-    // The product and the sum round, unless both are f32 as they are.
+    // The product and the sum are rounded, unless the exact values are f32.
     let exact = |value: f64| f64::from(value as f32) == value;
     let product = scale * clamped;
     let rounding = if exact(product) && exact(product + 0.5) {
@@ -81,7 +82,7 @@ fn norm<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
     N::unary(Unary::Floor, clamped, doubt).value() as i32 as u32
 }
 
-/// A normalised part, within 3 ULP.
+/// One component of a normalised format, with an error of 3 ULP.
 fn ratio<N: Number>(value: f64, scale: f64) -> N {
     let exact = (value / scale).max(-1.0);
     N::with_error(

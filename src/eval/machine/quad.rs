@@ -1,4 +1,4 @@
-//! Four fragments in lock-step: each runs alone up to a derivative, and waits there for the rest.
+//! Four fragments in lock-step. Each runs alone up to a derivative, where it waits for the others.
 
 use super::super::code::{Axis, Binary, Instruction, Unary};
 use super::super::error::{Error, Kind};
@@ -11,8 +11,8 @@ impl<N: Number> Machine<'_, N> {
     /// Runs a function on the four fragments of a quad, in the order (0, 0), (1, 0), (0, 1),
     /// (1, 1), and gives their flattened results.
     ///
-    /// A derivative that only some of the fragments reach is 0 for those whose neighbour is
-    /// missing, and a finding.
+    /// Where only some of the fragments reach a derivative, it is 0 for those whose neighbour is
+    /// missing, and it is reported.
     ///
     /// # Errors
     /// Those of [`Self::call`].
@@ -63,7 +63,8 @@ impl<N: Number> Machine<'_, N> {
                     Stop::Quad => waiting.push(index),
                 }
             }
-            // Those furthest behind go first: the others may wait where they arrive.
+            // The lanes that are furthest behind go first, since the others may wait at a place
+            // that those still reach.
             let Some(&first) =
                 waiting.iter().min_by(|a, b| position(&lanes[**a]).cmp(position(&lanes[**b])))
             else {
@@ -93,7 +94,7 @@ impl<N: Number> Machine<'_, N> {
     }
 }
 
-/// Where a lane waits: the calls it is in, and the instruction.
+/// Where a lane waits: the calls that it is in, and the instruction.
 fn position<N>(lane: &Lane<N>) -> impl Iterator<Item = u32> + '_ {
     lane.calls.iter().copied().chain([lane.pc])
 }

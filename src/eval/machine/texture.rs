@@ -1,4 +1,4 @@
-//! Accesses to textures: what is bound, which level, and where results go.
+//! Runs accesses to textures: finds what is bound, chooses the level, and stores the result.
 
 use super::super::code::{Access, Ask, Axis, Level};
 use super::super::error::{Error, Kind};
@@ -10,16 +10,16 @@ use super::quad::pair;
 use super::watch::Watch;
 use crate::diagnostic::codes;
 
-/// Finest step of the level of detail that devices agree on.
+/// The precision of the level of detail on which devices agree.
 const LEVEL_STEP: f64 = 1.0 / 64.0;
 
-/// Change of the coordinate to the neighbour in x and in y.
+/// The difference of the coordinate to the neighbour in x and to the one in y.
 type Gradient = [[f64; 3]; 2];
 
-/// The instruction, and where to note what happens there.
+/// The instruction, and where to report what happens there.
 type Notes<'w> = (u32, &'w mut Watch);
 
-/// Runs an access whose level follows from the neighbours, for those lanes that reached it.
+/// Runs an access whose level depends on the neighbours, for the lanes that reached it.
 pub(super) fn quad<N: Number>(
     env: Env,
     index: u32,
@@ -112,7 +112,7 @@ fn unbound(name: Option<&str>) -> Error {
     )
 }
 
-/// One texel; outside of the texture it is zero, and a finding.
+/// Reads one texel. Outside the texture it is zero, which is reported.
 fn load<N: Number>(
     access: &Access,
     texture: &Texture,
@@ -207,7 +207,7 @@ fn shift<N: Number>(access: &Access, m: &[N], offset: Option<u32>) -> [i64; 3] {
     })
 }
 
-/// Level of detail: log2 of the longer step over texels; 0 without neighbours.
+/// The level of detail: log2 of the longer step in texels; 0 without neighbours.
 fn detail(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> f64 {
     let Some(slopes) = slopes else { return 0.0 };
     let first = &texture.levels[0];
@@ -224,7 +224,7 @@ fn detail(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> 
     longest[0].max(longest[1]).log2()
 }
 
-/// What a footprint reads at a level that may lie between two of the texture's.
+/// The result of a lookup at a level that may lie between two of the texture's.
 fn between_levels<N: Number>(
     footprint: &Footprint<'_, N>,
     level: f64,
@@ -244,7 +244,7 @@ fn between_levels<N: Number>(
     if sampler.mipmap == Filter::Nearest || level.fract() == 0.0 {
         let chosen = (level + 0.5).floor().min(last);
         let found = at(chosen);
-        // Where the level is as near to another, a device may take either.
+        // Where the level is close to where another would be chosen, a device may choose either.
         let others = [level - LEVEL_STEP, level + LEVEL_STEP]
             .map(|level| (level + 0.5).floor().clamp(0.0, last));
         if N::BOUNDED

@@ -1,4 +1,4 @@
-//! What a run notices: coverage, trouble with numbers.
+//! What a run reports: coverage, and trouble with numbers.
 
 use super::super::code::{Binary, Convert, Geometry, Instruction, Operand, Unary, Word2};
 use super::super::error::{Finding, Kind};
@@ -6,7 +6,7 @@ use super::super::number::Number;
 use super::super::program::Program;
 use std::collections::BTreeMap;
 
-/// Most places remembered; a run that meets more has enough to look at.
+/// The most places that are remembered. A run with more has enough to look at.
 const MAX_FINDINGS: usize = 10_000;
 
 /// Coverage and findings of one machine.
@@ -48,7 +48,7 @@ impl Watch {
         found
     }
 
-    /// Looks at the operands and the result of an instruction that has just run.
+    /// Looks for trouble in the operands and the result of an instruction that has just run.
     #[cold]
     pub fn inspect<N: Number>(&mut self, instruction: &Instruction, memory: &[N], pc: u32) {
         let read = |slot: u32| memory[slot as usize].value();
@@ -102,7 +102,7 @@ impl Watch {
         }
     }
 
-    /// Notes trouble with the operands, else a result that is not finite though they are.
+    /// Reports trouble with the operands, or else a result that is not finite although they are.
     fn judge<N: Number>(
         &mut self,
         trouble: Option<Kind>,
@@ -146,7 +146,7 @@ fn outside2(op: Binary, a: f64, b: f64) -> Option<Kind> {
     }
 }
 
-/// Whether the integer type cannot hold the number, cut to a whole one.
+/// Whether the number, truncated to an integer, does not fit the integer type.
 fn unfit(op: Convert, x: f64) -> bool {
     let whole = x.trunc();
     match op {

@@ -22,7 +22,7 @@ pub(super) fn word1(op: Word1, x: u32) -> u32 {
             }
         }
         Word1::FirstLeading => 31u32.wrapping_sub(x.leading_zeros()),
-        // The highest bit that differs from the sign.
+        // The highest bit that differs from the sign bit.
         Word1::FirstLeadingSigned => {
             31u32.wrapping_sub((x ^ ((x as i32) >> 31) as u32).leading_zeros())
         }
@@ -65,7 +65,7 @@ pub(super) fn word2(op: Word2, a: u32, b: u32) -> u32 {
     }
 }
 
-/// Bits `[offset, offset + count)`, clamped to the word.
+/// Bits `[offset, offset + count)` of the word, with the range clamped to the word.
 pub(super) fn extract_bits(signed: bool, word: u32, offset: u32, count: u32) -> u32 {
     let offset = offset.min(32);
     let count = count.min(32 - offset);
@@ -76,7 +76,7 @@ pub(super) fn extract_bits(signed: bool, word: u32, offset: u32, count: u32) -> 
     if signed { ((raised as i32) >> (32 - count)) as u32 } else { raised >> (32 - count) }
 }
 
-/// `[word, new, offset, count]`: bits `[offset, offset + count)` of the word replaced.
+/// `[word, new, offset, count]`: the word with bits `[offset, offset + count)` replaced.
 pub(super) fn insert_bits([word, new, offset, count]: [u32; 4]) -> u32 {
     let offset = offset.min(32);
     let count = count.min(32 - offset);

@@ -1,20 +1,22 @@
-//! Value plus error: what the code means, and how far a conforming f32 may stray from it.
+//! A value with a bound of its error: what the code means, and how far a conforming f32 computation
+//! may be from that.
 //!
-//! The value is computed in f64. The error is a first-order forward bound: the arguments' errors
-//! times the slope, plus what WGSL allows the operation itself ("Floating Point Evaluation",
-//! section "Floating Point Accuracy" of the specification).
+//! The value is computed in f64. The error is a first-order forward bound. It is the arguments'
+//! errors times the slope of the operation, plus the error that WGSL allows for the operation
+//! itself (section "Floating Point Accuracy" of its specification).
 
 use super::Number;
 use crate::eval::code::{Binary, Compare, Ternary, Unary};
 
-/// A value, and a bound of the absolute error an f32 computation of it may carry.
+/// A value, and a bound of the absolute error that a computation of it in f32 may have.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Bounded {
     value: f64,
     error: f64,
 }
 
-/// Distance of neighbouring f32 around the value; the flushed part of a subnormal counts too.
+/// The distance between neighbouring f32 at the value. It also covers a subnormal that is flushed
+/// to zero.
 fn ulp(value: f64) -> f64 {
     let size = value.abs();
     if size < f64::from(f32::MIN_POSITIVE) {
@@ -23,7 +25,8 @@ fn ulp(value: f64) -> f64 {
     f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000) * f64::from(f32::EPSILON)
 }
 
-/// What a correctly rounded operation adds: nothing if its exact arguments give an exact f32.
+/// The error that a correctly rounded operation adds. It is 0 where exact arguments give an exact
+/// f32.
 fn rounding(value: f64, inherited: f64) -> f64 {
     let exact = inherited == 0.0 && f64::from(value as f32) == value;
     if exact { 0.0 } else { ulp(value) }
@@ -34,8 +37,8 @@ fn times(slope: f64, error: f64) -> f64 {
     if slope == 0.0 || error == 0.0 { 0.0 } else { (slope * error).abs() }
 }
 
-/// What `log(x + sqrt(x*x + c))` adds, which is how WGSL bounds asinh and acosh: where x is
-/// negative the sum cancels, and near an acosh of 0 the root does.
+/// The error of `log(x + sqrt(x*x + c))`, by which WGSL defines the accuracy of asinh and acosh.
+/// For negative x the sum cancels, and near an acosh of 0 the root does.
 fn log_of_sum(x: f64, c: f64, value: f64) -> f64 {
     let square = (x * x + c).max(0.0);
     let (root, off) = (square.sqrt(), ulp(x * x) + ulp(square));
@@ -46,7 +49,7 @@ fn log_of_sum(x: f64, c: f64, value: f64) -> f64 {
 }
 
 impl Bounded {
-    /// Where f32 may overflow, or the value is not a number, anything is allowed.
+    /// Where f32 may overflow, or the value is not a number, any result is allowed.
     fn new(value: f64, error: f64) -> Self {
         let held = value.abs() + error <= f64::from(f32::MAX);
         Self { value, error: if held { error } else { f64::INFINITY } }
@@ -56,12 +59,12 @@ impl Bounded {
         Self { value, error: 0.0 }
     }
 
-    /// Correctly rounded from an inherited error.
+    /// The result of a correctly rounded operation, with an inherited error.
     fn rounded(value: f64, inherited: f64) -> Self {
         Self::new(value, inherited + rounding(value, inherited))
     }
 
-    /// A step function: constant where the argument's error does not reach a jump.
+    /// A step function. It is constant where the argument's error does not reach a jump.
     fn stepped(op: Unary, x: Self, doubt: &mut bool) -> Self {
         let mut unused = false;
         let [low, value, high] =
@@ -73,7 +76,8 @@ impl Bounded {
         )
     }
 
-    /// The error of a smooth function: the slope's share and the operation's own.
+    /// The error of a smooth function: its slope times the argument's error, plus the operation's
+    /// own.
     fn smooth(op: Unary, x: Self, value: f64) -> f64 {
         let v = x.value;
         let log_own =
@@ -85,7 +89,8 @@ impl Bounded {
             }
             Unary::Log => times(1.0 / v, x.error) + log_own(value),
             Unary::Log2 => times(std::f64::consts::LOG2_E / v, x.error) + log_own(value),
-            // As 1 / inverseSqrt(x); at 0 the slope is infinite and the root of the error bounds it.
+            // As 1 / inverseSqrt(x). At 0 the slope is infinite, and the root of the error bounds
+            // the result.
             Unary::Sqrt => {
                 times(0.5 / value, x.error).min(x.error.sqrt())
                     + if v == 0.0 { 0.0 } else { 4.5 * ulp(value) }
@@ -98,10 +103,10 @@ impl Bounded {
         }
     }
 
-    /// The same for functions of angles, hyperbolic ones, and their inverses.
+    /// The same for trigonometric and hyperbolic functions and their inverses.
     fn trigonometric(op: Unary, x: Self, value: f64) -> f64 {
         let v = x.value;
-        // No bound is given outside of [-pi, pi].
+        // WGSL gives no bound outside [-pi, pi].
         let turn = if v.abs() <= std::f64::consts::PI * (1.0 + 1e-6) {
             (-11f64).exp2()
         } else {
@@ -157,7 +162,8 @@ impl Bounded {
         )
     }
 
-    /// As `exp2(y * log2(x))`: relative `ln2 (2^-21 |y| + ...) + (3 + 2|t|) u`, `t = y log2 x`.
+    /// As `exp2(y * log2(x))`, with the relative error `ln2 (2^-21 |y| + ...) + (3 + 2|t|) u` where
+    /// `t = y log2 x`.
     fn raised(x: Self, y: Self, doubt: &mut bool) -> Self {
         let value = f64::binary(Binary::Pow, x.value, y.value, doubt);
         if x.value <= 0.0 {
@@ -276,7 +282,7 @@ impl Number for Bounded {
             Ternary::Clamp => {
                 Self::binary(Binary::Min, Self::binary(Binary::Max, a, b, doubt), c, doubt)
             }
-            // Fused or not: the rounding of the product may be there.
+            // The product may be rounded or not, since the operation may be fused or not.
             Ternary::Fma => {
                 Self::binary(Binary::Add, Self::binary(Binary::Multiply, a, b, doubt), c, doubt)
             }
@@ -299,7 +305,7 @@ impl Number for Bounded {
         f64::compare(op, a.value, b.value, doubt)
     }
 
-    /// Any order of summing, fused or not: each of the n roundings is bounded by the sum of the
+    /// For any order of summing, fused or not: each of the n roundings is bounded by the sum of the
     /// absolute products.
     fn dot(a: &[Self], b: &[Self]) -> Self {
         let mut sum = (0.0, 0.0, 0.0);

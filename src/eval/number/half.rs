@@ -1,6 +1,6 @@
 //! IEEE 754 binary16, for the packing built-ins.
 
-/// Bits of the nearest half, ties to even; too large becomes infinity.
+/// The bits of the nearest half, ties to even. A value that is too large becomes infinity.
 pub fn half_from(value: f64) -> u16 {
     let sign = if value.is_sign_negative() { 0x8000 } else { 0 };
     let size = value.abs();
@@ -12,11 +12,11 @@ pub fn half_from(value: f64) -> u16 {
     }
     let exponent = (((size.to_bits() >> 52) as i32) - 1023).max(-14);
     let mantissa = (size * f64::from(10 - exponent).exp2()).round_ties_even() as u16;
-    // A mantissa of 11 bits carries its leading one into the exponent field.
+    // The leading one of the mantissa's 11 bits is added to the exponent field.
     sign | ((((exponent + 14) as u16) << 10) + mantissa)
 }
 
-/// Value of a half's bits.
+/// The value of a half's bits.
 pub fn half_to(bits: u16) -> f64 {
     let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
     let exponent = i32::from(bits >> 10 & 0x1f);

@@ -12,22 +12,22 @@ use super::code::{Binary, Compare, Ternary, Unary};
 /// A number of the shader's type `f32`, and the slot that holds it. A slot also holds the words
 /// of integers and booleans; instructions know which.
 ///
-/// `doubt` is set where a discontinuous function meets arguments nearer to the jump than their
-/// errors, so that either side would be right.
+/// `doubt` is set where the arguments of a discontinuous function are closer to a jump than their
+/// errors, so that the results on both sides are right.
 pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
-    /// Whether it carries errors.
+    /// Whether numbers of this kind have errors.
     const BOUNDED: bool;
-    /// A slot holding a word. `from_word(0)` is the default.
+    /// A slot with a word. `from_word(0)` is the default.
     fn from_word(word: u32) -> Self;
     /// The word in the slot.
     fn word(self) -> u32;
     /// Nearest number, without error.
     fn from_f64(value: f64) -> Self;
-    /// A number known to within `error`; kinds that carry no error drop it.
+    /// A number that is known to within `error`. Kinds without errors drop it.
     fn with_error(value: f64, error: f64) -> Self;
     /// The value.
     fn value(self) -> f64;
-    /// Bound of the absolute error; 0 for kinds that carry none.
+    /// The bound of the absolute error; 0 for kinds without errors.
     fn error(self) -> f64;
     /// Applies a function of one argument.
     fn unary(op: Unary, x: Self, doubt: &mut bool) -> Self;
@@ -37,10 +37,10 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
     fn ternary(op: Ternary, a: Self, b: Self, c: Self, doubt: &mut bool) -> Self;
     /// Compares; false where a side is not a number, except for `!=`.
     fn compare(op: Compare, a: Self, b: Self, doubt: &mut bool) -> bool;
-    /// Sum of products, of slices of one length.
+    /// The sum of products of two slices of the same length.
     fn dot(a: &[Self], b: &[Self]) -> Self;
 
-    /// The bits as `f32`; one pattern for all that is not a number.
+    /// The bits as `f32`. Everything that is not a number has one pattern.
     fn bits(self) -> u32 {
         let value = self.value() as f32;
         if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() }

@@ -1,5 +1,5 @@
-//! `f64`: the value of the code as written. `f32`: every operation rounded to nearest, the
-//! transcendental ones through f64, since libraries for f32 are less exact.
+//! `f64`: the value of the code as written. `f32`: every operation rounded to nearest.
+//! Transcendental functions are computed in f64, since libraries for f32 are less exact.
 
 use super::{Number, half_from, half_to};
 use crate::eval::code::{Binary, Compare, Ternary, Unary};
@@ -88,7 +88,8 @@ macro_rules! native {
                     Binary::Min => a.min(b),
                     Binary::Max => a.max(b),
                     Binary::Atan2 => f64::from(a).atan2(f64::from(b)) as $float,
-                    // WGSL defines pow by log2 of the base, which a negative base has not.
+                    // WGSL defines pow by the log2 of the base, which does not exist for a negative
+                    // base.
                     Binary::Pow if a < 0.0 => $float::NAN,
                     Binary::Pow => f64::from(a).powf(f64::from(b)) as $float,
                     Binary::Step => [0.0, 1.0][usize::from(a <= b)],

@@ -1,4 +1,4 @@
-//! The emitted GLSL ES 3.00 as it is, on OpenGL ES 3.0.
+//! Runs the emitted GLSL ES 3.00 unchanged, on OpenGL ES 3.0.
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;

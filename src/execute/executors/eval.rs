@@ -1,4 +1,5 @@
-//! The interpreter of this crate in f32, every operation rounded to nearest: needs nothing.
+//! The evaluator of this crate in f32, with every operation rounded to nearest. It needs no device
+//! and no driver.
 
 use super::{Entry, Unavailable};
 use crate::diagnostic::{Diagnostic, codes};
@@ -17,7 +18,7 @@ pub const EXECUTOR: Entry = Entry {
     shipping: None,
 };
 
-/// The program of the last kernel: rows of one kernel follow each other.
+/// Keeps the program of the last kernel, since all rows of one kernel are run one after another.
 #[derive(Default)]
 struct Cpu {
     last: Option<(u64, Interpreter)>,

@@ -1,4 +1,4 @@
-//! wgpu on OpenGL through EGL without a surface: llvmpipe where there is no GPU.
+//! wgpu on OpenGL, through EGL and without a window. Without a GPU this is llvmpipe.
 
 use super::{DEVICE_SAMPLES, Entry, swiftshader};
 use crate::execute::gpu::{Named, Shaders, Wanted};

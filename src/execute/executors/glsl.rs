@@ -1,4 +1,4 @@
-//! The emitted GLSL 4.50 as it is, on OpenGL 4.5.
+//! Runs the emitted GLSL 4.50 unchanged, on OpenGL 4.5.
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;

@@ -1,4 +1,4 @@
-//! The emitted GLSL 3.30 as it is, on OpenGL 3.3 with the core profile.
+//! Runs the emitted GLSL 3.30 unchanged, on OpenGL 3.3 with the core profile.
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;

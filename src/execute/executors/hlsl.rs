@@ -1,5 +1,5 @@
-//! The emitted HLSL, compiled to SPIR-V by glslangValidator, on SwiftShader: its sampler heaps are
-//! arrays that a number from a buffer indexes, which lavapipe cannot do.
+//! Runs the emitted HLSL on SwiftShader, compiled to SPIR-V by glslangValidator. Its sampler heaps
+//! are arrays that are indexed with a number from a buffer, which lavapipe does not support.
 
 use super::{Entry, Shipping, Unavailable, swiftshader};
 use crate::bundle::Target;

@@ -1,4 +1,4 @@
-//! The emitted MSL as it is, compiled for the CPU by clang with headers of our own.
+//! Runs the emitted MSL unchanged: clang compiles it for the CPU, with headers of our own.
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;

@@ -1,4 +1,4 @@
-//! The emitted SPIR-V as it is, on the driver of `vulkan`.
+//! Runs the emitted SPIR-V unchanged, on the driver of `vulkan`.
 
 use super::{Entry, Shipping, swiftshader};
 use crate::bundle::Target;

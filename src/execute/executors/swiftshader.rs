@@ -1,4 +1,5 @@
-//! wgpu on SwiftShader, the software Vulkan driver that Chromium ships: another compiler than Mesa's.
+//! wgpu on SwiftShader, the software Vulkan driver that comes with Chromium. Its compiler is not
+//! Mesa's.
 
 use std::path::Path;
 use std::sync::Once;
@@ -28,7 +29,7 @@ fn open() -> Result<Box<dyn Session>, Unavailable> {
     })
 }
 
-/// Whether the driver is there; it is announced if it is.
+/// Whether the driver is installed. If so, it is announced to the loader.
 pub fn installed() -> Result<(), Unavailable> {
     announce();
     manifest().map(|_| ()).ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
@@ -37,14 +38,15 @@ pub fn installed() -> Result<(), Unavailable> {
 /// Part of the adapter's name.
 pub const NAME: &str = "SwiftShader";
 
-/// Where packages put the driver's manifest.
+/// Where packages install the driver's manifest.
 const MANIFESTS: &[&str] = &[
     "/usr/lib/chromium/vk_swiftshader_icd.json",
     "/usr/lib64/chromium-browser/vk_swiftshader_icd.json",
     "/opt/google/chrome/vk_swiftshader_icd.json",
 ];
 
-/// Tells the Vulkan loader of the driver, beside those it knows, where it is installed.
+/// Tells the Vulkan loader about the driver, if it is installed, in addition to the drivers that it
+/// finds itself.
 ///
 /// The loader reads the environment when an instance is made. Call this before other threads are
 /// started: it is done once, and opening the executor does it too.
@@ -61,7 +63,7 @@ pub fn announce() {
     });
 }
 
-/// The driver's manifest, where it is installed.
+/// The path of the driver's manifest, if it is installed.
 fn manifest() -> Option<&'static str> {
     MANIFESTS.iter().copied().find(|path| Path::new(path).is_file())
 }

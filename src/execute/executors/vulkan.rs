@@ -1,4 +1,4 @@
-//! wgpu on a Vulkan driver: lavapipe where it is installed.
+//! wgpu on a Vulkan driver, which is lavapipe where that is installed.
 
 use super::{DEVICE_SAMPLES, Entry, swiftshader};
 use crate::execute::gpu::{Named, Shaders, Wanted};

@@ -1,4 +1,5 @@
-//! The emitted GLSL ES 3.00 as it is, in a page of Chromium: ANGLE, which is others' work than Mesa.
+//! Runs the emitted GLSL ES 3.00 unchanged in a page of Chromium. It is compiled by ANGLE, which is
+//! independent of Mesa.
 
 use super::{Entry, Shipping, Unavailable};
 use crate::browser::PACKAGE;

@@ -1,5 +1,5 @@
-//! The emitted WGSL as it is, in a page of Chromium: Tint and Dawn, which are others' work than naga
-//! and wgpu.
+//! Runs the emitted WGSL unchanged in a page of Chromium. It is compiled by Tint and run by Dawn,
+//! which are independent of naga and wgpu.
 
 use super::{Entry, Shipping, Unavailable};
 use crate::browser::PACKAGE;

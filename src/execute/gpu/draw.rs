@@ -1,4 +1,4 @@
-//! Draws meshes with a program into targets of words, depth, or both.
+//! Draws meshes into targets of words, a depth buffer, or both.
 
 mod bindings;
 mod shipped;
@@ -20,20 +20,20 @@ use crate::execute::shipped::Format;
 use bindings::Bindings;
 use target::{DEPTH_FORMAT, Targets};
 
-/// Uniform blocks of one stage above which lavapipe must not see them.
+/// The most uniform blocks that a stage may have on lavapipe.
 ///
-/// Mesa 22.3 looks for uniforms that a branch reads, to compile them in. It notes their places in
-/// rows of four and counts its way there in rows of 32 (`lvp_inline_uniforms.c`,
-/// `uni_offsets[ubo * PIPE_MAX_CONSTANT_BUFFERS + i]`), so that those of the fourth block land on
-/// the table of counts behind. The next draw then reads a push constant that there is not, and
-/// the process dies: `forward` with a shadow branches on its fourth block. Storage blocks, laid
-/// out the same, are not looked at; but where a triangle ends, what they hold is 0 in the helpers of a
-/// quad, and derivatives of what was computed from it are wrong.
+/// Mesa 22.3 looks for uniforms that a branch reads, to inline their values. Its table has rows of
+/// four offsets, but it writes to it as if rows had 32 (`lvp_inline_uniforms.c`, `uni_offsets[ubo *
+/// PIPE_MAX_CONSTANT_BUFFERS + i]`). So the offsets of the fourth block overwrite the table of
+/// counts that follows. The next draw then reads a push constant that does not exist, and the
+/// process crashes. `forward` with a shadow has a branch on its fourth block. Storage blocks have
+/// the same layout and are not looked at. But at the edge of a triangle they read as 0 in the
+/// helper invocations of a quad, so that derivatives of anything computed from them are wrong.
 const LAVAPIPE_BLOCKS: usize = 3;
 const LAVAPIPE_DETOUR: &str = "uniform blocks were bound as storage blocks: lavapipe crashes where a branch reads the fourth of a stage";
 
 impl Gpu {
-    /// Draws the frame of every view and reads it back.
+    /// Draws the frame of each view and reads it back.
     pub(super) fn frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         let used: Vec<_> = std::iter::once(drawing.vertex)
             .chain(drawing.fragment)
@@ -84,7 +84,7 @@ impl Gpu {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
 
-    /// Without a layout, it is made from what the stages use.
+    /// Makes the pipeline. Without a layout, that is derived from what the stages use.
     fn mesh_pipeline(
         &self,
         drawing: &Drawing<'_>,
@@ -159,17 +159,17 @@ fn depth_state(state: State) -> wgpu::DepthStencilState {
     }
 }
 
-/// Shaders of the device with their entry points.
+/// The stages as shaders of the device, with their entry points.
 #[derive(Clone, Copy)]
 struct Stages<'a> {
     vertex: (&'a wgpu::ShaderModule, &'a str),
     fragment: Option<(&'a wgpu::ShaderModule, &'a str)>,
 }
 
-/// What is drawn into every frame, on the device.
+/// The meshes that are drawn into every frame, on the device.
 struct Meshes(Vec<Uploaded>);
 
-/// Bind groups of an item, by their index.
+/// The bind groups of an item, with their index.
 type Groups = Vec<(u32, wgpu::BindGroup)>;
 
 impl Meshes {
@@ -177,7 +177,7 @@ impl Meshes {
         Self(drawing.items.iter().map(|item| Uploaded::new(gpu, item.mesh)).collect())
     }
 
-    /// Draws one frame, each item with its groups, and has it copied to where it can be read.
+    /// Draws one frame, each item with its bind groups, and copies it to where it can be read.
     fn pass(
         &self,
         gpu: &Gpu,
@@ -236,8 +236,8 @@ impl Uploaded {
     }
 }
 
-/// The uniform blocks to bind otherwise, so that no stage has too many: as few of the plain ones
-/// as will do, or all blocks.
+/// The uniform blocks to bind as storage blocks, so that no stage has too many: as few of the plain
+/// ones as are enough, or all blocks.
 fn spared(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<Place> {
     let blocks: Vec<BTreeSet<Place>> = stages
         .iter()
@@ -256,7 +256,7 @@ fn spared(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<Place> 
     if fits(&spared) { spared } else { blocks.into_iter().flatten().collect() }
 }
 
-/// The module with some uniform blocks declared as storage blocks that are read.
+/// The module with some uniform blocks declared as read-only storage blocks.
 fn storage_blocks(module: &naga::Module, places: &BTreeSet<Place>) -> naga::Module {
     let mut module = module.clone();
     for (_, variable) in module.global_variables.iter_mut() {
@@ -273,7 +273,7 @@ fn words(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// Bindings that the entry point uses: those of the derived layout.
+/// The bindings that the entry point uses, which are those of the derived layout.
 fn used(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(stage.module);
     let info = info.map_err(|error| failed(format!("the program is not valid: {error}")))?;

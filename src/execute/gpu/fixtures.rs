@@ -1,10 +1,11 @@
-//! Fixtures as textures and samplers of a device.
+//! Uploads fixtures as textures and samplers of a device.
 
 use super::pipeline;
 use crate::eval::{half_from, half_to};
 use crate::execute::fixture::{Address, Compare, Sampler, Texture};
 
-/// Depth cannot be copied into a texture, only drawn: the shader that draws it.
+/// The shader that draws depth. Not every device can copy into a depth texture, but all can draw
+/// into it.
 const DEPTH: &str = "
 @group(0) @binding(0) var stored: texture_2d<u32>;
 @vertex fn triangle(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -15,12 +16,12 @@ const DEPTH: &str = "
     return bitcast<f32>(textureLoad(stored, vec2u(position.xy), 0).x);
 }";
 
-/// A view of the texture with its texels in place.
+/// Uploads a texture; returns a view of it.
 pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
     upload_levels(device, queue, texture, &[])
 }
 
-/// A view of a texture with smaller levels, which colours may have.
+/// Uploads a texture with its smaller levels, which only colours may have.
 pub fn upload_levels(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -61,7 +62,7 @@ pub fn sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
         address_mode_w: address,
         mag_filter: filter,
         min_filter: filter,
-        // Between levels, where a texture has them.
+        // Filters between levels too, where a texture has them.
         mipmap_filter: if sampler.linear && compare.is_none() {
             wgpu::MipmapFilterMode::Linear
         } else {
@@ -72,8 +73,8 @@ pub fn sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
     })
 }
 
-/// A texture with all its levels in 32 bits, or in 16 where those say the same and the device
-/// filters no others.
+/// A colour texture with all its levels. It has 32 bits a channel, or 16 where the device cannot
+/// filter 32 and 16 bits represent every value exactly.
 fn color(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -224,7 +225,7 @@ fn create(
     })
 }
 
-/// Copies the bytes of so many layers into a level of the texture; `texture` has that level's size.
+/// Copies bytes into one level of the texture; `texture` has the size of that level.
 fn write(
     queue: &wgpu::Queue,
     target: &wgpu::Texture,

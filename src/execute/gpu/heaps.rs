@@ -4,10 +4,10 @@
 //! |---|---|
 //! | 0 | the heap of samplers |
 //! | 1 | the heap of comparison samplers |
-//! | 2 + N | the numbers of group N: where in its heap each sampler is |
+//! | 2 + N | for group N, the place of each sampler in its heap
 //!
-//! Every other element of a heap is a sampler that gives other results, so that a number that was
-//! read from the wrong place shows.
+//! All other elements of a heap are samplers that give other results. So an index that was read
+//! from the wrong place changes the picture.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroU32;
@@ -18,13 +18,13 @@ use super::fixtures;
 use crate::bundle::{HeapSampler, SamplerHeap};
 use crate::execute::fixture::{Address, Compare, Sampler};
 
-/// Bindings in front of the buffers with numbers.
+/// Bindings before those of the index buffers.
 const HEAPS: u32 = 2;
-/// Places in a heap: the first that is used, and the distance to the next.
+/// The place of the first sampler in a heap, and the distance to the next one.
 const FIRST: u32 = 5;
 const STEP: u32 = 7;
 
-/// The name of each heap and of each buffer of numbers in the output, and its binding.
+/// The name of each heap and of each index buffer in the output, with its binding.
 pub fn bindings(heaps: &[SamplerHeap]) -> impl Iterator<Item = (String, u32)> {
     let samplers = heaps.iter().flat_map(|heap| &heap.samplers);
     let buffers = samplers.map(|sampler| {
@@ -33,7 +33,7 @@ pub fn bindings(heaps: &[SamplerHeap]) -> impl Iterator<Item = (String, u32)> {
     heaps.iter().map(|heap| (heap.name.clone(), u32::from(heap.comparison))).chain(buffers)
 }
 
-/// The bind group of the heaps of all stages, with its layout. `sampler` gives the sampler of a
+/// The bind group with the heaps of all stages, and its layout. `sampler` gives the sampler at a
 /// group and a binding.
 pub fn bind(
     device: &wgpu::Device,
@@ -66,7 +66,7 @@ pub fn bind(
     Ok((layout, group))
 }
 
-/// Bindings without gaps, since wgpu numbers them so: both heaps, and a buffer for each group up
+/// Bindings without gaps, as wgpu numbers them: both heaps, and an index buffer for each group up
 /// to the last.
 fn layout_entries(heaps: &[SamplerHeap]) -> Vec<wgpu::BindGroupLayoutEntry> {
     let array = |kind| (wgpu::BindingType::Sampler(kind), NonZeroU32::new(size(heaps)));
@@ -105,7 +105,7 @@ fn array(
     Ok(array)
 }
 
-/// Elements of each heap.
+/// How many elements each heap has.
 fn size(heaps: &[SamplerHeap]) -> u32 {
     heaps.iter().map(|heap| heap.size).max().unwrap_or(1)
 }
@@ -114,19 +114,19 @@ fn samplers(heaps: &[SamplerHeap]) -> impl Iterator<Item = &HeapSampler> {
     heaps.iter().flat_map(|heap| &heap.samplers)
 }
 
-/// Groups up to the last that has samplers.
+/// How many groups there are, up to the last one that has samplers.
 fn groups(heaps: &[SamplerHeap]) -> u32 {
     samplers(heaps).map(|sampler| sampler.group + 1).max().unwrap_or(0)
 }
 
-/// Where in its heap each sampler goes.
+/// The place of each sampler in its heap.
 fn places(heaps: &[SamplerHeap]) -> BTreeMap<[u32; 2], u32> {
     let all: BTreeSet<[u32; 2]> =
         samplers(heaps).map(|sampler| [sampler.group, sampler.binding]).collect();
     all.into_iter().zip((FIRST..).step_by(STEP as usize)).collect()
 }
 
-/// The numbers of each group, at least one.
+/// The content of each group's index buffer, which has at least one number.
 fn numbers(heaps: &[SamplerHeap], places: &BTreeMap<[u32; 2], u32>) -> Vec<Vec<u32>> {
     let mut numbers = vec![vec![0]; groups(heaps) as usize];
     for sampler in samplers(heaps) {
@@ -145,7 +145,7 @@ fn buffer(device: &wgpu::Device, numbers: &[u32]) -> wgpu::Buffer {
     })
 }
 
-/// What no case asks for.
+/// A sampler with settings that no case uses.
 fn decoy(comparison: bool) -> Sampler {
     let compare = comparison.then_some(Compare::Greater);
     Sampler { compare, linear: false, address: Address::Mirror }

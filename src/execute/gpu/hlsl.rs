@@ -1,9 +1,8 @@
-//! Emitted HLSL as SPIR-V: what a Direct3D driver would do, done for a Vulkan driver.
+//! Compiles emitted HLSL to SPIR-V, so that a Vulkan driver can run it.
 //!
-//! glslangValidator compiles the text as it is. Three things that a host of Direct3D says beside
-//! the text are then written into the SPIR-V: an input layout and the stages find each other by
-//! semantics, which become locations; register spaces of sampler heaps, and of the buffers with
-//! places in them, become bindings of one group, since Vulkan has no registers of separate kinds.
+//! glslangValidator compiles the text unchanged. Direct3D matches inputs by semantics, which become
+//! locations in the SPIR-V. Sampler heaps and their index buffers have registers of separate kinds
+//! there. Vulkan has no such kinds, so they become bindings of one group.
 
 use std::collections::BTreeMap;
 
@@ -22,8 +21,8 @@ const BINDING: u32 = 33;
 const DESCRIPTOR_SET: u32 = 34;
 const USER_SEMANTIC: u32 = 5635;
 
-/// What of a text means something else to glslangValidator than to a compiler of Direct3D, so that
-/// it cannot be run by way of it.
+/// What in the text has another meaning to glslangValidator than to a compiler for Direct3D, so
+/// that the text cannot be run this way.
 pub fn lacks(text: &str) -> Option<&'static str> {
     if is_misplaced(text) {
         return Some(
@@ -44,9 +43,9 @@ pub fn lacks(text: &str) -> Option<&'static str> {
     named("ldexp").then_some("glslangValidator takes no integer for the exponent of ldexp")
 }
 
-/// Whether a constant buffer has members that glslangValidator puts elsewhere than Direct3D: the
-/// last row of a matrix or element of an array ends at its last number, and naga fills the rest
-/// with a member of its own.
+/// Whether glslangValidator gives members of a constant buffer other offsets than Direct3D does. In
+/// Direct3D the last row of a matrix, or the last element of an array, ends with its last number,
+/// and naga adds a member to fill the rest.
 fn is_misplaced(text: &str) -> bool {
     let is_short = |line: &str| {
         let is_matrix = line.contains("row_major float") && line.contains("x3 ");
@@ -56,10 +55,10 @@ fn is_misplaced(text: &str) -> bool {
     text.lines().zip(text.lines().skip(1)).any(|(line, next)| is_short(line) && is_filler(next))
 }
 
-/// The text as SPIR-V, its samplers' heaps in bind group `group`.
+/// Compiles the text to SPIR-V. Its sampler heaps go into bind group `group`.
 ///
 /// # Errors
-/// In words: those of glslangValidator and spirv-opt, or what is not installed.
+/// The message of glslangValidator or spirv-opt, or which of them is not installed.
 pub fn spirv(text: &[u8], stage: Stage, native: &Native, group: u32) -> Result<Vec<u32>, String> {
     let stage = match stage {
         Stage::Vertex => "vert",
@@ -84,13 +83,13 @@ pub fn spirv(text: &[u8], stage: Stage, native: &Native, group: u32) -> Result<V
         ],
         text,
     )?;
-    // Static samplers are variables until now, which Vulkan does not know.
+    // The static samplers are still variables here, which Vulkan does not allow.
     let legal = SPIRV_OPT
         .pipe(&["--target-env=vulkan1.1", "--legalize-hlsl", "-o", "-", "-"], &compiled)?;
     bound(&words(&legal), native, group)
 }
 
-/// Locations by semantics, and bindings of heaps.
+/// Writes locations after semantics, and bindings for heaps.
 fn bound(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String> {
     let places = places(words, native);
     let locations = locations(words)?;
@@ -115,7 +114,7 @@ fn bound(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String>
     Ok(out)
 }
 
-/// The binding of each variable that is a heap or a buffer of places, by its name.
+/// The binding of each variable that is a heap or an index buffer, found by its name.
 fn places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
     let by_name: BTreeMap<String, u32> = heaps::bindings(&native.sampler_heaps).collect();
     let mut places = BTreeMap::new();
@@ -129,12 +128,12 @@ fn places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
             _ => {}
         }
     }
-    // A struct may be called as its variable is: it has no descriptor set.
+    // A struct may have the same name as its variable, but it has no descriptor set.
     places.retain(|id, _| variables.contains(id));
     places
 }
 
-/// The location that the semantic `LOCn` of each variable says.
+/// The location of each variable, from the number in its semantic `LOCn`.
 fn locations(words: &[u32]) -> Result<BTreeMap<u32, u32>, String> {
     let mut locations = BTreeMap::new();
     for instruction in instructions(words) {

@@ -1,4 +1,4 @@
-//! Runs kernels through wgpu, without a surface. What the GPU executors share.
+//! What the executors on GPUs share: runs kernels through wgpu, without a window.
 
 mod draw;
 mod fixtures;
@@ -26,7 +26,7 @@ use crate::emit::Emitted;
 use passthrough::Binary;
 use pipeline::Prepared;
 
-/// Longest wait for one draw: a hundred thousand times what one takes.
+/// The longest wait for one draw: a hundred thousand times what one usually takes.
 const PATIENCE: Duration = Duration::from_secs(60);
 const TARGET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
@@ -36,11 +36,11 @@ pub struct Gpu {
     shaders: Shaders,
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// Errors that no scope caught, and the loss of the device.
+    /// Errors that no error scope caught, and the loss of the device.
     faults: Arc<Mutex<Vec<String>>>,
     vertex: wgpu::ShaderModule,
     prepared: HashMap<u64, Prepared>,
-    /// Shipped stages as SPIR-V, by their bytes and the group of their heaps.
+    /// Shipped stages as SPIR-V, by their bytes and the bind group of their heaps.
     binaries: Mutex<HashMap<(Vec<u8>, u32), Binary>>,
     runs: u32,
 }
@@ -70,7 +70,8 @@ impl Session for Gpu {
     }
 }
 
-/// The results of as many draws as the inputs take; `draw` is given the words and the count of one.
+/// Runs as many draws as the inputs need. `draw` is given the words and the number of invocations
+/// of one draw.
 pub fn batched(
     kernel: &Kernel,
     inputs: &[u32],
@@ -88,7 +89,7 @@ pub fn batched(
 }
 
 impl Gpu {
-    /// One draw: the result words of `count` invocations.
+    /// Runs one draw; the result words of `count` invocations.
     fn draw(
         &mut self,
         kernel: &Kernel,
@@ -247,7 +248,7 @@ impl Gpu {
         Ok(words)
     }
 
-    /// Runs wgpu calls with every error caught, panics of the driver layer included.
+    /// Runs calls of wgpu with every error caught, panics below wgpu included.
     fn guarded<T>(&self, calls: impl FnOnce(&Self) -> T) -> Result<T, Diagnostic> {
         let filters = [
             wgpu::ErrorFilter::Validation,
@@ -273,7 +274,7 @@ impl Gpu {
     }
 }
 
-/// The input texture's words, header first, whole rows.
+/// The words of the input texture, in whole rows, with the header first.
 pub fn input_texels(kernel: &Kernel, inputs: &[u32], header: [u32; 4]) -> Vec<u32> {
     let stride = kernel.input_words().max(1) as usize;
     let padding = (kernel.input_texels() * 4 - kernel.input_words()) as usize;
@@ -289,7 +290,7 @@ pub fn input_texels(kernel: &Kernel, inputs: &[u32], header: [u32; 4]) -> Vec<u3
     texels
 }
 
-/// The result words, once echo and padding prove that the target was written as meant.
+/// The result words, once the echo and the padding show that the target was written as intended.
 pub fn unpack(kernel: &Kernel, pixels: &[u32], header: [u32; 4]) -> Result<Vec<u32>, Diagnostic> {
     let pixel = |index: usize| &pixels[index * 4..index * 4 + 4];
     let last = header[1] as usize - 1;

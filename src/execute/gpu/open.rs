@@ -16,11 +16,11 @@ const VERTEX: &str = "
     return vec4f(vec2f(corner) * 2.0 - 1.0, 0.0, 1.0);
 }";
 
-/// Which device to open, and what it is given.
+/// Which device to open, and what shaders it gets.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
     pub backend: wgpu::Backends,
-    /// Part of the adapter's name that it must have, or must not have.
+    /// What the adapter's name must contain, or must not.
     pub named: Named,
     pub shaders: Shaders,
 }
@@ -37,16 +37,16 @@ pub enum Named {
 pub enum Shaders {
     /// wgpu translates naga's module.
     Translated,
-    /// What the crate emits, as it is.
+    /// The crate emits it, and the driver gets it unchanged.
     Emitted(Target),
 }
 
 impl Shaders {
-    /// What a device must be able to do.
+    /// The features that the device must have.
     fn features(self) -> wgpu::Features {
         match self {
             Self::Translated => wgpu::Features::empty(),
-            // Samplers are in arrays, and a number in a buffer says which.
+            // Samplers are in arrays, which are indexed with a number from a buffer.
             Self::Emitted(Target::HLSL) => {
                 wgpu::Features::PASSTHROUGH_SHADERS | wgpu::Features::TEXTURE_BINDING_ARRAY
             }
@@ -64,8 +64,8 @@ impl Named {
     }
 }
 
-/// Opens the preferred adapter of a backend: a software one where there is one, since its
-/// numbers are the same on every machine. The error is in words.
+/// Opens the preferred adapter of a backend. A software adapter is preferred, since its numbers are
+/// the same on every machine. The error is a message.
 pub fn open(wanted: Wanted) -> Result<Gpu, String> {
     let descriptor = wgpu::InstanceDescriptor {
         backends: wanted.backend,
@@ -117,10 +117,10 @@ fn adapters(instance: &wgpu::Instance, backend: wgpu::Backends) -> Vec<wgpu::Ada
     }
 }
 
-/// Adapters of OpenGL, said to filter 32-bit floats as all from 3.0 on do: wgpu looks for
-/// extensions that a core profile need not name.
+/// The adapters of OpenGL, marked as able to filter 32-bit floats. From version 3.0 on all can, but
+/// wgpu looks for extensions that a core profile need not list.
 fn filtering(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
-    // SAFETY: the instance is borrowed all the while.
+    // SAFETY: the instance is borrowed for as long as the handle is used.
     let Some(hal) = (unsafe { instance.as_hal::<wgpu::hal::api::Gles>() }) else {
         return Vec::new();
     };
@@ -136,20 +136,20 @@ fn filtering(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     exposed.into_iter().map(adapter).collect()
 }
 
-/// OpenGL filters across the edges of a cube's faces only where it is told to, as WebGPU means it;
-/// wgpu does not tell it.
+/// Makes OpenGL filter across the edges of cube faces, as WebGPU demands. OpenGL does so only if it
+/// is enabled, and wgpu does not enable it.
 fn filter_seams(device: &wgpu::Device) {
     // SAFETY: the device has just been made, and is not destroyed here.
     let Some(device) = (unsafe { device.as_hal::<wgpu::hal::api::Gles>() }) else { return };
     let context = device.context().lock();
-    // OpenGL ES 3 knows no other way.
+    // OpenGL ES 3 always filters that way.
     if !context.version().is_embedded {
         // SAFETY: the lock makes the context current.
         unsafe { context.enable(glow::TEXTURE_CUBE_MAP_SEAMLESS) };
     }
 }
 
-/// Collects what would otherwise be a panic.
+/// Collects errors that would otherwise be panics.
 fn watch(device: &wgpu::Device) -> Arc<Mutex<Vec<String>>> {
     let faults = Arc::new(Mutex::new(Vec::new()));
     let sink = Arc::clone(&faults);

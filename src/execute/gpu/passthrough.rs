@@ -1,24 +1,24 @@
-//! Emitted files as SPIR-V that a Vulkan driver takes as it is.
+//! Turns emitted files into SPIR-V that a Vulkan driver gets unchanged.
 
 use super::hlsl;
 use crate::bundle::{Native, SamplerHeap, Stage, Target};
 use crate::emit::spirv::words;
 
-/// One stage, ready for the driver.
+/// One stage as SPIR-V.
 #[derive(Debug, Clone)]
 pub struct Binary {
     words: Vec<u32>,
     entry: String,
-    /// Heaps that the stage takes its samplers from, if its target has such.
+    /// The heaps that the stage takes its samplers from, if its target has heaps.
     pub heaps: Vec<SamplerHeap>,
 }
 
 impl Binary {
-    /// The bytes of a target that SPIR-V can be had of. Sampler heaps go into the bind group
-    /// `heaps`.
+    /// The stage from the bytes of a target, if those can become SPIR-V. Sampler heaps go into the
+    /// bind group `heaps`.
     ///
     /// # Errors
-    /// In words: those of the translator.
+    /// The message of the translator.
     pub fn new(
         target: Target,
         stage: Stage,
@@ -35,12 +35,12 @@ impl Binary {
         Ok(Self { words, entry, heaps })
     }
 
-    /// Its entry point.
+    /// The name of its entry point.
     pub fn entry(&self) -> &str {
         &self.entry
     }
 
-    /// As a shader of the device.
+    /// The stage as a shader module of the device.
     pub fn module(&self, device: &wgpu::Device, label: &str) -> wgpu::ShaderModule {
         let entry = wgpu::PassthroughShaderEntryPoint {
             name: self.entry.as_str().into(),
@@ -52,8 +52,8 @@ impl Binary {
             spirv: Some(self.words.as_slice().into()),
             ..Default::default()
         };
-        // SAFETY: the words were written from a validated module; indices into arrays are not
-        // clamped in it, and the harness draws with indices that are within its own arrays.
+        // SAFETY: the words were written from a validated module. Indices into arrays are not
+        // clamped in it, and the harness only uses indices that are within its own arrays.
         unsafe { device.create_shader_module_passthrough(descriptor) }
     }
 }

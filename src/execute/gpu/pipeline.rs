@@ -1,20 +1,20 @@
-//! A kernel's pipeline and the bindings that stay the same over its draws.
+//! A kernel's pipeline, and the bindings that are the same for all its draws.
 
 use super::passthrough::Binary;
 use super::{TARGET_FORMAT, fixtures, heaps};
 use crate::execute::fixture::{Fixture, Sampler};
 use crate::execute::kernel::{ENTRY, Kernel, ResourceClass};
 
-/// Everything of a kernel that a device keeps.
+/// What a device keeps for a kernel.
 pub struct Prepared {
     pub pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     resources: Vec<(u32, Bound)>,
-    /// Group [`HEAPS`], where the shader takes its samplers from heaps.
+    /// The bind group [`HEAPS`], if the shader takes its samplers from heaps.
     pub heaps: Option<wgpu::BindGroup>,
 }
 
-/// The bind group of sampler heaps: the kernel's own is the first.
+/// The index of the bind group with sampler heaps. The kernel's own group comes first.
 pub const HEAPS: u32 = 1;
 
 enum Bound {
@@ -23,8 +23,8 @@ enum Bound {
 }
 
 impl Prepared {
-    /// Compiles the kernel, of which `emitted` is the shader if it is given to the driver as it
-    /// is, and uploads its fixtures. Errors of the device go to its error scopes.
+    /// Compiles the kernel and uploads its fixtures. If `emitted` is given, the driver gets it
+    /// unchanged as the kernel's shader. Errors of the device go to its error scopes.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -138,11 +138,12 @@ fn sampler(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<Sampler> {
     }
 }
 
-/// Samplers have a place here in any case: wgpu numbers bindings without gaps, and an emitted
-/// shader has the author's numbers.
+/// The layout of the kernel's bindings. Samplers have a binding in any case, since wgpu numbers
+/// bindings without gaps and an emitted shader has the author's numbers.
 fn layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
     let inputs = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
-    // Not every device filters textures of f32: only kernels that filter colours need one that does.
+    // Not every device can filter f32 textures, so filtering is asked for only where a kernel
+    // filters colours.
     let filterable = kernel
         .resources()
         .any(|resource| matches!(&*resource.fixture, Fixture::Sampler(sampler) if sampler.linear && sampler.compare.is_none()));

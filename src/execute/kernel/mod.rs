@@ -1,9 +1,10 @@
-//! A function under test, wrapped into a fragment shader that every executor can run.
+//! Wraps a function under test into a fragment shader that every executor can run.
 //!
-//! One invocation is one call. Its arguments lie as 32-bit words in a `Rgba32Uint` texture, its
-//! result goes as words to a `Rgba32Uint` target: exact to the bit, renderable on every backend
-//! (`Rgba32Float` is not, on the GL driver of Mesa), and free of storage buffers, whose values
-//! have wrong derivatives along the diagonal of a full-screen triangle on software drivers.
+//! Each invocation is one call. Its arguments are 32-bit words in a `Rgba32Uint` texture, and its
+//! result goes as words to a `Rgba32Uint` target. So results are exact to the bit. Every backend
+//! can render to this format, but not every one to `Rgba32Float`: Mesa's GL driver cannot. Storage
+//! buffers are avoided, since on software drivers derivatives of their values are wrong along the
+//! diagonal of a full-screen triangle.
 //!
 //! | texture | texel | holds |
 //! |---|---|---|
@@ -12,7 +13,7 @@
 //! | target, [`TARGET_WIDTH`] wide | first, last | echo: the header with `ECHO ^ index` as last word |
 //! | | `1 + i*p + j` | words `4j..4j+4` of invocation `i`, `p` = [`Kernel::result_texels`] |
 //!
-//! Pixels after the last invocation repeat it: no fragment returns early.
+//! Pixels after the last invocation repeat it, so that no fragment returns early.
 
 mod shape;
 mod varying;
@@ -33,15 +34,15 @@ use crate::limits::CASE_WORK;
 
 /// Texels in a row of the input texture.
 pub const INPUT_WIDTH: u32 = 1024;
-/// Pixels in a row of the target: rows of 4,096 bytes, which need no padding when copied.
+/// Pixels in a row of the target. A row has 4,096 bytes, so it needs no padding when it is copied.
 pub const TARGET_WIDTH: u32 = 256;
-/// Rows that every backend allows for a texture.
+/// The most rows of a texture that every backend allows.
 pub const MAX_ROWS: u32 = 8192;
-/// Invocations of one draw, if their words fit.
+/// The most invocations of one draw, if their words fit.
 pub const BATCH: u32 = 65_536;
-/// Last word of an echo pixel, exclusive-or its index.
+/// The last word of an echo pixel is this, exclusive-or the pixel's index.
 pub const ECHO: u32 = 0x6c61_6d70;
-/// Every word of a pixel that nothing was written to.
+/// The value of every word of a pixel that nothing was written to.
 pub const SENTINEL: u32 = 0xdead_beef;
 /// Name of the fragment entry point.
 pub const ENTRY: &str = "lamplight_kernel";
@@ -56,7 +57,7 @@ pub struct Parameter {
 /// Where a parameter's value comes from.
 #[derive(Debug, Clone)]
 pub enum ParameterKind {
-    /// Words of the input, from `offset` on.
+    /// Words of the input, beginning with the one at `offset`.
     Words { offset: u32, shape: Shape },
     /// A global binding, filled from a fixture.
     Resource(Resource),
@@ -70,7 +71,7 @@ pub struct Resource {
     pub fixture: Arc<Fixture>,
 }
 
-/// What the shader declares the binding to be.
+/// What the shader declares a binding as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResourceClass {
     Texture { dim: ImageDimension, arrayed: bool, class: ImageClass },
@@ -80,7 +81,7 @@ pub enum ResourceClass {
 /// A function with an entry point around it, ready for any [`super::Session`].
 #[derive(Debug)]
 pub struct Kernel {
-    /// Distinguishes kernels within a process: sessions keep pipelines by it.
+    /// Distinguishes the kernels of a process, since sessions keep pipelines for them.
     pub id: u64,
     /// Name of the function under test.
     pub name: String,
@@ -89,7 +90,7 @@ pub struct Kernel {
     /// The function under test in `module`.
     pub function: Handle<Function>,
     pub parameters: Vec<Parameter>,
-    /// The function's result, then what it left behind its pointer parameters.
+    /// The function's result, then the values behind its pointer parameters after the call.
     pub results: Vec<Shape>,
     /// Steps that all calls of it together may take on the evaluator.
     pub steps: u64,
@@ -121,7 +122,7 @@ impl Kernel {
         self.results.iter().flat_map(Shape::kinds).collect()
     }
 
-    /// Parameters that are words: name and shape, in the order of their words.
+    /// The parameters that are words: name and shape, in the order of their words.
     pub fn words(&self) -> impl Iterator<Item = (&str, &Shape)> {
         self.parameters.iter().filter_map(|parameter| match &parameter.kind {
             ParameterKind::Words { shape, .. } => Some((parameter.name.as_str(), shape)),
@@ -137,7 +138,7 @@ impl Kernel {
         })
     }
 
-    /// Most invocations of one draw.
+    /// The most invocations of one draw.
     pub fn batch(&self) -> u32 {
         let by_inputs = (MAX_ROWS * INPUT_WIDTH - 1) / self.input_texels().max(1);
         let by_results = (MAX_ROWS * TARGET_WIDTH - 2) / self.result_texels();
@@ -148,7 +149,8 @@ impl Kernel {
 /// Wraps `function` of a module; textures and samplers among its parameters are bound to the
 /// fixtures of their names.
 ///
-/// Errors: no such function, a parameter or result that is no 32-bit data, a missing fixture.
+/// It is an error if there is no such function, if a parameter or the result does not consist of
+/// 32-bit values, or if a fixture is missing.
 pub fn build(
     module: &Module,
     function: &str,

@@ -1,9 +1,9 @@
-//! The shape of a value as 32-bit words: how arguments and results are flattened.
+//! The shape of a value as 32-bit words, which is how arguments and results are flattened.
 
 use naga::{ArraySize, Handle, Module, ScalarKind, Type, TypeInner};
 
-/// A value of a shader, without layout: its words follow each other in the order of declaration,
-/// matrices by columns, without padding.
+/// A type without layout: its words follow each other in the order of declaration, matrices by
+/// columns, without padding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Shape {
     /// One word: f32, i32, u32 or bool.
@@ -33,7 +33,7 @@ const fn column(size: u32) -> Shape {
 }
 
 impl Shape {
-    /// The shape of a naga type; `None` for what no words can hold.
+    /// The shape of a naga type; `None` for a type whose values are not words.
     pub fn of(module: &Module, ty: Handle<Type>) -> Option<Self> {
         match module.types[ty].inner {
             TypeInner::Scalar(scalar) => word(scalar).map(Self::Scalar),
@@ -82,8 +82,8 @@ impl Shape {
         }
     }
 
-    /// The part named by a path of member names, array indices, numbers of matrix columns and
-    /// letters of vector components, with its first word.
+    /// The part at a path, with the index of its first word. A path consists of member names, array
+    /// indices, numbers of matrix columns, and letters of vector components.
     pub fn part(&self, path: &[String]) -> Option<(u32, &Self)> {
         let Some((first, rest)) = path.split_first() else { return Some((0, self)) };
         let (skipped, inner) = match self {

@@ -1,5 +1,5 @@
-//! A function in a fragment stage whose inputs vary and whose result is used: what a compiler for
-//! real GPUs is asked about.
+//! Wraps a function into a fragment stage whose inputs vary and whose result is used. The costs on
+//! real GPUs are measured on this.
 
 use naga::{
     BinaryOperator as Op, Binding, Expression, FunctionArgument, FunctionResult, Interpolation,
@@ -10,16 +10,16 @@ use super::wrap::{Body, Source, Value, entered};
 use super::{Shape, find, pointee, resource_class, untestable};
 use crate::diagnostic::{Diagnostic, codes};
 
-/// Vectors of four words that a stage can take: vertices have 32 attributes, and one of them is
-/// the position.
+/// The most vectors of four words that a stage can take: vertices have 32 attributes, and one of
+/// them is the position.
 const VECTORS: u32 = 31;
 
 /// Two modules with [`super::ENTRY`] as their only entry point: one that calls the function, and
 /// one that only takes its arguments.
 ///
-/// Both take the words of the arguments as the components of interpolated vectors, and write the
-/// exclusive-or of all of them. The first also mixes the words of the result in, so that the
-/// difference between the two is what the function costs.
+/// Both take the words of the arguments as components of interpolated vectors, and write the
+/// exclusive-or of all of them. The first also includes the words of the result. So the difference
+/// between the two is what the function costs.
 ///
 /// # Errors
 /// There is no such function, or it has a parameter that is not made of 32-bit values, or more of
@@ -64,7 +64,7 @@ pub fn varying(module: &Module, function: &str) -> Result<[Module; 2], Diagnosti
 }
 
 impl Body<'_> {
-    /// The stage's arguments, as words.
+    /// The stage's inputs, as words.
     fn inputs_that_vary(&mut self, words: u32) -> Vec<Value> {
         let ty = self.vector(VectorSize::Quad, ScalarKind::Float);
         let mut values = Vec::new();
@@ -80,7 +80,7 @@ impl Body<'_> {
         values
     }
 
-    /// Returns four words that depend on all inputs and all results.
+    /// Returns four words that depend on all inputs and on all results.
     fn mix(&mut self, inputs: &[Value], results: &[Value]) {
         let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
         let zero = self.add(Expression::Literal(naga::Literal::U32(0)));

@@ -1,5 +1,5 @@
-//! The fragment entry point around a function, in naga's representation: the same for modules
-//! that came from WESL and from GLSL.
+//! Builds the fragment entry point around a function. It works on naga's modules, so it is the same
+//! for WESL and for GLSL.
 
 mod words;
 
@@ -22,8 +22,8 @@ pub fn wrap(module: &Module, kernel: &Kernel) -> Result<(Module, Handle<Function
     Ok((module, function))
 }
 
-/// The module with its entry points replaced by one fragment stage, and without what that does not
-/// reach.
+/// The module with one fragment stage as its only entry point, and without anything that this does
+/// not reach.
 pub(super) fn entered(
     module: &Module,
     write: impl FnOnce(&mut Body<'_>) -> Result<(), Diagnostic>,
@@ -48,7 +48,7 @@ pub(super) fn entered(
     Ok(module)
 }
 
-/// The function that the entry point calls: compaction renumbers handles.
+/// Finds the function that the entry point calls, since compaction changes handles.
 fn called(module: &Module) -> Option<Handle<Function>> {
     module.entry_points[0].function.body.iter().find_map(|statement| match statement {
         Statement::Call { function, .. } => Some(*function),
@@ -60,7 +60,7 @@ fn lost(name: &str) -> Diagnostic {
     Diagnostic::error(codes::UNTESTABLE_FUNCTION, format!("`{name}` could not be wrapped"))
 }
 
-/// The entry point while it grows.
+/// The entry point that is being built.
 pub(super) struct Body<'a> {
     pub(super) module: &'a mut Module,
     pub(super) function: Function,
@@ -70,7 +70,7 @@ pub(super) struct Body<'a> {
 pub(super) enum Source {
     /// A texture or a sampler, by its binding in group 0.
     Binding(u32),
-    /// Words, from this one on.
+    /// Words, of which this is the first.
     Words(u32),
 }
 
@@ -83,14 +83,14 @@ impl Source {
     }
 }
 
-/// What the fragment's position says.
+/// What the fragment finds out from its position.
 struct Place {
-    /// Pixel index in the target.
+    /// The pixel's index in the target.
     index: Value,
     header: Value,
     /// First input texel of the invocation.
     first: Value,
-    /// Which four words of the result this pixel holds.
+    /// Which four words of the result the pixel holds.
     part: Value,
 }
 
@@ -185,7 +185,7 @@ impl Body<'_> {
         })
     }
 
-    /// Every word of the invocation's arguments, as u32.
+    /// All words of the invocation's arguments, as u32.
     fn arguments(&mut self, inputs: Value, place: &Place, kernel: &Kernel) -> Vec<Value> {
         let mut words = Vec::new();
         for texel in 0..kernel.input_texels() {
@@ -197,7 +197,7 @@ impl Body<'_> {
         words
     }
 
-    /// Calls the function and flattens what it returns and what it leaves behind pointers.
+    /// Calls the function, and flattens what it returns and what is behind its pointers afterwards.
     pub(super) fn call(
         &mut self,
         name: &str,
@@ -261,7 +261,7 @@ impl Body<'_> {
         pointer
     }
 
-    /// The echo in the first and the last pixel, the value everywhere else.
+    /// Writes the echo in the first and the last pixel, and the value in all others.
     fn echo(&mut self, place: &Place, value: Value) -> Value {
         let magic = self.literal(ECHO);
         let mark = self.binary(Op::ExclusiveOr, place.index, magic);

@@ -1,10 +1,10 @@
-//! Vertices: what they take, and what becomes of them.
+//! Vertices before and after the vertex stage.
 
 use naga::{Binding, BuiltIn};
 
 use crate::execute::frame::Mesh;
 
-/// What the vertex stage made of a vertex, or clipping of an edge.
+/// A vertex after the vertex stage, or one that clipping made on an edge.
 #[derive(Debug, Clone)]
 pub struct Corner {
     pub clip: [f64; 4],
@@ -21,7 +21,7 @@ pub enum Source {
     None,
 }
 
-/// The source of each scalar, from the bindings of all.
+/// The source of each scalar, from the bindings of all scalars.
 pub fn sources(bindings: &[Option<Binding>]) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::with_capacity(bindings.len());
     for binding in bindings {
@@ -31,7 +31,7 @@ pub fn sources(bindings: &[Option<Binding>]) -> Vec<Source> {
             None => Source::None,
         };
         let first = source(0);
-        // Scalars of one vector follow each other.
+        // The scalars of one vector follow each other.
         let component = sources.iter().rev().take_while(|earlier| same(**earlier, first)).count();
         sources.push(source(component));
     }
@@ -46,7 +46,7 @@ fn same(a: Source, b: Source) -> bool {
     }
 }
 
-/// A component of an attribute of a vertex; 0 where the mesh has none.
+/// A component of a vertex attribute; 0 where the mesh has no such attribute.
 pub fn attribute(mesh: &Mesh, vertex: u32, location: u32, component: usize) -> u32 {
     let sizes = mesh.attributes.iter().map(|attribute| attribute.format.words() as usize);
     let mut first = vertex as usize * sizes.clone().sum::<usize>();

@@ -1,4 +1,4 @@
-//! Stages in our own interpreter, in f32 rounded to nearest, on all cores.
+//! Runs stages on our own evaluator, in f32 rounded to nearest, on all cores.
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Binding, BuiltIn};
@@ -11,7 +11,7 @@ use crate::eval::{Function, FunctionId, Kind, Machine, Number, Program, Resource
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
 use crate::execute::interpreter::failed;
 
-/// Quads that are worth a thread.
+/// How many quads are worth a task of their own.
 const CHUNK: usize = 64;
 
 /// The stages of a program, lowered.
@@ -43,7 +43,8 @@ impl Lowered {
             .validate(stage.module)
             .map_err(|error| unusable(format!("the program is not valid: {error}")))?;
         let program = Program::new(stage.module, &info).map_err(failed)?;
-        // GLSL has a plain function of that name too; entry points come after functions.
+        // GLSL also has a plain function of that name. Entry points come after functions, so the
+        // last one is meant.
         let found = program.functions().filter(|(_, function)| function.name == stage.entry).last();
         let missing = || unusable(format!("the program has no entry point `{}`", stage.entry));
         let (function, signature) =

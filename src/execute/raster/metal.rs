@@ -1,4 +1,4 @@
-//! Stages as compiled MSL, from the very bytes that are shipped.
+//! Runs stages as compiled MSL, from the bytes that are shipped.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -21,7 +21,7 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    /// Compiles stages; what clang refuses fails when it is drawn.
+    /// Compiles stages. One that clang refuses fails when it is drawn.
     ///
     /// # Errors
     /// clang is missing or cannot be run.
@@ -32,7 +32,7 @@ impl Compiled {
         Ok(Self { stages, program })
     }
 
-    /// Draws with two of the stages, by their index, in the place of those that the drawing names.
+    /// Draws with two of the stages, by their index, instead of those that the drawing names.
     ///
     /// # Errors
     /// What is wrong with the texts, or how they failed.
@@ -45,9 +45,9 @@ impl Compiled {
         self.draw_pair(vertex, fragment, drawing, false)
     }
 
-    /// As [`Self::draw`], with targets that tell what each fragment was given behind those of the
-    /// drawing: one for each location that the stage takes, one for its position, and one whose
-    /// first word says whether it is of a front face.
+    /// As [`Self::draw`], with more targets after those of the drawing, which hold what each
+    /// fragment was given: one for each location that the stage takes, one for its position, and
+    /// one whose first word says whether it belongs to a front face.
     ///
     /// # Errors
     /// Those of [`Self::draw`].
@@ -106,11 +106,11 @@ struct Pair<'c> {
     compiled: &'c Compiled,
     vertex: Stage,
     fragment: Option<Stage>,
-    /// Where fragments tell what they were given: how many targets they have.
+    /// How many targets hold what fragments were given, if that is asked for.
     watched: Option<usize>,
 }
 
-/// Scalars of so many locations.
+/// The sources of the scalars of `locations` locations.
 fn located(locations: u32) -> impl Iterator<Item = Source> {
     (0..locations).flat_map(|location| (0..4).map(move |i| Source::Location(location, i)))
 }
@@ -185,8 +185,8 @@ impl Shading for Pair<'_> {
     }
 }
 
-/// A fragment from the scalars of [`Shading::taken`]: four of each location, four of the position,
-/// and one that says whether it is of a front face.
+/// A fragment from the scalars of [`Shading::taken`]: four for each location, four for the
+/// position, and one that says whether it belongs to a front face.
 fn fragment(slots: &[f32]) -> Fragment {
     let (four, rest) = slots.as_chunks::<4>();
     let (position, locations) =
@@ -198,7 +198,7 @@ fn fragment(slots: &[f32]) -> Fragment {
     }
 }
 
-/// What a fragment was given, as targets.
+/// What a fragment was given, as words of targets.
 fn told(fragment: &Fragment) -> impl Iterator<Item = [u32; 4]> + '_ {
     let position = fragment.position.map(f32::to_bits);
     let front = [u32::from(fragment.front), 0, 0, 0];

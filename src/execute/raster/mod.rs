@@ -1,10 +1,10 @@
-//! Frames without a device: something on the CPU runs the stages, and this draws the triangles.
+//! Draws frames without a device: the stages run on the CPU, and this rasterizes the triangles.
 //!
 //! `corners (vertex stage) -> triangles (clipped) -> what each pixel shows -> quads (fragment stage)`
 //!
-//! The stages run in our own interpreter ([`evaluated`]) or as compiled MSL ([`metal`]). The
-//! fragment stage runs for what is visible alone, in quads of 2 x 2 in step, their hidden
-//! fragments as helpers: programs that discard or write depth are not what it is for.
+//! The stages run on our own evaluator ([`evaluated`]) or as compiled MSL ([`metal`]). The fragment
+//! stage runs only for visible fragments, in quads of 2 x 2 in lock-step, with hidden fragments as
+//! helpers. So programs that discard fragments or write depth are not supported.
 
 mod corners;
 mod evaluated;
@@ -29,13 +29,14 @@ pub trait Shading {
     /// Runs the vertex stage for every vertex of a mesh.
     fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic>;
 
-    /// What each scalar of a corner is, and whether it holds for a whole triangle.
+    /// What each scalar of a vertex is, and whether it is flat: the same for a whole triangle.
     fn given(&self) -> Vec<(Source, bool)>;
 
-    /// What each scalar is that the fragment stage takes; `None` without one.
+    /// What each scalar is that the fragment stage takes; `None` if there is no fragment stage.
     fn taken(&self) -> Option<Vec<Source>>;
 
-    /// Runs the fragment stage. Buffers are the first resources, textures and samplers the second.
+    /// Runs the fragment stage. The first resources are buffers, the second ones textures and
+    /// samplers.
     fn shade(
         &self,
         buffers: Buffers,
@@ -47,7 +48,7 @@ pub trait Shading {
 /// Four fragments of a triangle.
 pub struct Quad {
     pub pixels: [(u32, u32); 4],
-    /// Which of them show the triangle; the others help.
+    /// Which of them show the triangle. The others are helpers.
     pub covered: [bool; 4],
     /// The scalars that the stage takes.
     pub arguments: [Vec<f32>; 4],
@@ -62,9 +63,9 @@ pub fn draw_frames(drawing: &Drawing<'_>, shading: &dyn Shading) -> Result<Vec<F
     drawing.views.iter().map(|view| frame(drawing, view, shading, &textures)).collect()
 }
 
-/// What was drawn of a view, before it is shaded.
+/// What was drawn of a view, before shading.
 struct Drawn {
-    /// Of each item.
+    /// The vertices of each item.
     corners: Vec<Vec<Corner>>,
     triangles: Vec<Triangle>,
     seen: Seen,
@@ -130,7 +131,7 @@ fn levels(texture: &Texture) -> Vec<Level> {
     eval::Texture::from(texture).levels
 }
 
-/// Between levels, where a texture has them.
+/// The sampler, with filtering between levels where a texture has levels.
 fn mipped(sampler: eval::Sampler) -> eval::Sampler {
     let linear = sampler.min == Filter::Linear && sampler.compare.is_none();
     eval::Sampler {
@@ -140,7 +141,7 @@ fn mipped(sampler: eval::Sampler) -> eval::Sampler {
     }
 }
 
-/// A target that nothing has been drawn to.
+/// A target with nothing drawn into it.
 fn cleared([width, height]: [u32; 2]) -> Vec<u32> {
     vec![SENTINEL; 4 * width as usize * height as usize]
 }

@@ -1,4 +1,4 @@
-//! The fragment stage, for what is visible.
+//! Runs the fragment stage for visible fragments.
 
 use naga::BuiltIn;
 
@@ -9,7 +9,8 @@ use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
 use crate::execute::frame::{Buffers, Drawing};
 
-/// Rows that are shaded at a time, whole quads: what keeps the arguments of large frames small.
+/// How many rows are shaded at a time, in whole quads. This bounds the memory for the arguments of
+/// large frames.
 const ROWS: u32 = 256;
 
 /// The targets of a frame.
@@ -39,10 +40,10 @@ pub fn run(
     Ok(targets)
 }
 
-/// Where each scalar of the fragment stage comes from.
+/// The source of a scalar of the fragment stage.
 #[derive(Debug, Clone, Copy)]
 enum Wire {
-    /// A slot of the corners, in perspective or that of the first.
+    /// A slot of the vertices, interpolated in perspective. A flat one is that of the first vertex.
     Smooth(usize),
     Flat(usize),
     Position(usize),
@@ -64,7 +65,7 @@ fn wiring(given: &[(Source, bool)], taken: &[Source]) -> Vec<Wire> {
     taken.iter().map(wire).collect()
 }
 
-/// What is seen, and how it is looked up.
+/// What is visible, and how to look it up.
 struct Screen<'a> {
     drawn: &'a Drawn,
     size: [u32; 2],
@@ -72,7 +73,7 @@ struct Screen<'a> {
 }
 
 impl Screen<'_> {
-    /// The quads of some rows that show an item, each triangle of a quad by itself.
+    /// The quads of some rows that show an item; each triangle in a quad is a quad of its own.
     fn quads(&self, item: usize, rows: std::ops::Range<u32>) -> Vec<Quad> {
         let mut quads = Vec::new();
         let places =
@@ -119,7 +120,7 @@ impl Screen<'_> {
     }
 }
 
-/// Puts what fragments gave to their pixels.
+/// Writes the results of fragments to their pixels.
 fn store(targets: &mut [Vec<u32>], width: u32, quad: &Quad, shaded: &Shaded) {
     for lane in (0..4).filter(|lane| quad.covered[*lane]) {
         let (x, y) = quad.pixels[lane];

@@ -1,4 +1,4 @@
-//! Triangles: clipped, placed on the frame, and seen or hidden.
+//! Clips triangles, places them on the frame, and finds which are visible.
 
 use super::corners::Corner;
 use crate::execute::frame::{Mesh, Side, State};
@@ -7,12 +7,12 @@ use crate::execute::frame::{Mesh, Side, State};
 #[derive(Debug, Clone)]
 pub struct Triangle {
     pub item: usize,
-    /// Corners of the item, in the order that has a positive area on the frame.
+    /// Vertices of the item, in the order that gives a positive area on the frame.
     pub corners: [u32; 3],
-    /// The corner whose flat values hold for all.
+    /// The vertex whose flat values are those of the triangle.
     pub first: u32,
     pub front: bool,
-    /// Places in pixels, y down; depth; 1/w.
+    /// Positions in pixels, y down; depth; 1/w.
     points: [Point; 3],
     area: f64,
 }
@@ -25,7 +25,7 @@ struct Point {
     inverse_w: f64,
 }
 
-/// What each pixel shows.
+/// The visible triangle of each pixel.
 pub struct Seen {
     size: [u32; 2],
     pub depth: Vec<f32>,
@@ -33,13 +33,13 @@ pub struct Seen {
     pub triangle: Vec<u32>,
 }
 
-/// No triangle.
+/// Stands for no triangle.
 pub const NONE: u32 = u32::MAX;
 
-/// Steps of a pixel that places are rounded to, as hardware does.
+/// How many steps a pixel has to which positions are rounded, as in hardware.
 const SUBPIXELS: f64 = 256.0;
 
-/// Adds the triangles of a mesh; clipping adds corners.
+/// Adds the triangles of a mesh. Clipping adds vertices.
 pub fn assemble(
     mesh: &Mesh,
     item: usize,
@@ -62,9 +62,9 @@ pub fn assemble(
     }
 }
 
-/// The part of a triangle between the near and the far plane, as corners in order.
+/// The part of a triangle between the near and the far plane, as vertices in order.
 fn clipped(three: &[u32; 3], corners: &mut Vec<Corner>) -> Vec<u32> {
-    // Distances that are negative outside.
+    // Distances to the planes, negative outside.
     const PLANES: [fn(&[f64; 4]) -> f64; 3] =
         [|clip| clip[2], |clip| clip[3] - clip[2], |clip| clip[3] - 1e-9];
     let mut polygon = three.to_vec();
@@ -133,7 +133,7 @@ fn placed(
     if area == 0.0 || !area.is_finite() {
         return None;
     }
-    // With y down, what winds counter-clockwise has a negative area.
+    // With y down, a triangle that winds counter-clockwise has a negative area.
     let front = (area < 0.0) != state.mirrored;
     if state.cull == Some(if front { Side::Front } else { Side::Back }) {
         return None;
@@ -149,13 +149,13 @@ fn edge(a: Point, b: Point, x: f64, y: f64) -> f64 {
 }
 
 impl Triangle {
-    /// Shares of the corners at a place on the frame, in the frame's own measure; they add up to 1.
+    /// The barycentric coordinates of a point on the frame, without perspective; they add up to 1.
     fn shares(&self, x: f64, y: f64) -> [f64; 3] {
         let [a, b, c] = self.points;
         [edge(b, c, x, y), edge(c, a, x, y), edge(a, b, x, y)].map(|share| share / self.area)
     }
 
-    /// Shares of the corners at a place in perspective, the depth, and 1/w there.
+    /// The barycentric coordinates of a point in perspective, the depth there, and 1/w.
     pub fn at(&self, x: f64, y: f64) -> ([f64; 3], f64, f64) {
         let shares = self.shares(x, y);
         let weighted: [f64; 3] =
@@ -165,7 +165,7 @@ impl Triangle {
         (weighted.map(|weight| weight / inverse_w), depth, inverse_w)
     }
 
-    /// Whether a place that is on an edge belongs to the triangle: on its top or left edges.
+    /// Whether a point on an edge belongs to the triangle: only if it is a top or a left edge.
     fn covers(&self, x: f64, y: f64) -> bool {
         let [a, b, c] = self.points;
         [(b, c), (c, a), (a, b)].into_iter().all(|(from, to)| {
@@ -174,14 +174,14 @@ impl Triangle {
         })
     }
 
-    /// What polygon offset adds to the depth of every fragment.
+    /// What polygon offset adds to the depth of each fragment.
     fn offset(&self, [factor, units]: [f32; 2]) -> f64 {
         if factor == 0.0 && units == 0.0 {
             return 0.0;
         }
         let (here, along, down) = (self.at(0.0, 0.0).1, self.at(1.0, 0.0).1, self.at(0.0, 1.0).1);
         let slope = (along - here).abs().max((down - here).abs());
-        // The smallest step of a floating-point depth, at the triangle's largest.
+        // The smallest step of a floating-point depth, at the largest depth of the triangle.
         let largest = self.points.iter().map(|point| point.z as f32).fold(0.0, f32::max);
         let step = f64::from(largest).log2().floor().max(-126.0) - 23.0;
         f64::from(factor) * slope + f64::from(units) * step.exp2()

@@ -1,4 +1,4 @@
-//! Kernels, textures and samplers as the scripts take them.
+//! Writes kernels, textures and samplers in the form that the scripts take.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -11,15 +11,15 @@ use crate::emit::Emitted;
 use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture};
 use crate::execute::kernel::Kernel;
 
-/// Stages that may read a binding, in the numbers of WebGPU.
+/// The stages that may read a binding, as WebGPU's bits.
 const VERTEX_AND_FRAGMENT: u32 = 3;
 
-/// Bytes as text.
+/// Bytes as base64.
 pub fn bytes(bytes: &[u8]) -> String {
     BASE64_STANDARD.encode(bytes)
 }
 
-/// Words as text.
+/// Words as base64.
 pub fn words(words: &[u32]) -> String {
     let all: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     bytes(&all)
@@ -32,7 +32,7 @@ pub fn unpacked(value: &Value) -> Result<Vec<u32>, String> {
     Ok(bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect())
 }
 
-/// A kernel with what it is bound to.
+/// A kernel with everything that it is bound to.
 pub fn kernel(kernel: &Kernel, emitted: &Emitted) -> Result<Value, Diagnostic> {
     let code = str::from_utf8(&emitted.bytes).map_err(|error| failed(error.to_string()))?;
     let fixtures: Vec<((u32, u32), &Fixture)> =
@@ -55,7 +55,7 @@ pub fn kernel(kernel: &Kernel, emitted: &Emitted) -> Result<Value, Diagnostic> {
     }))
 }
 
-/// The key of a place in what the scripts take.
+/// The key of a binding in the JSON for the scripts.
 pub fn key((group, binding): (u32, u32)) -> String {
     format!("{group}/{binding}")
 }
@@ -70,12 +70,12 @@ pub fn unit(combined: &Combined) -> Value {
     })
 }
 
-/// Whether a texture is to be filtered: not every device filters textures of f32.
+/// Whether textures are filtered. Not every device can filter f32 textures.
 pub fn filters<'a>(mut fixtures: impl Iterator<Item = &'a Fixture>) -> bool {
     fixtures.any(|one| matches!(one, Fixture::Sampler(one) if one.linear && one.compare.is_none()))
 }
 
-/// The layout of a binding in WebGPU; without a fixture it is a uniform buffer.
+/// The layout of a binding in WebGPU. Without a fixture it is a uniform buffer.
 pub fn entry((_, binding): (u32, u32), fixture: Option<&Fixture>, filters: bool) -> Value {
     let mut entry = json!({ "binding": binding, "visibility": VERTEX_AND_FRAGMENT });
     match fixture {
@@ -101,7 +101,7 @@ pub fn entry((_, binding): (u32, u32), fixture: Option<&Fixture>, filters: bool)
     entry
 }
 
-/// A texture or a sampler with its place.
+/// A texture or a sampler with its binding.
 pub fn fixture(place: (u32, u32), fixture: &Fixture) -> Value {
     match fixture {
         Fixture::Texture(texture) => json!({ "place": key(place), "texture": image(texture) }),
@@ -120,7 +120,7 @@ fn image(texture: &Texture) -> Value {
     })
 }
 
-/// In the words of WebGPU.
+/// The sampler in WebGPU's terms.
 fn sampler(sampler: Sampler) -> Value {
     let address = match sampler.address {
         Address::Clamp => "clamp-to-edge",

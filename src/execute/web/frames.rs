@@ -1,4 +1,4 @@
-//! Frames from the bytes of a bundle, as the scripts take and give them.
+//! Draws frames from the bytes of a bundle, through the scripts.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,10 +12,10 @@ use crate::execute::fixture::Fixture;
 use crate::execute::frame::{Attribute, Buffers, Drawing, Frame, Item, Mesh, Place, State};
 use crate::execute::shipped::{Format, Shipped};
 
-/// What `frames` of the script is given.
+/// The argument of the script's function `frames`.
 ///
 /// # Errors
-/// What cannot be drawn here.
+/// The drawing needs something that is not supported here.
 pub fn question(api: Api, pair: Pair<'_>, drawing: &Drawing<'_>) -> Result<Value, Diagnostic> {
     for stage in [pair.vertex, pair.fragment] {
         if stage.target != api.target() {
@@ -55,7 +55,7 @@ pub fn question(api: Api, pair: Pair<'_>, drawing: &Drawing<'_>) -> Result<Value
     }))
 }
 
-/// The frames of an answer: the words of each target of each view.
+/// The frames in an answer: the words of each target for each view.
 pub fn answer(said: &Value) -> Result<Vec<Frame>, String> {
     let list = |value: &Value| match value {
         Value::Array(list) => Ok(list.clone()),
@@ -72,14 +72,14 @@ fn stage(shipped: &Shipped) -> Value {
     json!({ "code": shipped.text(), "entry": shipped.native.entry_name })
 }
 
-/// Everything that one of the stages reads.
+/// All bindings that one of the stages reads.
 fn places(pair: Pair<'_>) -> BTreeSet<Place> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     let bindings = stages.flat_map(|stage| &stage.reflection.bindings);
     bindings.map(|binding| (binding.group, binding.binding)).collect()
 }
 
-/// The layout of each group, from the first on.
+/// The layout of each group, in order.
 fn layout(
     drawing: &Drawing<'_>,
     places: &BTreeSet<Place>,
@@ -118,7 +118,7 @@ fn units(pair: Pair<'_>) -> Vec<Value> {
     stages.flat_map(|stage| &stage.native.combined).map(asked::unit).collect()
 }
 
-/// The uniform blocks of both stages of GLSL by their names, with a number for each place.
+/// The uniform blocks of both stages of GLSL by name, with a number for each group and binding.
 fn blocks(pair: Pair<'_>) -> Result<Vec<Value>, String> {
     let mut numbers: BTreeMap<Place, usize> = BTreeMap::new();
     let mut found = Vec::new();
@@ -140,7 +140,7 @@ fn mesh(mesh: &Mesh) -> Value {
         json!({
             "shaderLocation": one.location,
             "offset": offset,
-            // `Float32x3` is called `float32x3` there.
+            // WebGPU calls `Float32x3` `float32x3`.
             "format": format!("{:?}", one.format).to_lowercase(),
             "words": one.format.words(),
         })

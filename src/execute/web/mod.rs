@@ -1,8 +1,8 @@
-//! Emitted WGSL and GLSL ES as they are, in a page of a browser: WebGPU and WebGL2.
+//! Runs emitted WGSL and GLSL ES unchanged in a page of a browser, on WebGPU and WebGL2.
 //!
-//! The page's script (`webgpu.js`, `webgl2.js`) keeps kernels and draws; what it is given and what
-//! comes back are JSON, with textures and words as base64. A page that is lost is opened again: a
-//! kernel that ends its page fails, and the ones after it run.
+//! The page's script (`webgpu.js`, `webgl2.js`) keeps kernels and draws. Its arguments and results
+//! are JSON, with textures and words as base64. A page that is lost is opened again. So a kernel
+//! that crashes its page fails, and the kernels after it still run.
 
 mod asked;
 mod frames;
@@ -26,14 +26,14 @@ use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::validate::on_large_stack;
 
-/// Longest wait for one draw, or for compiling some kernels.
+/// The longest wait for one draw, or for compiling some kernels.
 const LONGEST: Duration = Duration::from_secs(60);
-/// Kernels that are compiled at once.
+/// How many kernels are compiled at once.
 const AT_ONCE: usize = 32;
 
 const COMMON: &str = include_str!("common.js");
 
-/// What a page offers.
+/// An interface that a page offers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Api {
     WebGpu,
@@ -63,10 +63,10 @@ impl Api {
     }
 }
 
-/// What starts the browser of a session.
+/// Starts the browser of a session.
 pub type Start = Box<dyn Fn() -> Result<Arc<Browser>, Problem> + Send>;
 
-/// A session: a page, opened again where it is lost.
+/// A session: a page, which is opened again if it is lost.
 pub struct Web {
     api: Api,
     start: Start,
@@ -80,20 +80,20 @@ pub struct Web {
 #[derive(Default)]
 struct State {
     page: Option<Page>,
-    /// Kernels that the page has, and why it has not.
+    /// The kernels that the page has, or why it has not.
     kept: HashMap<u64, Result<(), Diagnostic>>,
 }
 
-/// What the script gives back.
+/// An answer of the script.
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Answer {
     Value(Value),
-    /// What cannot be run here, in words.
+    /// What is needed and not supported here, as a message.
     Lacks(String),
     /// What went wrong with one kernel or frame.
     Error(String),
-    /// The device is gone, and all that it had.
+    /// The device was lost, and everything on it.
     Lost(String),
 }
 
@@ -101,12 +101,12 @@ impl Web {
     /// Opens a page.
     ///
     /// # Errors
-    /// In words: there is no browser, or it has no such interface.
+    /// A message: there is no browser, or it does not have the interface.
     pub fn open(api: Api) -> Result<Self, String> {
         Self::open_in(Box::new(Browser::shared), api, LONGEST)
     }
 
-    /// Opens a page of a browser; it has so long for each answer.
+    /// Opens a page of a browser, which may take `patience` for each answer.
     ///
     /// # Errors
     /// Those of [`Self::open`].
@@ -125,7 +125,7 @@ impl Web {
         Ok(web)
     }
 
-    /// A page with its device, and what that is called.
+    /// Opens a page and its device; also returns the device's name.
     fn opened(&self) -> Result<(Page, String), Problem> {
         let browser = (self.start)()?;
         let page = browser.open(&self.server.address(""))?;
@@ -136,7 +136,7 @@ impl Web {
         Ok((page, adapter))
     }
 
-    /// The script's answer. A lost page is no longer there afterwards.
+    /// Asks the script. If the page is lost, it is closed.
     fn ask(&self, state: &mut State, call: &str) -> Result<Value, Failure> {
         let page = match &state.page {
             Some(page) => page,
@@ -156,8 +156,8 @@ impl Web {
             Ok(Answer::Error(words)) => return Err(Failure::Of(failed(words))),
             Err(Problem::Threw(words)) => return Err(Failure::Of(failed(words))),
             Ok(Answer::Lost(words)) => Failure::Lost(failed(words)),
-            // What is slow once is slow again. It may go on in the process that draws for all
-            // pages, and nothing stops it there but the end of the browser.
+            // A page that was slow once is slow again. Its work may continue in the process that
+            // draws for all pages, where nothing stops it but the end of the browser.
             Err(problem @ Problem::Late { .. }) => {
                 page.end_browser();
                 Failure::Of(failed(problem.to_string()))
@@ -168,7 +168,8 @@ impl Web {
         Err(failure)
     }
 
-    /// Does something once more where the page is lost: another page may have ended the device.
+    /// Does something, and does it once more if the page is lost: another page may have caused
+    /// that.
     fn twice<T>(
         &self,
         mut job: impl FnMut(&Self, &mut State) -> Result<T, Failure>,
@@ -183,7 +184,7 @@ impl Web {
         })
     }
 
-    /// Gives those of the kernels that are new to the page, some at a time.
+    /// Gives the page the kernels that are new to it, some at a time.
     fn compile(&self, state: &mut State, kernels: &[&Kernel]) -> Result<(), Failure> {
         let new: Vec<&Kernel> =
             kernels.iter().copied().filter(|kernel| !state.kept.contains_key(&kernel.id)).collect();
@@ -245,7 +246,7 @@ impl Session for Web {
 
     fn prepare(&mut self, kernels: &[&Kernel]) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        // Where the page is lost over some, each is tried by itself when it is to run.
+        // If the page is lost over some of them, each is tried by itself when it is run.
         let _ = self.compile(&mut state, kernels);
     }
 
@@ -284,9 +285,9 @@ fn kept(said: Option<Answer>) -> Result<(), Diagnostic> {
 
 /// Why there is no answer.
 enum Failure {
-    /// Of what was asked.
+    /// Because of what was asked.
     Of(Diagnostic),
-    /// Of the page, perhaps for somebody else's reason.
+    /// Because the page was lost, perhaps through another page.
     Lost(Diagnostic),
 }
 

@@ -1,4 +1,4 @@
-//! Puts pieces together to a module.
+//! Puts pieces together into a module.
 
 use super::capabilities::{SHADER, extensions};
 use super::operands::op;
@@ -13,11 +13,11 @@ struct Node<'n> {
     shelf: Shelf,
     /// Where the piece's references start in the list of links.
     links: usize,
-    /// The first of the piece's own ids.
+    /// The id of the piece's first own id; the others follow.
     base: u32,
 }
 
-/// Marks a function whose callees are still being visited, to find recursion.
+/// Stands for a function whose callees are still being visited. Meeting it again is a recursion.
 const OPEN: u32 = u32::MAX;
 
 /// Collects the pieces of a new module, each after what it needs.
@@ -25,15 +25,15 @@ struct Linker<'n, 'a> {
     pool: &'n Pool,
     function: &'n dyn Fn(&str) -> Option<&'a Piece>,
     nodes: Vec<Node<'n>>,
-    /// The references of all nodes, as numbers of nodes, later as ids.
+    /// The references of all nodes: first as numbers of nodes, then as ids.
     links: Vec<u32>,
-    /// The node of each declaration of the pool, plus one.
+    /// For each declaration of the pool, one more than its node; 0 for none.
     declarations: Vec<u32>,
     users: FxHashMap<&'n str, u32>,
 }
 
 impl<'n, 'a: 'n> Linker<'n, 'a> {
-    /// Adds a piece after everything that it needs. The order follows from the pieces alone.
+    /// Adds a piece after everything that it needs. The order depends on the pieces alone.
     fn visit(&mut self, piece: &'n Piece, shelf: Shelf, depth: u32) -> Result<u32, String> {
         if depth == DEPTH {
             return Err("the calls are too deep".into());
@@ -81,7 +81,7 @@ impl<'n, 'a: 'n> Linker<'n, 'a> {
         Ok(node)
     }
 
-    /// Gives out the ids in the order in which the shelves are written, and returns the bound.
+    /// Numbers the ids in the order in which the shelves are written, and returns the bound.
     fn number(&mut self) -> u32 {
         let mut next = 1;
         for shelf in SHELVES {
@@ -96,7 +96,7 @@ impl<'n, 'a: 'n> Linker<'n, 'a> {
         next
     }
 
-    /// Writes one text of all nodes of some shelves.
+    /// Writes one section of all nodes on some shelves.
     fn write(&self, shelves: &[Shelf], text: fn(&Piece) -> &Text, out: &mut Vec<u32>) {
         for shelf in shelves {
             for node in self.nodes.iter().filter(|node| node.shelf == *shelf) {
@@ -106,13 +106,13 @@ impl<'n, 'a: 'n> Linker<'n, 'a> {
         }
     }
 
-    /// The capabilities of all nodes.
+    /// The capabilities that all nodes together need.
     fn needs(&self) -> BTreeSet<u32> {
         let needs = self.nodes.iter().flat_map(|node| &node.piece.needs).copied();
         needs.chain([SHADER]).collect()
     }
 
-    /// How many words the texts of all nodes have.
+    /// How many words all nodes together have.
     fn len(&self) -> usize {
         let texts = self
             .nodes
@@ -124,7 +124,7 @@ impl<'n, 'a: 'n> Linker<'n, 'a> {
 
 /// Writes an extension as an instruction.
 fn write_extension(name: &str, out: &mut Vec<u32>) {
-    // The bytes end with one nought at least, and with as many as fill the last word.
+    // The string ends with at least one zero byte; more fill its last word.
     let words = name.len() / 4 + 1;
     let mut bytes = name.as_bytes().to_vec();
     bytes.resize(words * 4, 0);

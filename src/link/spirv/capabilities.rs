@@ -7,10 +7,10 @@ use std::collections::BTreeSet;
 pub const SHADER: u32 = 1;
 pub const STORAGE_IMAGE_WRITE_WITHOUT_FORMAT: u32 = 56;
 const STORAGE_IMAGE_EXTENDED_FORMATS: u32 = 49;
-/// The decoration that makes a variable or a member a built-in one, which its operand names.
+/// The decoration `BuiltIn`, whose operand names the built-in variable.
 const BUILT_IN: u32 = 11;
 
-/// The extensions that capabilities come from.
+/// For each capability that needs an extension, the extension.
 const EXTENSIONS: [(u32, &str); 7] = [
     (4427, "SPV_KHR_shader_draw_parameters"),
     (4439, "SPV_KHR_multiview"),
@@ -21,12 +21,13 @@ const EXTENSIONS: [(u32, &str); 7] = [
     (6019, "SPV_KHR_integer_dot_product"),
 ];
 
-/// The extensions of capabilities, in order of their names.
+/// The extensions that capabilities need, sorted by name.
 pub fn extensions(needs: &BTreeSet<u32>) -> BTreeSet<&'static str> {
     EXTENSIONS.iter().filter(|row| needs.contains(&row.0)).map(|row| row.1).collect()
 }
 
-/// Notes the capabilities of an instruction, but for those that depend on another one.
+/// Notes the capabilities that an instruction needs. Those that depend on another instruction are
+/// noted elsewhere.
 pub fn require(inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
     match inst.op {
         op::TYPE_INT if inst.word(2)? == 8 => needs.extend([39]), // Int8

@@ -1,10 +1,11 @@
 //! Takes SPIR-V modules apart by function, and puts pieces of different modules together.
 //!
-//! A piece holds nothing that depends on the rest of its module: its own ids count from nought, and what
-//! it needs from outside is named by content or, for the author's functions, by name. So a module made of
-//! its own pieces has the same bytes as one made of equal pieces found elsewhere. For the same reason a piece
-//! loses what the writer adds to it on account of its neighbours: the names of constants, and loads for the
-//! functions that it calls.
+//! A piece holds nothing that depends on the rest of its module. Its own ids count from zero. What
+//! it needs from outside is named by content or, for the author's functions, by name. So a module
+//! made of its own pieces has the same bytes as one made of equal pieces found elsewhere.
+//!
+//! For the same reason a piece loses what naga adds because of other functions: the names of
+//! constants, and the loads of variables that only callees use.
 
 mod assemble;
 mod capabilities;
@@ -17,11 +18,13 @@ pub use split::split;
 
 use rustc_hash::FxHashMap;
 
-/// Magic number, version 1.0 and the generator number: other writers lay their modules out otherwise.
+/// Magic number, version 1.0 and the number of the generator, naga: other generators order their
+/// modules differently.
 const HEADER: [u32; 3] = [0x0723_0203, 0x0001_0000, 28];
 /// Logical addressing with the GLSL memory model, as one instruction.
 const MEMORY_MODEL: [u32; 3] = [3 << 16 | 14, 0, 1];
-/// Bounds the recursion through calls and nested types, so that bad content cannot fill the stack of a small thread.
+/// Bounds the recursion over calls and nested types, so that a malformed module cannot overflow the
+/// stack of a small thread.
 const DEPTH: u32 = 96;
 
 /// What a piece needs from outside.
@@ -37,14 +40,14 @@ enum Ref {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Text {
     words: Vec<u32>,
-    /// The places of the piece's own ids, which the words hold as they count from nought.
+    /// Where the words hold the piece's own ids, counted from zero.
     locals: Vec<u32>,
-    /// The places of ids from outside, with the number of the reference.
+    /// Where the words need ids from outside, each with the index of its reference.
     links: Vec<(u32, u32)>,
 }
 
 impl Text {
-    /// Copies the words and fills the ids in.
+    /// Copies the words and fills in the ids.
     fn write(&self, base: u32, links: &[u32], out: &mut Vec<u32>) {
         let start = out.len();
         out.extend_from_slice(&self.words);
@@ -62,20 +65,20 @@ impl Text {
     }
 }
 
-/// A function with everything it needs from outside by reference into the pool, or by name.
+/// A function. What it needs from outside is a reference: into the pool, or by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Piece {
-    /// The entry point instruction; empty for all but entry points.
+    /// The instruction `OpEntryPoint`; empty for all but entry points.
     entry: Text,
     modes: Text,
     names: Text,
     notes: Text,
     body: Text,
-    /// What is needed from outside, each once, in order of appearance.
+    /// What is needed from outside: each once, in order of appearance.
     refs: Vec<Ref>,
-    /// The capabilities that the text itself needs, in order.
+    /// The capabilities that its own instructions need, sorted.
     needs: Vec<u32>,
-    /// How many ids are the piece's own.
+    /// How many ids of its own it has.
     ids: u32,
 }
 
@@ -99,7 +102,7 @@ struct Declaration {
 #[derive(Debug, Default)]
 pub struct Pool {
     declarations: Vec<Declaration>,
-    /// The numbers of the declarations, by flat content.
+    /// The number of each declaration, by its content as words.
     numbers: FxHashMap<Box<[u32]>, u32>,
 }
 

@@ -1,4 +1,4 @@
-//! Reads a module just as far as its functions and the heads of its instructions.
+//! Reads a module only as far as needed: its functions, and the layout of each instruction.
 
 use super::capabilities::{self, SHADER, STORAGE_IMAGE_WRITE_WITHOUT_FORMAT, extensions};
 use super::operands::Section::{Body, Either, Global};
@@ -7,7 +7,8 @@ use super::{HEADER, MEMORY_MODEL};
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
-/// Vertex and fragment: the other stages have instructions of their own, which the table lacks.
+/// Vertex and fragment. The other stages have instructions of their own, which the table of
+/// operands lacks.
 const STAGES: [u32; 2] = [0, 4];
 
 /// What the module says of an id.
@@ -15,15 +16,15 @@ const STAGES: [u32; 2] = [0, 4];
 struct Id {
     /// The instruction that defines it.
     defined: Option<usize>,
-    /// The last name or decoration, as a place in the list of those.
+    /// Its last name or decoration, as an index into [`Module::about`].
     about: Option<usize>,
 }
 
-/// A module as it is read. Instructions go by their numbers.
+/// A module as it is read. Instructions are referred to by their index.
 pub struct Module<'a> {
     pub insts: Vec<Inst<'a>>,
     ids: Vec<Id>,
-    /// Names and decorations, each with the place of the one before it that is about the same id.
+    /// Names and decorations, each with the index of the one before it for the same id.
     about: Vec<(usize, Option<usize>)>,
 }
 
@@ -34,7 +35,7 @@ impl<'a> Module<'a> {
         if !header.starts_with(&HEADER) || header.last() != Some(&0) {
             return Err("the header is not of a known kind".into());
         }
-        // Bad content must not make the lists large.
+        // The bound is checked, since a malformed one could make the list of ids very long.
         let bound = header
             .get(3)
             .map(|&bound| bound as usize)
@@ -80,7 +81,7 @@ impl<'a> Module<'a> {
         self.ids.get(id as usize)?.defined
     }
 
-    /// The names and decorations of an id, the last first.
+    /// The names and decorations of an id, the last one first.
     pub fn about(&self, id: u32) -> impl Iterator<Item = &Inst<'a>> {
         let mut next = self.ids.get(id as usize).and_then(|id| id.about);
         std::iter::from_fn(move || {
@@ -90,10 +91,10 @@ impl<'a> Module<'a> {
         })
     }
 
-    /// What a piece tells of an id that is its own: names and decorations, sorted and each once.
+    /// The names and decorations of an id that belongs to a piece: sorted, each once.
     ///
-    /// Constants and most types lose their names: the writer gives `0u` the name of whichever constant of
-    /// the module has that value, so it would tell the module that the piece came from.
+    /// Constants and most types lose their names. naga gives `0u` the name of any constant of the
+    /// module that has this value, so the name would depend on the module that the piece came from.
     pub fn description(&self, id: u32) -> Vec<&Inst<'a>> {
         let defined = self.defined(id).and_then(|at| self.insts.get(at));
         let nameless =
@@ -120,7 +121,7 @@ impl<'a> Module<'a> {
         self.insts.iter().filter(move |inst| inst.op == op)
     }
 
-    /// The single entry point, of a stage and a memory model that are known.
+    /// The only entry point. Its stage and the memory model must be known ones.
     pub fn entry_point(&self) -> Result<&Inst<'a>, String> {
         let mut points = self.of(op::ENTRY_POINT);
         let (Some(point), None) = (points.next(), points.next()) else {
@@ -135,7 +136,7 @@ impl<'a> Module<'a> {
         Ok(point)
     }
 
-    /// The functions as ranges of instructions. Each instruction must stand where it may.
+    /// The functions, as ranges of instructions. Each instruction must stand in its section.
     fn spans(&self) -> Result<Vec<Range<usize>>, String> {
         let mut functions = vec![];
         let mut start = None;
@@ -171,7 +172,8 @@ impl<'a> Module<'a> {
         kind.is_some_and(|inst| inst.op == op::TYPE_IMAGE && inst.word(8) == Ok(0))
     }
 
-    /// The derived capabilities and extensions must be those that the module declares, or the tables lack some.
+    /// The capabilities and extensions that were derived must be those that the module declares. If
+    /// they are not, the tables lack some.
     pub fn check(&self) -> Result<(), String> {
         let mut needs = BTreeSet::from([SHADER]);
         self.insts.iter().try_for_each(|inst| self.require(inst, &mut needs))?;
@@ -191,7 +193,7 @@ impl<'a> Module<'a> {
     }
 }
 
-/// What a function is to the others.
+/// What a function is.
 pub enum Role {
     Entry,
     User(String),
@@ -203,7 +205,7 @@ pub struct Function {
     pub role: Role,
 }
 
-/// The functions in the order of the module, one of them the entry point's.
+/// The functions, in the order of the module. One of them is the entry point's.
 pub fn functions(module: &Module, is_user: &dyn Fn(&str) -> bool) -> Result<Vec<Function>, String> {
     let entry = module.entry_point()?.word(2)?;
     let (mut functions, mut entries, mut taken) = (vec![], 0, HashSet::new());

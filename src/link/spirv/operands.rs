@@ -1,6 +1,6 @@
-//! Tells the operands of instructions apart.
+//! The layout of each instruction's operands.
 
-/// Opcodes that need more than their operand layout.
+/// Opcodes that are treated by name.
 pub mod op {
     pub const NAME: u16 = 5;
     pub const MEMBER_NAME: u16 = 6;
@@ -128,14 +128,15 @@ pub struct Inst<'a> {
 }
 
 impl<'a> Inst<'a> {
-    /// Looks the opcode up in the table: one that is not there could hide ids that would not be renumbered.
+    /// Looks the opcode up in the table. An unknown instruction is refused, since ids in it would
+    /// not be renumbered.
     pub fn new(words: &'a [u32]) -> Result<Self, String> {
         let op = *words.first().ok_or("an instruction has no words")? as u16;
         let (section, layout) = layout(op).ok_or_else(|| format!("opcode {op} is not known"))?;
         Ok(Self { op, section, words, layout })
     }
 
-    /// A word by its place, the first holding the opcode.
+    /// The word at an index; the word at 0 has the opcode.
     pub fn word(&self, at: usize) -> Result<u32, String> {
         self.words.get(at).copied().ok_or_else(|| format!("opcode {} has too few words", self.op))
     }
@@ -150,7 +151,8 @@ impl<'a> Inst<'a> {
         self.words.get(at).copied()
     }
 
-    /// Shows each id with its place, the defined one too. The words must fit the layout.
+    /// Calls back with each id and its index, the defined id included. Fails where the words do not
+    /// fit the layout.
     pub fn ids(
         &self,
         mut show: impl FnMut(usize, u32) -> Result<(), String>,
@@ -168,7 +170,8 @@ impl<'a> Inst<'a> {
                     0,
                 ),
                 b'm' => (1, rest.len().min(1), rest.len().saturating_sub(1)),
-                // Volatile, aligned and nontemporal: the other bits bring scope ids.
+                // Memory operands `Volatile`, `Aligned` and `Nontemporal` are known: the others
+                // bring ids of scopes.
                 b'a' if rest.first().is_some_and(|mask| mask & !7 != 0) => {
                     return Err("a memory access is not known".into());
                 }

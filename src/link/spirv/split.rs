@@ -6,9 +6,11 @@ use super::{DEPTH, Declaration, Parts, Piece, Pool, Ref, Shelf, Text};
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
-/// Takes a module apart. `is_user` says which named functions are the author's: calls to those stay symbolic
-/// by name. Only those of them that `is_wanted` names become pieces, and so does the entry point by its own
-/// name, which a function may have too: the rest of the module is looked at no further than these need.
+/// Takes a module apart into pieces.
+///
+/// `is_user` says which named functions are the author's: calls to those are kept by name.
+/// `is_wanted` says which of them become pieces. The entry point becomes one by its own name, which
+/// a function may have too. Nothing that these do not need is looked at.
 pub fn split(
     words: &[u32],
     pool: &mut Pool,
@@ -38,30 +40,31 @@ pub fn split(
     Ok(parts)
 }
 
-/// What the splitter knows of an id.
+/// What is known of an id.
 #[derive(Clone, Copy, Default)]
 struct Id {
-    /// How often the piece that has the id as its own names it.
+    /// How often the piece that owns the id names it.
     uses: u32,
-    /// Its number among that piece's own ids.
+    /// Its index among the ids of that piece.
     own: Option<u32>,
     /// Its number in the pool.
     pool: Option<u32>,
-    /// Its reference in the piece that starts at an instruction, the last such piece.
+    /// The last piece that refers to it, by the index of that piece's first instruction, and the
+    /// index of the reference there.
     link: Option<(usize, u32)>,
 }
 
-/// What an id is to the piece that uses it.
+/// What an id is for the piece that names it.
 enum Target {
     Local(u32),
     Link(u32),
 }
 
-/// A piece in the making.
+/// A piece that is being made.
 struct Draft {
     span: Range<usize>,
     depth: u32,
-    /// The ids that are the piece's own, in order.
+    /// The piece's own ids, in order of appearance.
     own: Vec<u32>,
     needs: BTreeSet<u32>,
     piece: Piece,
@@ -79,7 +82,7 @@ struct Splitter<'m, 'a> {
     pool: &'m mut Pool,
     functions: &'m [Function],
     ids: Vec<Id>,
-    /// The numbers of the variables that are in the pool so far.
+    /// The numbers of the variables that are in the pool already.
     variables: HashSet<u32>,
 }
 
@@ -98,7 +101,7 @@ impl<'m, 'a> Splitter<'m, 'a> {
         self.ids.get_mut(id as usize).ok_or_else(|| format!("id {id} is out of bounds"))
     }
 
-    /// Makes a piece of a range of instructions, for a function or a single declaration.
+    /// Makes a piece from a range of instructions: a function, or a single declaration.
     fn draft(&mut self, span: Range<usize>, depth: u32) -> Result<Draft, String> {
         if depth == DEPTH {
             return Err("the declarations are too deep".into());
@@ -120,15 +123,15 @@ impl<'m, 'a> Splitter<'m, 'a> {
         Ok(draft)
     }
 
-    /// Counts how often ids are named, but by loads and access chains that nothing uses.
+    /// Counts how often ids are named, leaving out loads and access chains that nothing uses.
     ///
-    /// The writer starts a function with one for each module variable that the function or its callees use, so
-    /// those of the callees alone would tell which callees the module had.
+    /// naga starts a function with such a load for each module variable that the function or its
+    /// callees use. Loads for the callees alone would show which callees the module had.
     fn count(&mut self, insts: &[Inst]) -> Result<(), String> {
         for inst in insts {
             inst.ids(|_, id| self.id(id).map(|id| id.uses += 1))?;
         }
-        // An access chain may be there for an idle load only, so the last come first.
+        // Backwards, since an access chain may be used by an idle load alone.
         for inst in insts.iter().rev().filter(|inst| matches!(inst.op, op::LOAD | op::ACCESS_CHAIN))
         {
             if inst.result().is_some_and(|id| self.id(id).is_ok_and(|id| id.uses == 1)) {
@@ -138,12 +141,12 @@ impl<'m, 'a> Splitter<'m, 'a> {
         Ok(())
     }
 
-    /// Whether an instruction is a load or an access chain that was not counted.
+    /// Whether an instruction is a load or an access chain that nothing uses.
     fn is_idle(&mut self, inst: &Inst) -> Result<bool, String> {
         Ok(matches!(inst.op, op::LOAD | op::ACCESS_CHAIN) && self.id(inst.word(2)?)?.uses == 0)
     }
 
-    /// Appends an instruction to one of the texts.
+    /// Appends an instruction to one of the piece's texts.
     fn add(
         &mut self,
         draft: &mut Draft,
@@ -157,7 +160,8 @@ impl<'m, 'a> Splitter<'m, 'a> {
             let target = self.target(draft, id)?;
             let text = text(&mut draft.piece);
             let place = (start + at) as u32;
-            // No id of the module may stay behind, not even where it is overwritten: pieces are compared.
+            // Every id is overwritten with a number that depends on the piece alone, even where
+            // linking fills it in later: equal pieces must have equal words.
             let number = match target {
                 Target::Link(link) => {
                     text.links.push((place, link));
@@ -178,7 +182,7 @@ impl<'m, 'a> Splitter<'m, 'a> {
         })
     }
 
-    /// Finds out whether an id is the piece's own, and numbers it at its first appearance.
+    /// Finds out whether an id belongs to the piece, and numbers it when it first appears.
     fn target(&mut self, draft: &mut Draft, id: u32) -> Result<Target, String> {
         let known = *self.id(id)?;
         if self.module.defined(id).is_some_and(|at| draft.span.contains(&at)) {
@@ -202,7 +206,8 @@ impl<'m, 'a> Splitter<'m, 'a> {
         Ok(Target::Link(link as u32))
     }
 
-    /// What an id stands for outside its module. The instruction `user` refers to it and must come later.
+    /// What an id stands for outside its module. The instruction `user`, which refers to it, must
+    /// come later.
     fn outside(&mut self, id: u32, user: usize, depth: u32) -> Result<Ref, String> {
         let defined = self
             .module
@@ -228,15 +233,15 @@ impl<'m, 'a> Splitter<'m, 'a> {
         Ok(Ref::Pool(number))
     }
 
-    /// Moves a function that is not the author's to the pool.
+    /// Adds a function that is not the author's to the pool.
     fn helper(&mut self, span: Range<usize>, depth: u32) -> Result<u32, String> {
         let piece = self.draft(span, depth)?.finish();
         let key = key_of_helper(&piece).ok_or("a helper calls a function of the author's")?;
         self.pool.intern(&key, Declaration { shelf: Shelf::Function, piece })
     }
 
-    /// Moves a type, a constant, a variable or an import to the pool. Only what the pool lacks is made into a
-    /// piece: most modules have the same declarations.
+    /// Adds a type, a constant, a variable or an import to the pool. A declaration that the pool
+    /// has is not made into a piece again: most modules have the same ones.
     fn declaration(&mut self, at: usize, depth: u32) -> Result<u32, String> {
         let inst = self.module.insts.get(at).ok_or("a declaration is missing")?;
         if depth == DEPTH {
@@ -260,8 +265,9 @@ impl<'m, 'a> Splitter<'m, 'a> {
         }
     }
 
-    /// The content of a declaration: an ordinal, which keeps equal variables of one module apart, and the
-    /// words of the declaration, its names and its decorations, with pool numbers for ids and nought for its own.
+    /// The content of a declaration: its words, its names and its decorations, with the pool's
+    /// numbers for ids and zero for its own. An ordinal comes first, which tells equal variables of
+    /// one module apart.
     fn key(&mut self, user: usize, inst: &Inst, depth: u32) -> Result<Vec<u32>, String> {
         let module = self.module;
         let own = inst.result().ok_or("a declaration has no id")?;
@@ -290,8 +296,8 @@ impl<'m, 'a> Splitter<'m, 'a> {
         }
     }
 
-    /// Moves the variables that come before one and may equal it to the pool, so that its ordinal does not
-    /// depend on what is wanted.
+    /// Adds to the pool the variables before this one that may equal it. So its ordinal does not
+    /// depend on which pieces are wanted.
     fn declare_twins(&mut self, at: usize, depth: u32) -> Result<(), String> {
         let module = self.module;
         let Some((variable, before)) = module.insts.get(..=at).and_then(<[_]>::split_last) else {
@@ -336,7 +342,8 @@ impl<'m, 'a> Splitter<'m, 'a> {
     }
 }
 
-/// The content of a helper, flat, with a start that no declaration has. None if it depends on its module.
+/// The content of a helper as words, after a word with which no declaration starts. `None` if it
+/// depends on its module.
 fn key_of_helper(piece: &Piece) -> Option<Vec<u32>> {
     let mut key = vec![u32::MAX];
     for text in [&piece.body, &piece.names, &piece.notes] {
@@ -354,8 +361,8 @@ fn key_of_helper(piece: &Piece) -> Option<Vec<u32>> {
     Some(key)
 }
 
-/// Whether two variables may be equal: their storage classes are, and the names and decorations of one are
-/// among the other's.
+/// Whether two variables may be equal: they have the same storage class, and all names and
+/// decorations of one are among the other's.
 fn are_alike(module: &Module, one: &Inst, other: &Inst) -> bool {
     let (Ok(id), Ok(twin)) = (one.word(2), other.word(2)) else { return false };
     let same =

@@ -1,4 +1,4 @@
-//! One directive a line.
+//! Reads directives.
 
 use super::{
     BodyToken, Directive, Include, Kind, Macro, Module, Part, Symbol, Symbols, Token, known,
@@ -17,7 +17,7 @@ pub fn push(module: &mut Module, hash: usize, end: usize, symbols: &Symbols) {
     module.parts.push(Part::Directive(directive, span));
 }
 
-/// A conditional without its `#endif` yet.
+/// A conditional whose `#endif` was not reached yet.
 struct Open {
     /// Its branches so far, as indices of parts.
     branches: Vec<usize>,
@@ -190,7 +190,7 @@ impl Line<'_> {
         )
     }
 
-    /// What follows the directive's name; the name itself where nothing does.
+    /// The span after the directive's name; that of the name where nothing follows.
     fn rest(&self) -> Span {
         let tokens = &self.module.tokens;
         let first = self.start.min(self.end - 1);
@@ -230,7 +230,8 @@ impl Line<'_> {
         Ok(symbol)
     }
 
-    /// Malformed ones are conditionals all the same, or the rest of the file would be unbalanced.
+    /// Reads `#ifdef` or `#ifndef`. A malformed one still opens a conditional, since the rest of
+    /// the file would be unbalanced otherwise.
     fn ifdef(&self, directive: &str, negated: bool) -> Directive {
         Directive::Ifdef { name: self.only_name(directive).map_err(Box::new), negated, next: 0 }
     }
@@ -241,7 +242,7 @@ impl Line<'_> {
             .at(span, "cannot be defined or undefined")
     }
 
-    /// Reads the raw text: a path is not made of tokens.
+    /// Reads the path from the raw text, since a path does not consist of tokens.
     fn include(&self) -> Result<Include, Diagnostic> {
         let rest = self.rest();
         let text = &self.module.text[rest.start as usize..];
@@ -291,7 +292,7 @@ impl Line<'_> {
         Ok(Macro { name, name_span, parameters: names.map(|names| names.len()), body })
     }
 
-    /// The names between the parentheses, and how many tokens those take.
+    /// The names between the parentheses, and how many tokens they take.
     fn parameters(&self) -> Result<(Vec<Symbol>, usize), Diagnostic> {
         let mut names = Vec::new();
         let mut index = 2;

@@ -1,8 +1,8 @@
-//! Text to tokens, once for each file.
+//! Splits text into tokens, once for each file.
 
 use super::symbols::{Symbol, Symbols};
 
-/// What a token is, as far as the preprocessor cares.
+/// What a token is, as far as that matters to the preprocessor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Identifier,
@@ -12,7 +12,7 @@ pub enum Kind {
     Other,
 }
 
-/// One token and what stands before it.
+/// A token, and what stands before it.
 #[derive(Debug, Clone, Copy)]
 pub struct Token {
     /// Spelling, without line continuations.
@@ -23,14 +23,16 @@ pub struct Token {
     pub end: u32,
     /// Class.
     pub kind: Kind,
-    /// White space or a comment stands before it.
+    /// Whether white space or a comment stands before it.
     pub spaced: bool,
-    /// It is the first of its logical line.
+    /// Whether it is the first of its logical line.
     pub first_of_line: bool,
-    /// It is the first of its part of the file: of a run of text, or of a directive.
+    /// Whether it is the first token of its part of the file, which is a run of text or a
+    /// directive.
     pub first_of_part: bool,
-    /// It can be copied together with what stands before it: neither has line continuations,
-    /// carriage returns, trailing white space or runs of blank lines, and no directive is between.
+    /// Whether it can be copied together with what stands before it. That must have no line
+    /// continuations, carriage returns, trailing white space or runs of blank lines, and no
+    /// directive may be between.
     pub clean: bool,
 }
 
@@ -41,16 +43,16 @@ impl Token {
     }
 }
 
-/// Where tokenising failed.
+/// Why and where a text cannot be split into tokens.
 #[derive(Debug)]
 pub enum LexError {
-    /// A `/*` at this byte without its `*/`.
+    /// The `/*` at this byte has no `*/`.
     OpenComment(usize),
-    /// More tokens than the limit; the byte of the first one too many.
+    /// There are more tokens than the limit; this is the byte of the first one beyond it.
     TooMany(usize),
 }
 
-/// All tokens of a text, at most `limit`.
+/// Splits a text into tokens, at most `limit`.
 pub fn tokenize(text: &str, symbols: &mut Symbols, limit: usize) -> Result<Vec<Token>, LexError> {
     let mut tokens = Vec::with_capacity(text.len() / 4);
     let mut at = 0;
@@ -85,7 +87,7 @@ pub fn tokenize(text: &str, symbols: &mut Symbols, limit: usize) -> Result<Vec<T
     }
 }
 
-/// The byte after the logical line that `at`, outside of tokens, stands on.
+/// The byte after the logical line that `at` stands on; `at` is outside of tokens.
 pub fn line_end(text: &str, mut at: usize) -> usize {
     let bytes = text.as_bytes();
     while at < bytes.len() {
@@ -126,7 +128,7 @@ fn skip_gap(bytes: &[u8], mut at: usize) -> Result<Gap, LexError> {
     }
 }
 
-/// Length of a line continuation at this byte, else 0.
+/// Length of a line continuation at this byte; 0 if there is none.
 fn splice(bytes: &[u8], at: usize) -> usize {
     match bytes.get(at..) {
         Some([b'\\', b'\r', b'\n', ..]) => 3,
@@ -205,7 +207,7 @@ fn punctuation(rest: &[u8]) -> usize {
     usize::from(b"#()[]{}<>,;:?.+-*/%!~&|^=".contains(&rest[0]))
 }
 
-/// The class of a spelling if it is exactly one token.
+/// The class of a spelling, if that is exactly one token.
 pub fn single_token(text: &str) -> Option<Kind> {
     if text.is_empty() {
         return None;

@@ -1,6 +1,6 @@
 //! GLSL files as the preprocessor sees them: runs of text between directives.
 //!
-//! A file is tokenised once, whatever is active in it later.
+//! A file is tokenised once. Which parts of it are active is decided later.
 
 mod directive;
 mod lexer;
@@ -28,12 +28,12 @@ pub struct Module {
     pub parts: Vec<Part>,
     /// Every `#include`, active or not.
     pub includes: Vec<Include>,
-    /// What is wrong with the file as a whole, whichever parts are active.
+    /// Errors that do not depend on which parts are active.
     pub errors: Vec<Diagnostic>,
     line_starts: Vec<u32>,
 }
 
-/// Whole lines of a file.
+/// A part of a file, in whole lines.
 #[derive(Debug)]
 pub enum Part {
     Text(Text),
@@ -49,8 +49,8 @@ pub struct Text {
     pub bytes: Range<u32>,
 }
 
-/// A line that begins with `#`. Numbers named `next` and `end` are indices of parts: the branch
-/// that follows, and the `#endif`.
+/// A line that begins with `#`. `next` and `end` are indices of parts: of the branch that follows,
+/// and of the `#endif`.
 #[derive(Debug)]
 pub enum Directive {
     /// Index into [`Module::includes`].
@@ -75,7 +75,7 @@ pub enum Directive {
         end: usize,
     },
     Endif,
-    /// The author's words.
+    /// The author's message.
     Error(Span),
     /// Tokens after `#line`.
     Line(Range<u32>),
@@ -92,7 +92,7 @@ pub enum Directive {
     Pragma(Span),
     /// A `#` alone.
     Empty,
-    /// Wrong in itself; an error only where it is active.
+    /// A malformed directive. It is an error only where it is active.
     Invalid(Box<Diagnostic>),
 }
 
@@ -123,9 +123,9 @@ pub struct BodyToken {
     pub symbol: Symbol,
     pub kind: Kind,
     pub spaced: bool,
-    /// The parameter it names.
+    /// The index of the parameter that it names, if it names one.
     pub parameter: Option<u16>,
-    /// A `##` joins it to the next.
+    /// Whether a `##` joins it to the next.
     pub pasted: bool,
 }
 
@@ -135,7 +135,7 @@ impl Module {
         self.line_starts.partition_point(|start| *start <= byte)
     }
 
-    /// The part of text that holds a token.
+    /// The part of the file, of text, that has a token.
     pub fn text_part(&self, token: u32) -> Option<&Text> {
         let after = self.parts.partition_point(|part| match part {
             Part::Text(text) => text.bytes.start <= self.tokens[token as usize].start,
@@ -209,7 +209,8 @@ fn split(module: &mut Module, symbols: &Symbols) {
     }
 }
 
-/// Index of the first token from `start` on that is one sought, or the number of tokens.
+/// The index of the first token from `start` on for which `is_sought` holds, or the number of
+/// tokens.
 fn find_from(tokens: &[Token], start: usize, is_sought: impl Fn(&Token) -> bool) -> usize {
     tokens[start..].iter().position(is_sought).map_or(tokens.len(), |offset| start + offset)
 }

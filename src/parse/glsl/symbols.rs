@@ -1,4 +1,4 @@
-//! Interned spellings, so that tokens are small and compare by number.
+//! Spellings as numbers, so that tokens are small and cheap to compare.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -16,7 +16,8 @@ impl Symbol {
 
 macro_rules! known {
     ($($name:ident $text:literal)*) => {
-        /// Spellings that the composer itself knows, the same numbers in every [`Symbols`].
+        /// Spellings that the composer itself uses. They have the same numbers in every
+        /// [`Symbols`].
         pub mod known {
             use super::{Symbol, position};
             $(#[doc = $text] pub const $name: Symbol = position($text);)*
@@ -40,7 +41,7 @@ known! {
     IN "in" OUT "out" UNIFORM "uniform" BUFFER "buffer" CONST "const"
 }
 
-/// Where `KNOWN` has a spelling; it is a mistake found by the compiler if it does not.
+/// The number of one of the spellings in `KNOWN`; an error of the compiler if it is not there.
 const fn position(text: &str) -> Symbol {
     let mut index = 0;
     while !same(KNOWN[index].as_bytes(), text.as_bytes()) {
@@ -57,7 +58,7 @@ const fn same(left: &[u8], right: &[u8]) -> bool {
     index == left.len() && index == right.len()
 }
 
-/// Spellings by number, and numbers by spelling.
+/// A table of spellings and their numbers.
 #[derive(Debug, Clone)]
 pub struct Symbols {
     texts: Vec<Arc<str>>,
@@ -75,7 +76,7 @@ impl Default for Symbols {
 }
 
 impl Symbols {
-    /// The number of a spelling, new if need be.
+    /// The number of a spelling; a new one gets the next number.
     pub fn intern(&mut self, text: &str) -> Symbol {
         if let Some(symbol) = self.find(text) {
             return symbol;

@@ -1,5 +1,5 @@
-//! Braces under a condition. The specification flattens them: where the condition holds, what is
-//! in them stands where they stood, and the braces and the condition are gone.
+//! Braces under a condition. The specification flattens them: where the condition holds, their
+//! content takes the place of the whole block, without the braces and the condition.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use super::cursor::Tokens;
 use super::trivia;
 use crate::diagnostic::{Diagnostic, codes};
 
-/// Past the attributes of a block, only a condition may be among them.
+/// Skips the attributes of a block, of which only a condition is allowed.
 pub fn check_attributes(
     tokens: Tokens<'_>,
     start: usize,
@@ -26,7 +26,7 @@ pub fn check_attributes(
         .at(tokens.span(odd + 1), "only a condition may stand before a block"))
 }
 
-/// The warning about braces that nothing decides on.
+/// The warning about braces without a condition.
 pub fn unreachable(tokens: Tokens<'_>, open: usize) -> Diagnostic {
     let message = "a block of declarations without a condition";
     Diagnostic::warning(codes::BLOCK_READING, message)
@@ -45,12 +45,12 @@ pub fn import_inside(tokens: Tokens<'_>, keyword: usize) -> Diagnostic {
 pub fn used_behind(tokens: Tokens<'_>, at: usize) -> Diagnostic {
     let message = format!("`{}` is declared in a conditional block before this", tokens.text(at));
     Diagnostic::warning(codes::BLOCK_READING, message)
-        .at(tokens.span(at), "in scope here, since the braces of `@if(...) { }` are no scope")
+        .at(tokens.span(at), "in scope here, since the braces of `@if(...) { }` are not a scope")
         .note("tools that are older than this rule end its scope at the `}`")
 }
 
-/// What goes with the head of a flattened block, from its first attribute to the brace: whole
-/// lines, if it has them to itself.
+/// The text of a flattened block's head that is removed: from its first attribute to the brace, and
+/// whole lines if nothing else is on them.
 pub fn head(tokens: Tokens<'_>, start: usize, open: usize) -> Range<u32> {
     let text = tokens.text;
     let bytes = tokens.range(start, open + 1);
@@ -62,7 +62,8 @@ pub fn head(tokens: Tokens<'_>, start: usize, open: usize) -> Range<u32> {
     }
 }
 
-/// What goes with the closing brace of a flattened block: its line, if it has it to itself.
+/// The text that is removed with the closing brace of a flattened block: its whole line, if nothing
+/// else is on it.
 pub fn tail(tokens: Tokens<'_>, close: usize) -> Range<u32> {
     let text = tokens.text;
     let bytes = tokens.range(close, close + 1);
@@ -71,13 +72,13 @@ pub fn tail(tokens: Tokens<'_>, close: usize) -> Range<u32> {
     let end = trivia::trailing(text, bytes.end, tokens.start(close + 1));
     match line_end(text, end) {
         Some(after) if alone => start..after,
-        // `} @else {`: the line break before goes, and the one behind stays.
+        // `} @else {`: the line break before it is removed, and the one after it stays.
         _ if alone => start - line_break(&text[..start as usize])..bytes.end,
         _ => bytes.start - blanks_before(text, bytes.start)..bytes.end,
     }
 }
 
-/// The start of the line, if only blanks stand before; else the byte itself.
+/// The start of the line, if only blanks stand before the byte; else the byte itself.
 pub fn line_start(text: &str, byte: u32) -> u32 {
     let start = byte - blanks_before(text, byte);
     if at_line_start(text, start) { start } else { byte }
@@ -92,14 +93,14 @@ fn at_line_start(text: &str, byte: u32) -> bool {
     byte == 0 || text[..byte as usize].ends_with('\n')
 }
 
-/// Past the line's end, if only blanks stand before it.
+/// The end of the line, if only blanks stand before that.
 fn line_end(text: &str, byte: u32) -> Option<u32> {
     let rest = &text[byte as usize..];
     let blank = rest.len() - rest.trim_start_matches([' ', '\t', '\r']).len();
     rest[blank..].starts_with('\n').then(|| byte + blank as u32 + 1)
 }
 
-/// Bytes of the line break that the text ends with.
+/// Length of the line break at the end of the text.
 fn line_break(text: &str) -> u32 {
     if text.ends_with("\r\n") { 2 } else { u32::from(text.ends_with('\n')) }
 }

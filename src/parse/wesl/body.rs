@@ -1,4 +1,4 @@
-//! Marks, in each item, what composing must look at: conditional nodes and uses of globals.
+//! Marks in each item what the composer must look at: conditional nodes, and uses of globals.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,13 +17,14 @@ use super::token::{Kind, Token};
 use super::trivia;
 use crate::diagnostic::Diagnostic;
 
-/// Attributes whose arguments are expressions. The words in any other's mean nothing elsewhere.
+/// Attributes whose arguments are expressions. Words in the arguments of any other attribute name
+/// nothing.
 const EXPRESSION_ATTRIBUTES: &[&str] =
     &["align", "binding", "blend_src", "group", "id", "location", "size", "workgroup_size"];
 
 /// Fills the events, locals and free names of the items at `places`.
 ///
-/// Where they are traced also the places that name a parameter or a local.
+/// If uses are traced, also the places that name a parameter or a local.
 pub fn scan(
     module: &mut Module,
     tokens: &[Token],
@@ -66,13 +67,13 @@ fn sorted(names: &mut Vec<Name>) -> Vec<Name> {
     std::mem::take(names)
 }
 
-/// Scans one item at a time. Every method takes the index of its first token and gives the one
-/// past its last; recursion is as deep as brackets nest.
+/// Scans one item at a time. Every method takes the index of the first token and returns the one
+/// after the last. Recursion is as deep as brackets nest.
 pub(super) struct Scanner<'a, 'b> {
     pub(super) module: &'a mut Module,
     pub(super) tokens: Tokens<'b>,
     pub(super) scopes: Scopes,
-    /// By name: whether the module's scope has it.
+    /// By name: whether it is declared in the module's scope.
     global: Vec<bool>,
     named: HashMap<Name, u32>,
     paths: HashMap<(Origin, Vec<Name>), u32>,
@@ -101,8 +102,8 @@ impl Scanner<'_, '_> {
         }
     }
 
-    /// Past the `<storage, read>` of a `var`. Compilers take these words as they are, so they are
-    /// predeclared ones here, whatever the module calls by their names.
+    /// Skips the `<storage, read>` of a `var`. Compilers treat these words as predeclared, whatever
+    /// the module declares by their names.
     pub(super) fn var_template(&mut self, at: usize) -> usize {
         let end = after_template(self.tokens, at);
         self.free.extend((at..end).filter_map(|at| self.tokens.word(at)));
@@ -176,7 +177,7 @@ impl Scanner<'_, '_> {
         self.tokens.find(from, limit, b'{').ok_or_else(|| self.tokens.expected(limit, "`{`"))
     }
 
-    /// A parameter or a local whose name is at a token.
+    /// Declares a parameter or a local, whose name is at a token.
     pub(super) fn declare(
         &mut self,
         at: usize,
@@ -189,7 +190,7 @@ impl Scanner<'_, '_> {
         Ok(())
     }
 
-    /// Notes a place that names a local, where that was asked for.
+    /// Notes a place that names a local, if uses are traced.
     fn trace(&mut self, at: usize, name: Name) {
         if let Some(declared) = self.scopes.place(name).filter(|_| self.traced) {
             let Token { start, end, .. } = self.tokens.tokens[at];
@@ -197,14 +198,14 @@ impl Scanner<'_, '_> {
         }
     }
 
-    /// Starts a conditional node; to be closed with what this gives.
+    /// Begins a conditional node. What this returns is given to `close_node`.
     pub(super) fn open_node(&mut self, condition: Option<ConditionId>) -> Option<usize> {
         let condition = condition?;
         self.events.push(Event::Node { condition, start: 0, end: 0, next: 0 });
         Some(self.events.len() - 1)
     }
 
-    /// The node had the tokens `start..end`.
+    /// Ends a node, which has the tokens `start..end`.
     pub(super) fn close_node(&mut self, node: Option<usize>, start: usize, end: usize) {
         let Some(index) = node else { return };
         let before = self.tokens.tokens[..start].last().map_or(0, |token| token.end);
@@ -220,7 +221,8 @@ impl Scanner<'_, '_> {
         }
     }
 
-    /// Marks the attributes in `at..end`: cuts translate-time ones, looks into expressions.
+    /// Marks the attributes in `at..end`: cuts translate-time attributes, and looks into
+    /// expressions.
     pub(super) fn attributes(&mut self, mut at: usize, end: usize) -> Result<(), Diagnostic> {
         while at < end {
             let arguments = self.tokens.is(at + 2, b'(').then_some(at + 2);
@@ -253,7 +255,7 @@ impl Scanner<'_, '_> {
         Ok(())
     }
 
-    /// An attribute amid other things: of a return type or a body.
+    /// An attribute among other things: of a return type or a body.
     fn stray_attribute(&mut self, at: usize) -> Result<usize, Diagnostic> {
         if condition::is_conditional(self.tokens, at) {
             let message = format!("`@{}` may not stand here", self.tokens.text(at + 1));

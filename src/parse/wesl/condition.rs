@@ -11,7 +11,7 @@ use super::token::Kind;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::LIMITS;
 
-/// The conditional nodes among siblings: what an `@elif` or `@else` may follow.
+/// The conditional nodes among siblings, which tells what an `@elif` or `@else` may follow.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Chain {
     last: Option<ConditionId>,
@@ -20,7 +20,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// For the siblings in a block under that condition.
+    /// For the siblings in a block that has this condition, if any.
     pub fn within(block: Option<ConditionId>) -> Self {
         Self { last: None, within: block }
     }
@@ -29,13 +29,13 @@ impl Chain {
 /// The attributes before a node.
 #[derive(Debug, Clone, Copy)]
 pub struct Attributes {
-    /// Past the last token.
+    /// The index after the last token.
     pub end: usize,
-    /// Its own condition, or else that of the block that it is in.
+    /// Its own condition, or else that of the block around it.
     pub condition: Option<ConditionId>,
-    /// Has a translate-time attribute itself.
+    /// Whether it has a translate-time attribute itself.
     pub conditional: bool,
-    /// Has `@vertex`, `@fragment` or `@compute`.
+    /// Whether it has `@vertex`, `@fragment` or `@compute`.
     pub entry: bool,
 }
 
@@ -101,8 +101,8 @@ pub fn illegal(tokens: Tokens<'_>, name_at: usize, message: &str, label: &str) -
     Diagnostic::error(codes::ILLEGAL_CONDITION, message).at(tokens.span(name_at), label)
 }
 
-/// A condition that nobody wrote: in place of one that is wrong, so that an `@else` after it is not
-/// an error too, or of braces that have none.
+/// A condition that nobody wrote. It replaces one that is wrong, so that an `@else` after it is not
+/// an error too, or stands for braces without a condition.
 pub fn literal(module: &mut Module, value: bool, chain: &Chain) -> ConditionId {
     module.expressions.push(Expression::Literal(value));
     let expression = Some(module.expressions.len() as u32 - 1);
@@ -179,14 +179,16 @@ impl Reader<'_, '_> {
         self.module.expressions.len() as u32 - 1
     }
 
-    /// Whether two marks stand here without a gap.
+    /// Whether two marks stand here without white space between them.
     fn pair(&self, first: u8, second: u8) -> bool {
         self.tokens.is(self.at, first)
             && self.tokens.is(self.at + 1, second)
             && self.tokens.tokens[self.at].end == self.tokens.start(self.at + 1)
     }
 
-    /// Operands joined by `&&` or by `||`; as in WGSL the two mix only with parentheses.
+    /// Operands joined by `&&` or by `
+    ///
+    /// `. As in WGSL the two may be mixed only with parentheses.
     fn expression(&mut self) -> Result<ExpressionId, Diagnostic> {
         let first = self.unary()?;
         let mark = if self.pair(b'&', b'&') { b'&' } else { b'|' };

@@ -1,4 +1,4 @@
-//! Looking at tokens by index.
+//! Access to tokens by index.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use super::token::{Kind, Token};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::{SourceId, Span};
 
-/// The tokens of a file, with what is needed to speak about them.
+/// The tokens of a file, with what diagnostics about them need.
 #[derive(Clone, Copy)]
 pub struct Tokens<'a> {
     pub tokens: &'a [Token],
@@ -54,7 +54,7 @@ impl<'a> Tokens<'a> {
         self.tokens[at].partner as usize
     }
 
-    /// The first `mark` in `from..limit` outside brackets.
+    /// The first `mark` in `from..limit` that is outside of brackets.
     pub fn find(self, from: usize, limit: usize, mark: u8) -> Option<usize> {
         let mut at = from;
         while at < limit {
@@ -66,7 +66,7 @@ impl<'a> Tokens<'a> {
         None
     }
 
-    /// The bytes of the tokens `from..to`; `to` is past the last one.
+    /// The bytes of the tokens `from..to`; `to` is after the last one.
     pub fn range(self, from: usize, to: usize) -> Range<u32> {
         self.start(from)..self.tokens[..to].last().map_or(0, |token| token.end)
     }
@@ -98,7 +98,7 @@ impl<'a> Tokens<'a> {
             .at(self.span(at), format!("expected {what}"))
     }
 
-    /// Past the token if it is `mark`, else an error.
+    /// Steps over the token if it is `mark`; otherwise an error.
     pub fn expect(self, at: usize, mark: u8, what: &str) -> Result<usize, Diagnostic> {
         if self.is(at, mark) { Ok(at + 1) } else { Err(self.expected(at, what)) }
     }

@@ -27,7 +27,7 @@ pub fn import(
     tokens.expect(end, b';', "`;` after the import")
 }
 
-/// `package ::`, `super ::` repeated, or nothing; and the index behind.
+/// `package ::`, repeated `super ::`, or nothing; and the index after it.
 pub fn origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnostic> {
     let word = tokens.word(at);
     let mut end = at;
@@ -52,7 +52,7 @@ pub fn origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnost
 /// The error for `as` where a path has a name.
 fn misplaced_as(tokens: Tokens<'_>, at: usize) -> Diagnostic {
     let is_path = |at: usize| tokens.kind(at) == Some(Kind::Path);
-    let error = Diagnostic::error(codes::SYNTAX_ERROR, "`as` is no name of a path")
+    let error = Diagnostic::error(codes::SYNTAX_ERROR, "`as` cannot be a name in a path")
         .at(tokens.span(at), "a keyword");
     match at > 1 && is_path(at - 1) && is_path(at + 1) && tokens.word(at + 2).is_some() {
         true => {
@@ -100,7 +100,7 @@ impl Reader<'_, '_> {
             }
         }
         let last = self.at - 1;
-        // In a collection the path's place is that of its last part: the rest is shared.
+        // In a collection the place of a path is that of its last name, since the rest is shared.
         path.range = self.tokens.range(start.unwrap_or(last), last + 1);
         let mut alias_at = last;
         if self.tokens.is_word(self.at, Name::AS) {
@@ -113,7 +113,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// `{ path, path, }`, with at least one.
+    /// `{ path, path, }`, with at least one path.
     fn collection(&mut self, prefix: &Path) -> Result<(), Diagnostic> {
         let close = self.tokens.partner(self.at);
         self.at += 1;

@@ -10,13 +10,13 @@ use super::token::Token;
 use super::trivia;
 use crate::diagnostic::{Diagnostic, codes};
 
-/// Where an item's parts are among the tokens.
+/// Where the parts of an item are among the tokens.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
     /// Its first attribute, or its keyword.
     pub start: usize,
     pub keyword: usize,
-    /// Past its last token.
+    /// After its last token.
     pub end: usize,
 }
 
@@ -30,7 +30,7 @@ const KINDS: &[(Name, ItemKind)] = &[
     (Name::CONST_ASSERT, ItemKind::ConstAssert),
 ];
 
-/// Fills the module's directives, imports and items; the items without their events yet.
+/// Fills the module's directives, imports and items. The items do not have their events yet.
 pub fn split(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place> {
     let text = std::sync::Arc::clone(&module.text);
     let tokens = Tokens { tokens, text: &text, names, source: module.source };
@@ -47,7 +47,7 @@ pub fn split(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place>
     splitter.places
 }
 
-/// Past the next semicolon or braces outside brackets.
+/// The index after the next semicolon or closing brace that is outside of brackets.
 fn recover(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
     let mut at = from;
     while at < limit {
@@ -68,11 +68,11 @@ struct Splitter<'a, 'b> {
     tokens: Tokens<'b>,
     chain: Chain,
     places: Vec<Place>,
-    /// The byte where what came before ended.
+    /// The byte at which the item before ended.
     behind: u32,
     /// The end of the file, or the brace that ends the block.
     limit: usize,
-    /// A declaration stood before in the file or the block.
+    /// Whether there was a declaration in the file or the block before.
     declared: bool,
 }
 
@@ -116,8 +116,8 @@ impl Splitter<'_, '_> {
         }
     }
 
-    /// Declarations in braces, all under the condition before them. The braces go, and the
-    /// comments above them stay with the first declaration.
+    /// Reads declarations in braces, which all have the condition before the braces. The braces are
+    /// removed, and the comments above them stay with the first declaration.
     fn block(&mut self, start: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
         let (tokens, open) = (self.tokens, attributes.end);
         block::check_attributes(tokens, start, attributes)?;
@@ -169,7 +169,7 @@ impl Splitter<'_, '_> {
             .ok_or_else(|| self.unended(keyword, "the directive"))?;
         let range = self.tokens.range(keyword, end + 1);
         let names = (keyword + 1..end).filter(|at| !self.tokens.is(*at, b'(')).collect::<Vec<_>>();
-        // The words of `diagnostic(...)` are inside the parentheses that `find` jumped over.
+        // `find` jumped over the parentheses of `diagnostic(...)`, so its words are inside.
         let names = names.into_iter().filter_map(|at| self.tokens.word(at)).collect();
         self.module.directives.push(Directive {
             keyword: word,
@@ -197,7 +197,7 @@ impl Splitter<'_, '_> {
         let bytes = self.tokens.range(start, end);
         let mut first = trivia::leading(text, self.behind, bytes.start);
         if self.chain.within.is_some() {
-            // All lines of what is in a block keep their indentation, the first among them.
+            // In a block every line keeps its indentation, the first one included.
             first = block::line_start(text, first).max(self.behind);
         }
         self.declared = true;
@@ -217,7 +217,7 @@ impl Splitter<'_, '_> {
         Ok(end)
     }
 
-    /// The token of the declared name; the keyword's for a `const_assert`.
+    /// The token with the declared name; for a `const_assert`, the keyword.
     fn name_at(&self, keyword: usize, kind: ItemKind) -> usize {
         match kind {
             ItemKind::ConstAssert => keyword,
@@ -260,7 +260,7 @@ impl Splitter<'_, '_> {
     }
 }
 
-/// Past `<...>`, if one starts here.
+/// Steps over `<...>`, if that starts here.
 pub fn after_template(tokens: Tokens<'_>, at: usize) -> usize {
     if !tokens.is(at, b'<') {
         return at;

@@ -1,4 +1,4 @@
-//! WESL text to a [`Module`]: one pass over the characters, one over the tokens.
+//! Parses WESL text into a [`Module`], by one pass over the characters and one over the tokens.
 //!
 //! There is no syntax tree: composing needs items, scopes and conditions, and naga parses the
 //! composed text anyway.
@@ -30,13 +30,13 @@ use crate::source::SourceId;
 /// The most errors of one file that are reported.
 const ERRORS: usize = 50;
 
-/// Parses a file. Its errors are in [`Module::errors`]. What follows an error may be missing from
-/// the rest.
+/// Parses a file. Its errors are in [`Module::errors`]. Some of the text after an error may not be
+/// parsed.
 pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
     parsed(source, text, names, false)
 }
 
-/// The same with [`Module::local_uses`], which editors ask for and composing does not.
+/// As [`parse`], with [`Module::local_uses`]: editors ask for those, composing does not.
 pub fn parse_for_editor(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
     parsed(source, text, names, true)
 }

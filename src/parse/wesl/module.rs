@@ -19,11 +19,11 @@ pub struct Module {
     pub expressions: Vec<Expression>,
     pub references: Vec<Reference>,
     pub guards: Vec<Guard>,
-    /// Parameters and locals at each place that names them; only where they were asked for.
+    /// Each place that names a parameter or a local; only where these were asked for.
     pub local_uses: Vec<LocalUse>,
-    /// What kept parts of the file from being understood.
+    /// Errors in parts of the file that could not be parsed.
     pub errors: Vec<Diagnostic>,
-    /// What is understood, but not by every tool or not as it looks.
+    /// Warnings about code that other tools refuse, or that looks as if it meant something else.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -42,16 +42,18 @@ pub type ConditionId = u32;
 pub struct Condition {
     /// `None` for `@else`.
     pub expression: Option<ExpressionId>,
-    /// The `@if` or `@elif` of the sibling before, for `@elif` and `@else`.
+    /// For `@elif` and `@else`, the `@if` or `@elif` of the sibling before.
     pub after: Option<ConditionId>,
-    /// The condition of the block around it, without which this one is neither asked nor true.
+    /// The condition of the block around it. Unless that holds, this one is not evaluated and
+    /// counts as false.
     pub within: Option<ConditionId>,
 }
 
 /// Index into [`Module::expressions`].
 pub type ExpressionId = u32;
 
-/// A translate-time expression. Chains of one operator are flat, so depth is bounded by brackets.
+/// A translate-time expression. A chain of one operator is a single node, so the depth is bounded
+/// by the nesting of brackets.
 #[derive(Debug, Clone)]
 pub enum Expression {
     Literal(bool),
@@ -63,7 +65,7 @@ pub enum Expression {
 }
 
 impl Expression {
-    /// The names in it, those of its operands aside: flags, axes and values.
+    /// The names in it: flags, axes and values. Names in its operands are not included.
     pub fn names(&self) -> impl Iterator<Item = Name> {
         let (first, second) = match self {
             Self::Flag(name, _) => (Some(*name), None),
@@ -131,12 +133,12 @@ pub struct Path {
     pub parts: Parts,
 }
 
-/// Places within a path. In a collection, `a::{b, c}`, those of what is shared are before `range`.
+/// Places within a path. In a collection, `a::{b, c}`, the shared part is before `range`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Parts {
     /// The first name.
     pub first: Range<u32>,
-    /// All but the last name, as far as they are written in one piece.
+    /// All names but the last, as far as they are written in one piece.
     pub parents: Range<u32>,
     /// The last name.
     pub last: Range<u32>,
@@ -147,9 +149,9 @@ pub struct Parts {
 pub enum Origin {
     /// The importing module's package.
     Package,
-    /// So many modules up.
+    /// The package, by so many `super`.
     Super(u32),
-    /// A name in scope, or else a package.
+    /// A name in scope, or a package.
     Scope,
 }
 
@@ -172,25 +174,27 @@ pub struct Item {
     /// [`Name::UNDERSCORE`] for a `const_assert`.
     pub name: Name,
     pub name_range: Range<u32>,
-    /// What is copied: the comments above, attributes, the declaration, a comment behind it.
+    /// What is copied: the comments above, the attributes, the declaration, and a comment behind it
+    /// on the same line.
     pub range: Range<u32>,
     pub condition: Option<ConditionId>,
     /// Has `@vertex`, `@fragment` or `@compute`.
     pub entry: bool,
-    /// Sorted by place; nodes contain the events up to their `next`.
+    /// Sorted by place. A node contains the events up to its `next`.
     pub events: Vec<Event>,
     /// Names of parameters and local declarations, sorted.
     pub locals: Vec<Name>,
-    /// Identifiers that neither a local nor the module's scope explains, sorted.
+    /// Identifiers that name neither a local nor anything in the module's scope, sorted.
     pub free: Vec<Name>,
 }
 
-/// Something about a place of an item that composing must heed.
+/// A place of an item where composing may change the text.
 #[derive(Debug, Clone, Copy)]
 pub enum Event {
-    /// Text that never reaches the output: a translate-time attribute.
+    /// Text that is always removed: a translate-time attribute.
     Cut { start: u32, end: u32 },
-    /// A conditional node. If the condition is false, `start..end` goes and event `next` follows.
+    /// A conditional node. If the condition is false, `start..end` is removed and the next event is
+    /// `next`.
     Node { condition: ConditionId, start: u32, end: u32, next: u32 },
     /// The declared name.
     Definition { start: u32, end: u32 },
@@ -216,7 +220,7 @@ pub struct LocalUse {
     pub end: u32,
 }
 
-/// A conditional local declaration: while its condition holds, the name means the local.
+/// A conditional local declaration. While its condition holds, the name means the local.
 #[derive(Debug, Clone, Copy)]
 pub struct Guard {
     pub condition: ConditionId,

@@ -1,4 +1,4 @@
-//! Identifiers as numbers, so that comparing and indexing by them costs nothing.
+//! Identifiers as numbers, which are cheap to compare and can index tables.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Name(pub u32);
 
-/// Words that begin or divide a statement or a declaration: what an editor offers.
+/// Words that begin or divide a statement or a declaration, which editors offer.
 pub fn keywords() -> impl Iterator<Item = &'static str> {
     const NOT_OFFERED: [&str; 5] = ["_", "diagnostic", "false", "requires", "true"];
     let words = WORDS[..=Name::IMPORT.0 as usize].iter().copied();
@@ -52,7 +52,7 @@ const WORDS: &[&str] = &[
     "constants",
 ];
 
-/// Whether WGSL has the word as a keyword; WESL's own words come after those.
+/// Whether the word is a keyword of WGSL. WESL's own words come after those.
 pub fn is_keyword(word: &str) -> bool {
     WORDS[Name::ALIAS.0 as usize..=Name::WHILE.0 as usize].contains(&word)
 }
@@ -91,7 +91,8 @@ const fn same(left: &[u8], right: &[u8]) -> bool {
 }
 
 impl Name {
-    /// Whether WGSL forbids the word as an identifier; `import`, `package` and `super` with it.
+    /// Whether WGSL forbids the word as an identifier, or WESL does: `import`, `package` and
+    /// `super`.
     pub fn is_keyword(self) -> bool {
         self.0 <= Self::SUPER.0
     }
@@ -101,7 +102,8 @@ impl Name {
 #[derive(Debug, Clone)]
 pub struct Names {
     texts: Vec<Arc<str>>,
-    // Limits bound what a hostile file can do with collisions.
+    // A fast hash without protection against collisions: limits bound the harm that a hostile file
+    // can do.
     numbers: FxHashMap<Arc<str>, Name>,
 }
 
@@ -116,7 +118,7 @@ impl Default for Names {
 }
 
 impl Names {
-    /// The number of an identifier, a new one at first sight.
+    /// The number of an identifier; a new one gets the next number.
     pub fn intern(&mut self, text: &str) -> Name {
         if let Some(name) = self.numbers.get(text) {
             return *name;
@@ -143,7 +145,7 @@ impl Names {
         self.texts.len()
     }
 
-    /// Never: the keywords are there from the start.
+    /// Always false, since the keywords are there from the start.
     pub fn is_empty(&self) -> bool {
         self.texts.is_empty()
     }

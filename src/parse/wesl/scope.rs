@@ -1,9 +1,9 @@
-//! Local names while a function is scanned: which ones an identifier may mean.
+//! The local names that are in scope while a function is scanned.
 
 use super::module::{ConditionId, Guard, Module};
 use super::name::Name;
 
-/// What an identifier means as far as locals go.
+/// What an identifier may mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Meaning {
     /// A local, whatever the settings.
@@ -16,7 +16,7 @@ pub enum Meaning {
 #[derive(Debug, Default)]
 pub struct Scopes {
     declarations: Vec<Declaration>,
-    /// By name: one more than the index of the innermost declaration.
+    /// By name: one more than the index of its innermost declaration.
     innermost: Vec<u32>,
 }
 
@@ -24,21 +24,22 @@ pub struct Scopes {
 struct Declaration {
     name: Name,
     meaning: Meaning,
-    /// What `innermost` had for the name before.
+    /// The value in `innermost` before this declaration.
     outer: u32,
-    /// Declared in the braces of a condition that ended since; told at its first use.
+    /// Whether it was declared in the braces of a condition that have ended. Its first use gets a
+    /// warning.
     behind_block: bool,
     /// First byte of the name.
     place: u32,
 }
 
 impl Scopes {
-    /// Room for names below `names`.
+    /// No declarations. Names are below `names`.
     pub fn new(names: usize) -> Self {
         Self { declarations: Vec::new(), innermost: vec![0; names] }
     }
 
-    /// What leaving takes to forget all that is declared from here on.
+    /// A mark, with which leaving forgets all that is declared from here on.
     pub fn enter(&self) -> usize {
         self.declarations.len()
     }
@@ -71,12 +72,13 @@ impl Scopes {
         self.declarations.push(Declaration { name, meaning, outer, behind_block: false, place });
     }
 
-    /// The braces of a condition end: what was declared in them stays in scope.
+    /// Ends the braces of a condition. What was declared in them stays in scope.
     pub fn end_block(&mut self, mark: usize) {
         self.declarations[mark..].iter_mut().for_each(|found| found.behind_block = true);
     }
 
-    /// Whether a name means a local of a conditional block that ended; true only once for each.
+    /// Whether a name means a local from a conditional block that has ended. It is true only once
+    /// for each.
     pub fn is_behind_block(&mut self, name: Name) -> bool {
         let index = self.innermost[name.0 as usize].checked_sub(1);
         let found = index.and_then(|index| self.declarations.get_mut(index as usize));

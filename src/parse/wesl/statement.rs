@@ -1,4 +1,4 @@
-//! Statements: how far each reaches, what it declares, and for how long.
+//! Scans statements: where each ends, what it declares, and how long that is in scope.
 
 use super::block;
 use super::body::Scanner;
@@ -35,7 +35,7 @@ impl Scanner<'_, '_> {
         Ok(end)
     }
 
-    /// Statements in braces under a condition: no scope of their own.
+    /// Statements in braces under a condition, which are not a scope of their own.
     fn flat_block(&mut self, start: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
         let open = attributes.end;
         block::check_attributes(self.tokens, start, attributes)?;
@@ -92,7 +92,7 @@ impl Scanner<'_, '_> {
         }
     }
 
-    /// An expression or nothing, then a block.
+    /// An expression or nothing, and then a block.
     fn headed_block(&mut self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
         let open = self.brace(at, limit)?;
         self.uses(at, open)?;
@@ -129,7 +129,7 @@ impl Scanner<'_, '_> {
         Ok(close + 1)
     }
 
-    /// What the header declares is in scope in the header and the body.
+    /// What the header of a `for` declares is in scope in the header and the body.
     fn for_loop(&mut self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
         let open = self.tokens.expect(at + 1, b'(', "`(`")? - 1;
         let close = self.tokens.partner(open);
@@ -160,7 +160,7 @@ impl Scanner<'_, '_> {
         Ok(end + 1)
     }
 
-    /// The semicolon that ends the statement at `at`.
+    /// The index of the semicolon that ends the statement at `at`.
     fn semicolon(&self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
         let mut end = at;
         while end < limit && !self.tokens.is(end, b'{') {

@@ -1,12 +1,12 @@
-//! Words, numbers, punctuation; every bracket knows its partner.
+//! Splits text into words, numbers and punctuation. Every bracket knows its partner.
 
 use super::blank::{block_comment, is_blank, line_comment};
 use super::name::{Name, Names};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::{LIMITS, SourceId, Span};
 
-/// What a token is. `<` and `>` always stand alone: `>>` and `>=` are two tokens, so that the
-/// end of a template list needs no second look.
+/// What a token is. `<` and `>` are always single tokens: `>>` and `>=` are two tokens each. So a
+/// `>` that ends a template list needs no special case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Word(Name),
@@ -29,7 +29,7 @@ pub struct Token {
     pub partner: u32,
 }
 
-/// Splits a text into tokens. The error is the first thing that cannot be one.
+/// Splits a text into tokens. The error is about the first thing that cannot be a token.
 pub fn tokenise(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<Token>, Diagnostic> {
     let mut scanner = Scanner { text, bytes: text.as_bytes(), at: 0, source };
     let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4);
@@ -238,7 +238,7 @@ impl Scanner<'_> {
         Kind::Word(names.intern(&self.text[start..self.at]))
     }
 
-    /// Any numeric literal, loosely: what it means is the compiler's to judge.
+    /// A numeric literal. It is not checked here, since naga does that.
     fn number(&mut self) -> Kind {
         let hexadecimal = self.bytes[self.at] == b'0' && matches!(self.peek(1), b'x' | b'X');
         loop {

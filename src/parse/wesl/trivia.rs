@@ -1,10 +1,10 @@
-//! Which comments and blanks belong to an item. They are kept, moved and removed with it.
+//! Which comments and blanks belong to an item. They are kept, moved and removed together with it.
 
 use std::ops::Range;
 
 use super::blank::{block_comment, line_comment};
 
-/// Where an item's text starts: at the comments right above it, without a blank line between.
+/// Where an item's text starts: at the comments above it, if no blank line stands between.
 ///
 /// `from` is where the item before ended, its own trailing comment included.
 pub fn leading(text: &str, from: u32, start: u32) -> u32 {
@@ -28,7 +28,7 @@ pub fn leading(text: &str, from: u32, start: u32) -> u32 {
     attached.filter(|_| newlines <= 1).map_or(start, |at| at as u32)
 }
 
-/// Where a thing's text ends: behind a comment on the same line, if nothing else follows there.
+/// Where an item's text ends: after a comment on the same line, if nothing else follows there.
 pub fn trailing(text: &str, end: u32, limit: u32) -> u32 {
     let rest = &text[end as usize..limit as usize];
     let line = &rest[..rest.find(['\n', '\r']).unwrap_or(rest.len())];
@@ -36,7 +36,8 @@ pub fn trailing(text: &str, end: u32, limit: u32) -> u32 {
     if comment.starts_with("//") { end + line.trim_end().len() as u32 } else { end }
 }
 
-/// What goes with a removed node: its lines, if it has them to itself, and the `//` lines above.
+/// The text that is removed with a node: its whole lines, if nothing else is on them, and the `//`
+/// lines above.
 ///
 /// `before` and `after` are the ends of the neighbouring tokens.
 pub fn lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32> {
@@ -51,7 +52,8 @@ pub fn lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32
             let start = node.start - indent as u32;
             comment_lines(text, before, start)..end + blank as u32 + 1
         }
-        // At the end of a line the blanks before go too, elsewhere those behind: `f(@if(a) x, y)`.
+        // At the end of a line the blanks before it are removed too; elsewhere those after it, as
+        // in `f(@if(a) x, y)`.
         (false, true) => node.start - indent as u32..end,
         (_, false) => {
             node.start..end + (tail.len() - tail.trim_start_matches([' ', '\t']).len()) as u32
@@ -59,13 +61,13 @@ pub fn lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32
     }
 }
 
-/// Past the blanks after a removed attribute.
+/// The index after the blanks that follow a removed attribute.
 pub fn skip_blank(text: &str, end: u32) -> u32 {
     let rest = &text[end as usize..];
     end + (rest.len() - rest.trim_start_matches([' ', '\t', '\r', '\n']).len()) as u32
 }
 
-/// The start of the whole `//` lines that stand right above the line starting at `start`.
+/// The start of the `//` lines that are directly above the line starting at `start`.
 fn comment_lines(text: &str, before: u32, start: u32) -> u32 {
     let head = &text[before as usize..start as usize];
     if head.contains("/*") {

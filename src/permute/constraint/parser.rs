@@ -1,4 +1,4 @@
-//! Recursive descent over the tokens of a constraint; the first mistake ends it.
+//! Parses constraints by recursive descent. It ends at the first mistake.
 
 use super::lexer::{Kind as Token, tokens};
 use crate::diagnostic::{Diagnostic, codes};
@@ -9,7 +9,7 @@ use crate::permute::quoted::Quoted;
 use crate::permute::space::Formula;
 use crate::source::Span;
 
-/// Parentheses, negations and implications within each other. People write three.
+/// How deeply parentheses, negations and implications may nest.
 const NESTING: usize = crate::limits::CONSTRAINT_NESTING;
 
 /// The condition that the text states about the axes.
@@ -37,7 +37,7 @@ type Order = fn(&i64, &i64) -> bool;
 const ORDERS: &[(&str, Order)] =
     &[("<", i64::lt), ("<=", i64::le), (">", i64::gt), (">=", i64::ge)];
 
-/// What other languages write, and what it is here.
+/// Operators of other languages, with what to write here instead.
 const HINTS: &[(&str, &str)] =
     &[("=", "=="), ("&", "&&"), ("|", "||"), ("and", "&&"), ("or", "||"), ("not", "!")];
 

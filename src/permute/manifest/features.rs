@@ -99,7 +99,7 @@ pub fn read(reader: &mut Reader, document: &DeTable) -> Features {
     for (name, feature) in &found.declared {
         let known = |other: &str| other != name && found.declared.contains_key(other);
         for (other, span) in feature.excludes.iter().filter(|(other, _)| !known(other)) {
-            let message = format!("`{name}` excludes `{other}`, which is no other feature");
+            let message = format!("`{name}` excludes `{other}`, which is not another feature");
             let others = found.declared.keys().filter(|known| *known != name);
             let error = Diagnostic::error(codes::UNKNOWN_FEATURE, message)
                 .at(*span, "not declared here")

@@ -10,13 +10,13 @@ use crate::permute::space::{Slice, Space};
 /// Every value of an axis, in an entry of `only`.
 const ANY: &str = "*";
 
-/// Slices in which an axis that is not named is at its default.
+/// Reads slices in which an axis that is not named has its default.
 pub fn only(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Slice> {
     let unnamed: Vec<ValueSet> = axes.iter().map(|axis| ValueSet::single(axis.default)).collect();
     slices(reader, axes, value, "only", &unnamed)
 }
 
-/// Slices in which an axis that is not named is anything.
+/// Reads slices in which an axis that is not named has any value.
 pub fn exclude(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Slice> {
     let unnamed: Vec<ValueSet> =
         axes.iter().map(|axis| ValueSet::full(axis.values.len())).collect();

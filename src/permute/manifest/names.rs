@@ -1,4 +1,4 @@
-//! Which names axes and values may have: both languages must be able to say them.
+//! Which names axes and values may have. Both languages must be able to express them.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use crate::parse::wesl::is_keyword;
 use crate::permute::axis::{Axis, Kind};
 use crate::source::Span;
 
-/// The word of the language of constraints that is not one of WGSL's keywords.
+/// The only word of the constraint language that is not a keyword of WGSL.
 ///
-/// WGSL's reserved words are no obstacle: an axis or a value never becomes a declaration under
-/// its bare name, except by way of `constants`, which is why axes avoid those too.
+/// WGSL's reserved words are allowed here, since an axis or a value never becomes a declaration
+/// under its bare name. The exception is `constants`, so axes may not have reserved names.
 const IN: &str = "in";
 
 /// Macros that GLSL compilers or the library define.
@@ -40,7 +40,7 @@ pub fn check_axis(name: &str, span: Span) -> Option<Diagnostic> {
     )
 }
 
-/// Axes whose GLSL macros are reserved or stand for two things at once.
+/// Reports axes whose GLSL macros are reserved or would mean two things.
 pub fn collisions(axes: &[Axis]) -> Vec<Diagnostic> {
     let mut owners: BTreeMap<String, (String, Span)> = BTreeMap::new();
     let mut problems = Vec::new();

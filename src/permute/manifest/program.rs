@@ -30,7 +30,7 @@ pub struct Program {
     pub space: Space,
     /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
     pub usage: Option<File>,
-    /// The most permutations it may have; it has no more.
+    /// The most permutations that it may have. A program with more is refused.
     pub limit: usize,
     /// The name in the manifest.
     pub span: Span,
@@ -181,7 +181,7 @@ fn clip(reader: &mut Reader, value: &Value) -> Option<Clip> {
     found
 }
 
-/// What the words of `features_default` say of a feature that no axis declares.
+/// The words of `features_default`, with the value of a feature that no axis declares.
 const FEATURES: &[(&str, Option<bool>)] =
     &[("on", Some(true)), ("off", Some(false)), ("error", None)];
 
@@ -212,8 +212,8 @@ fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {
     found
 }
 
-/// Axes first: nothing else is looked at while one of them is missing, since most of what could
-/// be said would only follow from that.
+/// Reads the axes first. If one of them is missing nothing else is read, since most errors would
+/// only follow from that.
 fn space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Option<Space> {
     let before = errors(reader);
     let axes = table.get("axis").map_or(Some(Vec::new()), |value| axes::axes(reader, value))?;
@@ -240,7 +240,7 @@ fn space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Optio
     Some(space)
 }
 
-/// Keys can only be read once there is a space, which is then narrowed to the lists.
+/// Reads the lists. Keys can be read only once there is a space, which the lists then narrow.
 fn listed(
     reader: &mut Reader,
     table: &DeTable,

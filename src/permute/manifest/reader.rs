@@ -1,4 +1,4 @@
-//! Typed access to TOML with a diagnostic at the exact place for whatever is not as expected.
+//! Typed access to TOML. Whatever is not as expected is reported at its exact place.
 
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ impl<'s> Reader<'s> {
         Span::new(self.id, range)
     }
 
-    /// Reports the keys of a table that mean nothing.
+    /// Reports the keys of a table that are not known.
     pub fn check_keys(&mut self, table: &DeTable, known: &[&str], what: &str) {
         for (key, _) in table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref())) {
             let name = key.get_ref();

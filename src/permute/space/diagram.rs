@@ -29,7 +29,7 @@ struct Node {
 const DEAD: u32 = 0;
 const END: u32 = 1;
 
-/// Nodes before a set of conditions is called too complex.
+/// With more nodes than this, a set of conditions is called too complex.
 const NODES: usize = 1 << 18;
 
 impl Diagram {
@@ -58,7 +58,7 @@ impl Diagram {
         self.counts(|_, children, counts| Ok(sum(children, counts))).unwrap_or(0)
     }
 
-    /// How many points are left when points that differ in one axis alone are counted as one.
+    /// How many points there are if those that differ only in one axis count as one.
     pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
         let mut known = HashMap::new();
         self.counts(|asked, children, counts| match asked == axis {
@@ -106,8 +106,8 @@ impl Diagram {
         self.alive(allowed)[self.root as usize]
     }
 
-    /// A point of the values allowed, by axis, or `None` if there is none: `choose` picks for
-    /// each axis, in the diagram's order, among the ordinals that lead to one.
+    /// A point whose values are all allowed, or `None` if there is none. For each axis, in the
+    /// diagram's order, `choose` picks one of the ordinals that lead to such a point.
     pub fn pick(
         &self,
         allowed: &[ValueSet],
@@ -158,8 +158,7 @@ impl Diagram {
         Ok(counts[self.root as usize])
     }
 
-    /// How many points there are below any of the nodes, which are of one level; those below
-    /// several count once.
+    /// How many points are below at least one of the nodes, which are of the same level.
     fn merged(
         &self,
         mut nodes: Vec<u32>,

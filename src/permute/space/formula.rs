@@ -2,7 +2,8 @@
 //!
 //! Every atom says that the value of one axis is in a set. So equality, order and membership have
 //! one form, and the negation of an atom is an atom with the other values. Nodes are interned: two
-//! conditions with the same normal form have the same number. The diagram shares nodes by it.
+//! conditions with the same normal form have the same number. The diagram uses this number to share
+//! nodes.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -65,7 +66,7 @@ enum Join {
 }
 
 impl Join {
-    /// The constant that decides the whole.
+    /// The constant that makes the whole this constant.
     fn absorbing(self) -> Id {
         match self {
             Self::All => FALSE,

@@ -1,4 +1,5 @@
-//! The space of a program: its axes, what of their product is valid, and what of that is wanted.
+//! The space of a program: its axes, which points of their product are valid, and which of those
+//! are wanted.
 
 mod diagram;
 mod formula;
@@ -28,7 +29,7 @@ pub struct Constraint {
     pub span: Span,
 }
 
-/// A box of the space: the values that each axis may have, by axis.
+/// A part of the space: for each axis the values that it may have.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Slice {
     /// By axis: the values that are in the slice.
@@ -45,8 +46,8 @@ impl Slice {
     }
 }
 
-/// Which valid points are wanted: those in a slice of `only` (all, if there is none) and in none
-/// of `exclude`, and in any case those of `include`.
+/// Which valid points are wanted: those in a slice of `only` (all, if it is empty) and in no slice
+/// of `exclude`, and always those of `include`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Lists {
     /// Where there are any, nothing else ships.
@@ -147,8 +148,8 @@ impl Space {
         self.wanted.count()
     }
 
-    /// The permutations that would be left if the axis did not exist: those that differ in it
-    /// alone counted once.
+    /// How many permutations would be left if the axis did not exist: those that differ only in it
+    /// count as one.
     pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
         self.wanted.count_without(axis)
     }
@@ -206,7 +207,7 @@ impl Space {
     /// How many points of the full product satisfy one condition, within the steps that are left.
     pub fn satisfying(&self, formula: &Formula, steps: &mut Steps) -> Result<u128, TooComplex> {
         let domains = domains(&self.axes);
-        // Each of the levels is made, whatever the condition is.
+        // Every level of the diagram is made, whatever the condition is.
         steps.spend(domains.len() as u64).map_err(|Exhausted| TooComplex)?;
         let mut conditions = Conditions::new(domains.clone(), *steps);
         let condition = conditions.add(formula)?;
@@ -226,7 +227,7 @@ impl Space {
         Key::of(&self.axes, point)
     }
 
-    /// What a composition is asked for at a point: every axis with its value, dynamic ones too.
+    /// The settings for a composition at a point: every axis with its value, dynamic ones too.
     pub fn settings(&self, point: &Assignment) -> Settings {
         let of_kind = |kind| self.axes.iter().filter(move |axis| axis.kind == kind);
         let axes = self.axes.iter().enumerate();

@@ -3,9 +3,9 @@
 //!
 //! `reflection + values -> buffers`, `permutation -> stages`
 //!
-//! A frame's targets hold words, four a pixel, so that results are exact to the bit on every
-//! executor: [`probe`] rewrites a fragment entry point to give the bits of its colour and of its
-//! own inputs.
+//! The targets of a frame hold words, four for each pixel, so that results are exact to the bit on
+//! every executor. [`probe`] rewrites a fragment entry point to return the bits of its colour and
+//! of its inputs.
 
 mod pack;
 pub mod probe;

@@ -1,16 +1,16 @@
-//! Uniform buffers, laid out as reflection says.
+//! Fills uniform buffers by reflection.
 
 use crate::bundle::{Binding, Member};
 use crate::diagnostic::{Diagnostic, codes};
 
-/// The numbers of a leaf by its path, such as `lamps.lights[2].color`: matrices column by column,
-/// an empty list for one that is all zeros. `None` if nothing knows the field.
+/// Gives the numbers of a field by its path, such as `lamps.lights[2].color`. A matrix is given
+/// column by column; an empty list stands for zeros. `None` if nothing knows the field.
 pub type Numbers<'n> = dyn Fn(&str) -> Option<Vec<f64>> + 'n;
 
 /// The bytes of a buffer.
 ///
 /// # Errors
-/// A field that nothing knows, or that is given fewer numbers than it has.
+/// A field that nothing knows, or for which there are too few numbers.
 pub fn pack(binding: &Binding, numbers: &Numbers<'_>) -> Result<Vec<u8>, Diagnostic> {
     let size = binding.size.unwrap_or(0);
     let mut packer = Packer { bytes: vec![0; size as usize], numbers };
@@ -81,7 +81,7 @@ fn without_number(path: &str, ty: &str) -> Diagnostic {
     )
 }
 
-/// Where the scalars of a value are: `rows` of them, then the next column.
+/// The offsets of a value's scalars, column by column, each of `rows` scalars.
 fn offsets(ty: &str, size: u32) -> impl Iterator<Item = u32> {
     let digit = |index: usize| {
         ty.as_bytes().get(index).map_or(1, |digit| u32::from(digit.saturating_sub(b'0')))

@@ -1,5 +1,4 @@
-//! Fragment entry points rewritten to give words: the bits of the colour they return, and of what
-//! they are given.
+//! Rewrites fragment entry points to return words: the bits of their colour, and of their inputs.
 
 use naga::{
     Binding, EntryPoint, Expression, Function, FunctionResult, Handle, Literal, Module, Range,
@@ -9,15 +8,16 @@ use naga::{
 /// A rewritten module.
 #[derive(Debug)]
 pub struct Watched {
-    /// The fragment entry point has the same name. It returns four words at each location: the
-    /// bits of the colour at 0, then its inputs, flattened; 0 behind the last one.
+    /// The module. Its fragment entry point has the same name and returns four words at each
+    /// location: the bits of the colour at location 0, then its inputs, flattened. Words after the
+    /// last input are 0.
     pub module: Module,
-    /// Locations.
+    /// How many locations it returns.
     pub targets: u32,
 }
 
-/// The module with a fragment entry point that tells what it was given. `None` without such an
-/// entry point, or where it returns no four numbers at location 0.
+/// The module with a fragment entry point that also returns its inputs. `None` without such an
+/// entry point, or if that does not return four numbers at location 0.
 pub fn watched(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find(module, entry)?);
     let inner = inner(&mut module, index)?;
@@ -32,15 +32,15 @@ pub fn watched(module: &Module, entry: &str) -> Option<Watched> {
 /// The name of an entry point of [`told`].
 pub const TELLS: &str = "lamplight_tells";
 
-/// A module with a fragment entry point that does nothing but tell what it was given, from
-/// location 0 on. It is called [`TELLS`]. `None` without such an entry point, or where it is given nothing.
+/// The module with a fragment entry point, named [`TELLS`], that only returns its inputs, from
+/// location 0 on. `None` without a fragment entry point, or if that has no inputs.
 pub fn told(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find(module, entry)?);
     let mut body = Body::new(&mut module, index);
     let components = body.inputs();
     let targets = components.len() as u32;
     (targets > 0).then(|| body.finish(components, index))?;
-    // Nothing else is left, and no writer changes the name.
+    // No other declaration is left, so no writer changes the name.
     let mut told = module.entry_points.swap_remove(index);
     told.name = TELLS.to_owned();
     (module.functions, module.global_variables) = Default::default();
@@ -66,7 +66,7 @@ fn find(module: &Module, entry: &str) -> Option<usize> {
         .position(|point| point.name == entry && point.stage == naga::ShaderStage::Fragment)
 }
 
-/// The entry point as a plain function.
+/// Turns the entry point into a plain function.
 fn inner(module: &mut Module, index: usize) -> Option<Handle<Function>> {
     let mut function = module.entry_points[index].function.clone();
     function.result.as_mut()?.binding = None;
@@ -95,7 +95,7 @@ impl<'a> Body<'a> {
             .collect()
     }
 
-    /// The words of all arguments, four by four; 0 behind the last one.
+    /// The words of all arguments in groups of four. Words after the last argument are 0.
     fn inputs(&mut self) -> Vec<Value> {
         let types: Vec<_> = self.function.arguments.iter().map(|argument| argument.ty).collect();
         let mut words = Vec::new();

@@ -15,7 +15,7 @@ use crate::resolve::{self, Graph};
 use crate::source::SourceSet;
 use crate::validate::{Validated, validate};
 
-/// The library's programs; each graph is read once.
+/// The library's programs. Each graph is read once.
 pub struct Programs {
     manifest: Manifest,
     pictures: Table,
@@ -28,7 +28,7 @@ struct Kept {
     graphs: BTreeMap<String, Arc<Graph>>,
 }
 
-/// The stages of one permutation; without a fragment stage it gives depth alone.
+/// The stages of one permutation. Without a fragment stage it draws only depth.
 #[derive(Debug, Clone)]
 pub struct Stages {
     pub vertex: Composed,
@@ -41,9 +41,9 @@ pub struct Composed {
     pub validated: Arc<Validated>,
     pub entry: &'static str,
     pub reflection: Reflection,
-    /// Of both stages in WESL.
+    /// The composed text; for WESL, that of both stages.
     pub text: Arc<str>,
-    /// Functions of the library's modules that the text has: `lighting::spot::cone_hard`.
+    /// Paths of the library's functions that the text has, such as `lighting::spot::cone_hard`.
     pub functions: Arc<[String]>,
 }
 
@@ -63,7 +63,7 @@ impl Programs {
         }
     }
 
-    /// What pictures take from the programs.
+    /// What pictures need from the programs.
     pub fn pictures(&self) -> &Table {
         &self.pictures
     }
@@ -86,7 +86,7 @@ impl Programs {
     /// Composes both stages of a program.
     ///
     /// # Errors
-    /// Those of the composition; a program that is not there in the language.
+    /// Those of the composition, and a program that does not exist in the language.
     pub fn stages(
         &self,
         program: &Program,

@@ -1,4 +1,4 @@
-//! The gallery as HTML, beside its pictures: light or dark as its reader likes it.
+//! Writes the gallery as HTML, in light or dark colours as the reader prefers.
 
 use std::fmt::Write as _;
 

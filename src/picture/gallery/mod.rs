@@ -1,4 +1,4 @@
-//! The gallery: every preset as a picture, beside what made it.
+//! The gallery: every preset as a picture, with everything that it was made from.
 
 mod html;
 mod markdown;
@@ -9,19 +9,20 @@ pub use markdown::page as markdown;
 use std::sync::Arc;
 
 use super::pixels::Picture;
-use super::plan::{Pass, Plan};
+use super::plan::{Pass, Plan, known};
 use super::strip::{self, Comparison};
 use super::{Shot, prepare};
 use crate::bundle::Language;
 use crate::catalogue::preset::Preset;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::Diagnostics;
 use crate::execute::Session;
 use crate::picture::frame::{Programs, Stages};
+use crate::scene::sets::{self, Scene};
 
-/// How the gallery is photographed: pixels, and samples of each.
+/// The size of the gallery's pictures in pixels, and the samples for each pixel.
 pub const SIZE: [u32; 2] = [960, 720];
 pub const SAMPLES: u32 = 16;
-/// Pictures on the pages are smaller by this factor.
+/// The pictures on the pages are smaller by this factor.
 pub const THUMB: u32 = 2;
 
 /// One preset with its picture.
@@ -32,14 +33,15 @@ pub struct Exhibit {
     pub adapter: String,
 }
 
-/// What is said of a preset.
+/// What the pages say about a preset.
 pub struct Card {
     pub preset: Preset,
     /// The composed texts of the last pass: one, or one for each stage.
     texts: Vec<Arc<str>>,
     /// The library's functions in them, by path.
     functions: Vec<String>,
-    /// Hash of what the picture is made from: settings, numbers and the texts of all passes.
+    /// A hash of everything that the picture is made from: settings, numbers, and the texts of all
+    /// passes.
     fingerprint: String,
 }
 
@@ -62,7 +64,7 @@ impl Exhibit {
 }
 
 impl Card {
-    /// What is said of a preset without its picture.
+    /// What the pages say about a preset, without its picture.
     ///
     /// # Errors
     /// Those of the composition.
@@ -74,6 +76,7 @@ impl Card {
         let plan = Plan::of_preset(programs, preset, &[])?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(settings(preset).as_bytes());
+        hasher.update(geometry(&preset.scene).as_bytes());
         let all = composed_texts(programs, &plan, language)?;
         for text in all.concat() {
             hasher.update(text.as_bytes());
@@ -92,7 +95,8 @@ impl Card {
         all.map(|(program, key)| (program.as_str(), key.replace(',', ", "))).collect()
     }
 
-    /// Paths of the composed texts beside the page: to read, not to compile, so `.txt`.
+    /// Paths of the composed texts beside the page. They end in `.txt`, since they are for reading
+    /// and not for compiling.
     fn files(&self) -> impl Iterator<Item = String> {
         let extensions: &[&str] =
             if self.texts.len() == 1 { &["wgsl"] } else { &["vert.glsl", "frag.glsl"] };
@@ -104,7 +108,7 @@ impl Card {
         command(&self.preset.name)
     }
 
-    /// Each function of the library in its text: the path, and its page beside the gallery.
+    /// Each function of the library that its text has: the path, and its page of the catalogue.
     fn functions(&self) -> impl Iterator<Item = (&str, String)> {
         self.functions.iter().filter_map(|path| {
             let (module, name) = path.rsplit_once("::")?;
@@ -112,20 +116,20 @@ impl Card {
         })
     }
 
-    /// What a line of [`adapters`] begins with, if the picture is of today.
+    /// How the line of [`adapters`] begins if the picture is up to date.
     pub fn current(&self, shot: &Shot) -> String {
         current(&format!("{}.png", self.preset.name), shot, &self.fingerprint)
     }
 }
 
-/// What is said of a comparison.
+/// What the pages say about a comparison.
 pub struct StripCard {
     pub comparison: Comparison,
     fingerprint: String,
 }
 
 impl StripCard {
-    /// What is said of a comparison without its picture.
+    /// What the pages say about a comparison, without its picture.
     ///
     /// # Errors
     /// Those of the compositions.
@@ -137,6 +141,7 @@ impl StripCard {
         let mut hasher = blake3::Hasher::new();
         let Comparison { scene, code, inset, panels, .. } = &comparison;
         hasher.update(serde_json::json!([scene, code, inset, panels]).to_string().as_bytes());
+        hasher.update(geometry(scene).as_bytes());
         for panel in panels.iter().filter(|panel| panel.value.is_none()) {
             let plan = strip::plan(programs, &comparison, panel)?;
             for text in composed_texts(programs, &plan, language)?.concat() {
@@ -147,7 +152,7 @@ impl StripCard {
         Ok(Self { comparison, fingerprint })
     }
 
-    /// What a line of `adapters.txt` begins with, if the picture is of today.
+    /// How the line of `adapters.txt` begins if the picture is up to date.
     pub fn current(&self, shot: &Shot) -> String {
         current(&strip_file(&self.comparison.name), shot, &self.fingerprint)
     }
@@ -184,18 +189,35 @@ fn composed_texts(
 }
 
 fn stages(programs: &Programs, pass: &Pass, language: Language) -> Result<Stages, Diagnostics> {
-    let unknown = || {
-        let message = format!("there is no program `{}`", pass.program);
-        vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
-    };
-    let program = programs.manifest().program(&pass.program).ok_or_else(unknown)?;
-    programs.stages(program, &pass.settings, language)
+    programs.stages(known(programs, &pass.program)?, &pass.settings, language)
 }
 
-/// All of a preset that its picture depends on, as one text.
+/// Everything of a preset that its picture depends on, as one text.
 fn settings(preset: &Preset) -> String {
     let Preset { program, key, scene, probe, passes, numbers, .. } = preset;
     serde_json::json!([program, key, scene, probe, passes, numbers]).to_string()
+}
+
+/// Shapes, lamps and viewer of a scene as text, to the thousandth: the last digits of a sine differ
+/// from machine to machine.
+fn geometry(scene: &str) -> String {
+    let Some(set) = sets::ALL.iter().find(|set| set.name == scene) else { return String::new() };
+    let Scene {
+        objects,
+        eye,
+        lamps,
+        materials,
+        ambient,
+        sky,
+        ground,
+        haze,
+        haze_range,
+        map_size,
+        shows_lamps,
+        maps: _,
+    } = (set.make)();
+    let seen = (objects, eye, lamps, materials);
+    format!("{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}")
 }
 
 fn texts(stages: &Stages) -> Vec<Arc<str>> {
@@ -211,26 +233,26 @@ fn named(stages: &Stages) -> Vec<String> {
     all.collect::<std::collections::BTreeSet<_>>().into_iter().collect()
 }
 
-/// The path of a picture beside the page, and that of the smaller one which the page shows.
+/// The path of a picture beside the page, and that of its small form, which the page shows.
 pub fn files(name: &str) -> [String; 2] {
     [format!("{name}.png"), format!("thumbs/{name}.png")]
 }
 
-/// The composed texts by path beside the page, those of the first card that has them.
+/// The composed texts, by path beside the page. Cards with the same texts share those of the first.
 pub fn composed(cards: &[&Card]) -> Vec<(String, String)> {
     let first = first_alike(cards);
     let own = cards.iter().enumerate().filter(|(index, _)| first[*index] == *index);
     own.flat_map(|(_, card)| card.files().zip(card.texts.iter().map(ToString::to_string))).collect()
 }
 
-/// For each card the first that has the same composed texts.
+/// For each card, the first card with the same composed texts.
 fn first_alike(cards: &[&Card]) -> Vec<usize> {
     let first =
         |card: &&Card| cards.iter().position(|other| other.texts == card.texts).unwrap_or(0);
     cards.iter().map(first).collect()
 }
 
-/// Which driver drew which picture of what: a line each, for the eye and for tests.
+/// Which driver drew which picture from what: a line for each picture, for people and for tests.
 pub fn adapters(exhibits: &[Exhibit], shot: &Shot) -> String {
     let line = |exhibit: &Exhibit| format!("{}, {}\n", exhibit.card.current(shot), exhibit.adapter);
     exhibits.iter().map(line).collect()

@@ -1,4 +1,4 @@
-//! Comparisons as `comparisons.toml` of the library has them, which explains its own form.
+//! Reads comparisons from `comparisons.toml` of the library, which explains its own format.
 
 use std::collections::BTreeMap;
 
@@ -19,15 +19,15 @@ const PATH: &str = "comparisons.toml";
 pub struct Comparison {
     pub name: String,
     pub doc: String,
-    /// What to look for.
+    /// What to look for in the picture.
     pub look: String,
-    /// What is drawn, by panels with a key.
+    /// The scene that panels with a key draw.
     pub scene: String,
-    /// WGSL before the values of panels without a key.
+    /// WGSL that stands before the values of panels without a key.
     pub code: String,
-    /// Upper left corner of the part that is enlarged, in shares of a panel.
+    /// The upper left corner of the part that is enlarged, as shares of a panel.
     pub inset: [f64; 2],
-    /// Least share of the pixels that differ visibly between neighbours.
+    /// The smallest share of pixels that must differ visibly between neighbouring panels.
     pub differs: f64,
     pub panels: Vec<Panel>,
 }
@@ -42,10 +42,11 @@ pub struct Panel {
     pub key: String,
     #[serde(default = "one")]
     pub cascades: u32,
-    /// Over those of the scene, by group and field, as in a preset.
+    /// Numbers that replace those of the scene, by group and field, as in a preset.
     #[serde(default)]
     pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
-    /// Instead of a key, a WGSL expression: the colour at `at`, from (-4/3, -1) to (4/3, 1).
+    /// Instead of a key, a WGSL expression for the colour at `at`, which goes from (-4/3, -1) to
+    /// (4/3, 1).
     pub value: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Words in pictures.
+//! Writes words into pictures.
 
 use std::convert::Infallible;
 
@@ -14,16 +14,16 @@ use crate::picture::pixels::Picture;
 
 const INK: Rgb888 = Rgb888::new(232, 234, 238);
 
-/// Writes one line from a place to the right, as far as the width reaches.
+/// Writes one line from a place to the right, as far as the width allows.
 pub fn write(picture: &mut Picture, text: &str, [left, top]: [u32; 2], width: u32) {
     let mut page = Page { picture, right: left + width };
     let style = MonoTextStyle::new(&FONT_10X20, INK);
     let place = Point::new(left as i32, top as i32);
-    // Nothing fails where pixels are bytes in memory.
+    // Writing pixels in memory cannot fail.
     let Ok(_) = Text::with_baseline(text, place, style, Baseline::Top).draw(&mut page);
 }
 
-/// A picture that is written on.
+/// A picture to write on.
 struct Page<'p> {
     picture: &'p mut Picture,
     right: u32,

@@ -1,4 +1,4 @@
-//! Comparisons: one thing drawn in several ways, side by side with a part enlarged.
+//! Draws comparisons: one thing drawn in several ways, side by side, with a part enlarged.
 //!
 //! `comparisons.toml -> panels -> one picture`
 
@@ -16,17 +16,20 @@ use crate::diagnostic::Diagnostics;
 use crate::execute::Session;
 use crate::picture::frame::Programs;
 
-/// How often a panel is larger than it is shown; its inset is shown as large as it was drawn.
+/// A panel is drawn this many times larger than it is shown. Its inset is shown at the size at
+/// which it was drawn.
 pub const ZOOM: u32 = 3;
 /// Pixels between panels, and the height of a label.
 const GAP: u32 = 6;
 const LABEL: u32 = 28;
-/// Behind everything.
+/// Pixels to the left and right of a label's words.
+const MARGIN: u32 = 6;
+/// The colour of the background.
 const GROUND: [u8; 3] = [24, 26, 30];
-/// Around the part that is enlarged.
+/// The colour of the frame around the part that is enlarged.
 const FRAME: [u8; 3] = [255, 208, 64];
 
-/// One panel, large.
+/// Draws one panel at its large size.
 ///
 /// # Errors
 /// Those of compositions and of the painter.
@@ -87,7 +90,7 @@ pub fn draw(
         let left = index as u32 * (width + GAP);
         let mut small = picture.shrunk(ZOOM);
         small.outline(inset.map(|at| at / ZOOM), [width / ZOOM, height / ZOOM], FRAME);
-        label::write(&mut strip, &panel.label, [left, 4], width);
+        label::write(&mut strip, &panel.label, [left + MARGIN, 4], width - 2 * MARGIN);
         strip.place(&small, [left, LABEL]);
         strip.place(&picture.part(inset, [width, height]), [left, LABEL + height + GAP]);
     }

@@ -1,4 +1,4 @@
-//! Pictures made by functions of the library themselves: a colour for each place.
+//! Draws pictures with functions of the library alone: a colour for each place.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -16,11 +16,11 @@ use crate::source::SourceSet;
 
 /// Name of the function around an expression.
 const FUNCTION: &str = "lamplight_picture";
-/// Places that are computed at once.
+/// How many places are computed at once.
 const AT_ONCE: usize = 1 << 16;
 
-/// The picture of an expression over `at: vec2f`, with y upwards from -1 to 1 and x as far as the
-/// picture is wider than high; `code` has the imports and functions that it needs.
+/// Draws an expression over `at: vec2f`. Its y goes upwards from -1 to 1, and its x from minus to
+/// plus the aspect ratio. `code` has the imports and functions that it needs.
 ///
 /// # Errors
 /// Those of the expression and of the executor.
@@ -60,7 +60,7 @@ fn colour(words: &[u32]) -> DVec3 {
     DVec3::new(number(0), number(1), number(2))
 }
 
-/// The middle of every pixel, moved by parts of it, as words.
+/// The centre of every pixel, moved by a part of a pixel, as words.
 fn places([width, height]: [u32; 2], shift: [f64; 2]) -> Vec<u32> {
     let (w, h) = (f64::from(width), f64::from(height));
     let place = |x: u32, y: u32| {

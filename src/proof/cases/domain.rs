@@ -1,4 +1,4 @@
-//! What values a parameter takes.
+//! The values that a parameter takes in a case.
 
 use super::random::Random;
 use super::reader::{Node, Value};
@@ -8,10 +8,11 @@ use crate::execute::kernel::Shape;
 use crate::limits::CASE_ROWS;
 use naga::ScalarKind;
 
-/// Most values of one domain.
+/// The most values of one domain.
 const MOST: u32 = CASE_ROWS as u32;
 
-/// One kind of domain in a case file: its key, the other keys that go with it, how it is read.
+/// A kind of domain in a case file: its key, the keys that may stand beside that, and how it is
+/// read.
 struct Kind {
     key: &'static str,
     others: &'static [&'static str],
@@ -80,28 +81,28 @@ const KINDS: &[Kind] = &[
     },
 ];
 
-/// Values that go wrong first.
+/// Values that are the first to go wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Special {
     /// Zeros of both signs, one and its neighbours, powers of two.
     Plain,
-    /// Those, subnormals, the smallest normal, and 1e-18.
+    /// Those of `Plain`, and subnormals, the smallest normal number, and 1e-18.
     Small,
-    /// Those, and 1e18 of both signs: squares of which are still finite.
+    /// Those of `Small`, and 1e18 of both signs, whose squares are still finite.
     All,
 }
 
 const SPECIALS: &[(&str, Special)] =
     &[("plain", Special::Plain), ("small", Special::Small), ("all", Special::All)];
 
-/// How a vector stands to another parameter.
+/// The relation of a vector to another parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum About {
     /// Unit, with a positive dot product.
     Hemisphere,
     /// Unit, nearly at right angles, on both sides.
     Grazing,
-    /// Equal.
+    /// Equal to it.
     Same,
 }
 
@@ -119,7 +120,7 @@ pub enum Domain {
     Union(Vec<Domain>),
 }
 
-/// The domains below a path: one for a plain parameter, one for each field of a struct.
+/// Reads the domains below a path: one for a plain parameter, one for each field of a struct.
 pub fn read(
     path: &str,
     node: &Node,
@@ -138,7 +139,7 @@ pub fn read(
     Ok(())
 }
 
-/// Whether every key belongs to one kind of domain: else the table lists fields of a struct.
+/// Whether every key belongs to one kind of domain. If not, the table lists fields of a struct.
 fn is_domain(node: &Node) -> bool {
     KINDS.iter().any(|kind| node.get(kind.key).is_some() && node.only(&keys(kind)).is_ok())
 }
@@ -154,7 +155,7 @@ fn domain(node: &Node) -> Result<Domain, Diagnostic> {
         }
         Value::Table(_) => match KINDS.iter().find(|kind| node.get(kind.key).is_some()) {
             Some(kind) => (kind.read)(node.required(kind.key)?, node),
-            None => Err(node.error("this table is no domain").note(format!(
+            None => Err(node.error("this table is not a domain").note(format!(
                 "domains are {}",
                 KINDS.iter().map(|kind| kind.key).collect::<Vec<_>>().join(", ")
             ))),
@@ -163,7 +164,8 @@ fn domain(node: &Node) -> Result<Domain, Diagnostic> {
     }
 }
 
-/// An element of a union: an array there lists values, a vector each.
+/// Reads an element of a union. An array there lists values; the value of a vector is an array
+/// itself.
 fn part(node: &Node) -> Result<Domain, Diagnostic> {
     match &node.value {
         Value::Array(values) => {
@@ -198,7 +200,7 @@ fn path(value: &Node) -> Result<String, Diagnostic> {
 }
 
 impl Domain {
-    /// The parameters whose values must be chosen before.
+    /// The parameters whose values must be chosen before this one's.
     pub fn needs(&self) -> Vec<&str> {
         match self {
             Self::About { of, .. } => vec![of],
@@ -225,7 +227,7 @@ impl Domain {
         }
     }
 
-    /// How many values the domain has for a parameter of the shape, none of them made.
+    /// How many values the domain has for a parameter of this shape. The values are not made.
     ///
     /// # Errors
     /// Why it has none: it is empty, or its values have another number of components.
@@ -274,8 +276,8 @@ impl Domain {
         if count == 0 { Err("the domain has no values".to_owned()) } else { Ok(count) }
     }
 
-    /// The values as words of the shape. `other` gives the value of a needed parameter, `salt`
-    /// keeps rows apart.
+    /// The values as words of the shape. `other` gives the value of a needed parameter. `salt`
+    /// makes random values of different rows differ.
     pub fn words(
         &self,
         shape: &Shape,
@@ -332,8 +334,8 @@ fn direction(size: usize) -> Result<(), String> {
     }
 }
 
-/// Refuses as many plain numbers as a vector has components: they would be vectors of equal
-/// components, and whoever writes them means one vector.
+/// Refuses as many plain numbers as a vector has components. They would be vectors with equal
+/// components, but whoever writes them means one vector.
 fn unmistakable(parts: &[Domain], size: usize) -> Result<(), String> {
     let one = |part: &Domain| match part {
         Domain::Values(values) => values.iter().map(|value| plain(value)).collect(),
@@ -350,7 +352,7 @@ fn unmistakable(parts: &[Domain], size: usize) -> Result<(), String> {
     ))
 }
 
-/// The number of a value that has one.
+/// The number of a value that consists of one.
 fn plain(value: &[f64]) -> Option<f64> {
     match value {
         [number] => Some(*number),

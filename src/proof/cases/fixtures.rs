@@ -1,4 +1,4 @@
-//! `[fixture.NAME]` tables: textures by pattern, samplers.
+//! Reads `[fixture.NAME]` tables: samplers, and textures made from a pattern.
 
 use super::reader::Node;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -8,7 +8,7 @@ const TEXTURE_KEYS: &[&str] =
     &["kind", "size", "pattern", "low", "high", "cells", "edge", "texels"];
 const SAMPLER_KEYS: &[&str] = &["kind", "compare", "filter", "address"];
 
-/// How texels are made: a name, and the weight of `high` at a place in [0, 1)^2 of a layer.
+/// A pattern: its name, and the weight of `high` at a place of a layer, in [0, 1)^2.
 type Pattern = fn(&Settings, f64, f64, u32) -> f64;
 
 const PATTERNS: &[(&str, Pattern)] = &[

@@ -1,4 +1,4 @@
-//! Laws as a case file has them.
+//! Reads laws from a case file.
 
 use super::Text;
 use super::reader::{Node, Value};
@@ -13,7 +13,7 @@ pub fn read(node: &Node) -> Result<Law, Diagnostic> {
     let Some((kind, value)) = found else {
         let known: Vec<_> = laws::KINDS.iter().map(|kind| kind.name).collect();
         return Err(node
-            .error("this table is no law")
+            .error("this table is not a law")
             .note(format!("laws are {}", known.join(", "))));
     };
     let options = kind.takes.options();
@@ -29,7 +29,7 @@ pub fn read(node: &Node) -> Result<Law, Diagnostic> {
     filled(Law::new(kind, node.span), node, value)
 }
 
-/// The law with what its kind takes.
+/// The law with the values that its kind takes.
 fn filled(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> {
     match law.kind.takes {
         Takes::Numbers => law.numbers = value.numbers()?,

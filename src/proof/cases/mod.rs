@@ -1,4 +1,5 @@
-//! Case files: what to try of a function, what to expect, how far it may be off.
+//! Reads case files, which say what to try of a function, what to expect, and how far results may
+//! be off.
 //!
 //! A file `NAME.toml` beside `NAME.wesl` and `NAME.glsl` holds the cases of that module:
 //!
@@ -32,7 +33,7 @@
 //! `count`; `same = "n"`; `around = VALUE` with `ulps`; `special = "plain" | "small" | "all"`; and
 //! arrays of these, in which an array lists values: `n = [{ unit = 8 }, [[0, 0, 0], [0, 0, 1]]]`. Fields of structs are named by path (`light.kind = 3`); those not named are 0.
 //!
-//! Oracles, none of which but the first needs Rust:
+//! Oracles, of which only the first needs Rust:
 //!
 //! | given | expected is |
 //! |---|---|
@@ -42,7 +43,7 @@
 //! | `oracle = "eval"` | what the code itself gives in f64; what rounding to f32 may add to it is allowed |
 //! | `oracle = "none"` | nothing: laws alone |
 //!
-//! Without any of them: the reference where there is one, else `eval`.
+//! Without any of them, the reference is the oracle if there is one, else `eval`.
 //!
 //! Error terms are listed in [`super::tolerance`], laws in [`super::laws`].
 
@@ -91,32 +92,32 @@ pub struct File {
     pub cases: Vec<Case>,
 }
 
-/// One function with inputs and expectations. Formulas are texts until the function's
+/// One function with inputs and expectations. Formulas are kept as texts until the function's
 /// parameters are known.
 #[derive(Debug)]
 pub struct Case {
     pub function: String,
     /// Where the function is named.
     pub span: Span,
-    /// Path of a parameter or of a field, what it takes, and where that is written.
+    /// The path of a parameter or a field, its values, and the place in the file.
     inputs: Vec<(String, Domain, Span)>,
     zip: bool,
     pub oracle: Oracle,
     pub tolerance: Vec<Term<Text>>,
     filter: Option<Text>,
     pub near: Option<(Text, f64)>,
-    /// Largest share of ambiguous rows.
+    /// The largest share of rows that may be ambiguous.
     pub ambiguous: f64,
     pub laws: Vec<Law>,
     pub fixtures: BTreeMap<String, Arc<Fixture>>,
-    /// The same by the fixtures' names in the file.
+    /// For each texture or sampler, the name of its fixture in the file.
     pub fixture_names: Vec<(String, String)>,
 }
 
 /// Where the expected value comes from.
 #[derive(Debug)]
 pub enum Oracle {
-    /// The reference where there is one, else [`Oracle::Eval`].
+    /// The reference if there is one, else [`Oracle::Eval`].
     Default,
     Reference,
     /// The code's own value in f64.
@@ -126,7 +127,7 @@ pub enum Oracle {
     None,
 }
 
-/// One row of a table: values by path, and what they give.
+/// A row of a table: values by path, and what the function must return for them.
 #[derive(Debug)]
 pub struct TableRow {
     pub values: Vec<(String, Vec<f64>)>,
@@ -134,7 +135,7 @@ pub struct TableRow {
     pub span: Span,
 }
 
-/// A formula as it is written.
+/// A formula as text.
 #[derive(Debug, Clone)]
 pub struct Text {
     pub text: String,
@@ -142,7 +143,7 @@ pub struct Text {
 }
 
 impl Case {
-    /// Which rows are meant.
+    /// The formula that says which rows are kept.
     pub fn filter(&self) -> Option<&Text> {
         self.filter.as_ref()
     }
@@ -152,7 +153,8 @@ impl Text {
     /// The formula over the parameters of a function.
     pub fn bind(&self, scope: &Scope<'_>) -> Result<Formula, Diagnostic> {
         Formula::parse(&self.text, scope).map_err(|Mistake { range, message, note }| {
-            // The span has the quotation mark before the text; an escaped text is longer than its value.
+            // The span includes the quotation marks. A text with escapes is longer in the file than
+            // its value.
             let exact = (self.span.end - self.span.start) as usize == self.text.len() + 2;
             let start = self.span.start as usize + 1;
             let span = if exact {
@@ -265,7 +267,7 @@ fn fixture_names(node: &Node) -> Result<Vec<(String, String)>, Diagnostic> {
         .collect()
 }
 
-/// An oracle in a case file that takes no more than its name.
+/// An oracle that a case file gives by name alone.
 type NamedOracle = (&'static str, fn() -> Oracle);
 
 const ORACLES: &[NamedOracle] =
@@ -286,7 +288,7 @@ fn table_row(node: &Node) -> Result<TableRow, Diagnostic> {
     Ok(TableRow { values: values_by_path("", node, &["expect"])?, expect, span: node.span })
 }
 
-/// Values of a table by path; tables within it are fields.
+/// The values of a table by path. Tables within it are fields.
 fn values_by_path(
     prefix: &str,
     node: &Node,
@@ -329,7 +331,7 @@ fn tolerance_terms(node: &Node) -> Result<Vec<Term<Text>>, Diagnostic> {
     Ok(terms)
 }
 
-/// A plain number is the coefficient of a term without formulas; else a table.
+/// The parts of a term. A plain number is the coefficient of a term without formulas.
 fn term_parts(kind: &tolerance::Kind, node: &Node) -> Result<(f64, Vec<Text>), Diagnostic> {
     if kind.formulas.is_empty() {
         return Ok((node.number()?, Vec::new()));

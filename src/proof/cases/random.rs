@@ -1,4 +1,4 @@
-//! Seeded numbers, the same on every machine.
+//! Random numbers from a seed, the same on every machine.
 
 /// The splitmix64 generator (Steele, Lea, Flood 2014): one addition and a mix for each number.
 #[derive(Debug, Clone)]

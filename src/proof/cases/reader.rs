@@ -1,4 +1,4 @@
-//! TOML with spans, read by hand so that every mistake points to its place.
+//! Reads TOML with spans, by hand, so that every mistake is reported at its place.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -6,14 +6,14 @@ use toml::de::{DeTable, DeValue};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::{SourceId, Span};
 
-/// A value of a case file with where it stands.
+/// A value of a case file, and its place.
 #[derive(Debug, Clone)]
 pub struct Node {
     pub value: Value,
     pub span: Span,
 }
 
-/// A value, owned.
+/// A value.
 #[derive(Debug, Clone)]
 pub enum Value {
     Bool(bool),
@@ -23,7 +23,7 @@ pub enum Value {
     Table(Vec<(Key, Node)>),
 }
 
-/// A key with its place.
+/// A key, and its place.
 #[derive(Debug, Clone)]
 pub struct Key {
     pub name: String,
@@ -124,7 +124,7 @@ impl Node {
         Ok(number as u32)
     }
 
-    /// Numbers of an array, arrays within it included; or one number.
+    /// All numbers of an array, with those of arrays within it; or a single number.
     pub fn numbers(&self) -> Result<Vec<f64>, Diagnostic> {
         match &self.value {
             Value::Array(elements) => elements
@@ -144,7 +144,7 @@ impl Node {
         }
     }
 
-    /// One name of a closed set.
+    /// One of several known names.
     pub fn choice<T: Copy>(&self, known: &[(&str, T)]) -> Result<T, Diagnostic> {
         let text = self.text()?;
         known.iter().find(|(name, _)| *name == text).map(|(_, value)| *value).ok_or_else(|| {
@@ -154,7 +154,7 @@ impl Node {
         })
     }
 
-    /// The value of a key; an error where the table lacks it.
+    /// The value of a key, which must be there.
     pub fn required(&self, name: &str) -> Result<&Self, Diagnostic> {
         self.get(name).ok_or_else(|| self.error(format!("`{name}` is missing")))
     }
@@ -169,7 +169,7 @@ impl Node {
         }
     }
 
-    /// An error for each key that is not known.
+    /// Errors for all keys that are not known.
     pub fn only(&self, known: &[&str]) -> Result<(), Diagnostics> {
         let entries = self.entries().map_err(|error| vec![error])?;
         let errors: Vec<_> = entries

@@ -1,4 +1,4 @@
-//! From domains to the words of every invocation.
+//! Makes the words of every invocation from the domains of a case.
 
 use super::domain::{self, Domain};
 use super::{Case, Oracle, TableRow};
@@ -9,21 +9,21 @@ use crate::limits::{CASE_ROWS, CASE_WORDS, Steps};
 use crate::proof::formula::Scope;
 use naga::ScalarKind;
 
-/// The inputs of a case, one row an invocation.
+/// The inputs of a case, with one row for each invocation.
 #[derive(Debug)]
 pub struct Rows {
-    /// Words, row by row; what an executor takes.
+    /// The words, row by row, which executors take.
     pub words: Vec<u32>,
-    /// The same as numbers; what references and formulas take.
+    /// The same as numbers, which references and formulas take.
     pub numbers: Vec<f64>,
-    /// Words of a row.
+    /// How many words a row has.
     pub stride: usize,
     pub kinds: Vec<ScalarKind>,
-    /// Word ranges that hold a unit vector: shrunk as a whole.
+    /// The ranges of words that hold a unit vector. Shrinking changes such a vector as a whole.
     pub units: Vec<std::ops::Range<usize>>,
 }
 
-/// One column while rows grow.
+/// One column while rows are made.
 struct Column<'a> {
     first: usize,
     shape: Shape,
@@ -160,7 +160,7 @@ fn bounded(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<usize, 
         .note("`mode = \"zip\"` takes the domains side by side"))
 }
 
-/// Columns in an order in which each comes after those it needs.
+/// The columns, each after those that it needs.
 fn columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Diagnostic> {
     let mut left: Vec<_> = case.inputs.iter().collect();
     let mut done: Vec<&str> = Vec::new();
@@ -204,7 +204,7 @@ fn columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Dia
     Ok(columns)
 }
 
-/// How rows are laid out while columns are added to them.
+/// The layout of rows while columns are added to them.
 struct Grid<'g, 's> {
     kinds: &'g [ScalarKind],
     scope: &'g Scope<'s>,
@@ -212,7 +212,7 @@ struct Grid<'g, 's> {
 }
 
 impl Grid<'_, '_> {
-    /// Every row with every value of the column.
+    /// Combines every row with every value of the column.
     fn product(&self, rows: &[u32], column: &Column<'_>) -> Vec<u32> {
         let mut grown = Vec::with_capacity(rows.len().saturating_mul(column.count));
         let mut values = Vec::new();
@@ -227,7 +227,7 @@ impl Grid<'_, '_> {
         grown
     }
 
-    /// Rows and values side by side; the shorter begins anew.
+    /// Combines rows and values one by one. The shorter list starts again at its end.
     fn zipped(&self, rows: &[u32], column: &Column<'_>) -> Vec<u32> {
         let rows: Vec<&[u32]> = rows.chunks(self.stride).collect();
         let Some(first) = rows.first() else { return Vec::new() };
@@ -259,7 +259,7 @@ impl Grid<'_, '_> {
     }
 }
 
-/// A row with a value in its place.
+/// Adds a row with a value put into it.
 fn push(rows: &mut Vec<u32>, row: &[u32], first: usize, value: &[u32]) {
     let start = rows.len() + first;
     rows.extend_from_slice(row);

@@ -43,7 +43,7 @@ fn hemisphere(base: &[f64], random: &mut Random) -> Vec<f64> {
     unit.iter().map(|x| x * side).collect()
 }
 
-/// A direction at right angles, tilted by 10^-1 to 10^-7 to either side.
+/// A direction at a right angle, tilted by 10^-1 to 10^-7 to either side.
 fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
     let tilt =
         10f64.powi(-1 - (index / 2 % 7) as i32) * if index.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -54,7 +54,7 @@ fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
     tilted.iter().map(|x| x / length).collect()
 }
 
-/// The value, and its neighbours in f32 on both sides, by component at once.
+/// The value and its neighbours in f32 on both sides. All components move together.
 pub(super) fn around(value: &[f64], ulps: u32) -> Vec<Vec<f64>> {
     let neighbours = |x: f64| {
         let walk = |step: fn(f32) -> f32| {

@@ -1,4 +1,4 @@
-//! A case made ready: kernels, rows, expected values. Nothing here needs an executor.
+//! Prepares a case: kernels, rows, expected values. No executor is needed for this.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -27,11 +27,11 @@ pub struct Job<'a> {
     pub case: &'a Case,
     /// Index of the case in its file.
     pub index: usize,
-    /// What its measurements are recorded under.
+    /// The name under which its measurements are recorded.
     pub record: String,
     pub kernels: Vec<(Language, Kernel)>,
     pub rows: Rows,
-    /// For each row; empty where the case has laws alone.
+    /// The expected values of each row; empty where the case has only laws.
     pub expected: Vec<Goal>,
     pub terms: Vec<Bound>,
     pub near: Option<(Formula, f64)>,
@@ -41,21 +41,21 @@ pub struct Job<'a> {
     pub fixtures: Vec<Arc<Fixture>>,
 }
 
-/// A law, the rows it compares with, and the other functions it is about.
+/// A law, the rows that it compares with, and the other functions that it is about.
 pub struct BoundLaw<'a> {
     pub law: &'a Law,
     pub rows: Option<Rows>,
     pub partners: Vec<Partner>,
 }
 
-/// Gives the expected value of a row. It must answer for rows that no case lists, since shrinking
-/// a failure tries those.
+/// Gives the expected value of a row. It must also answer for rows that the case does not list,
+/// since shrinking a failure tries such rows.
 pub enum BoundOracle {
     Reference(Reference),
     Formula(Formula),
-    /// The first language's code, value plus error.
+    /// The code of the first language, computed with error bounds.
     Eval(Box<Interpreter>),
-    /// A table or nothing: rows cannot be changed.
+    /// A table, or no oracle. Only the rows of the case are known.
     Fixed,
 }
 
@@ -63,9 +63,9 @@ pub enum BoundOracle {
 #[derive(Clone)]
 pub struct Goal {
     pub expected: Expected,
-    /// An error that is allowed for each word in addition to the terms of the case; empty for none.
+    /// An error that is allowed for each word beside the terms of the case; may be empty.
     pub errors: Vec<f64>,
-    /// Whether rounding may have decided a comparison in the computation.
+    /// Whether rounding may decide a comparison on the way to the value.
     pub doubtful: bool,
 }
 
@@ -76,7 +76,7 @@ impl From<Expected> for Goal {
 }
 
 impl Job<'_> {
-    /// The expected values of rows; `None` if the oracle knows the rows of the case alone.
+    /// The expected values of rows; `None` if the oracle knows only the rows of the case.
     pub fn goals(&self, rows: &Rows) -> Result<Option<Vec<Goal>>, Diagnostic> {
         let each = |expect: &(dyn Fn(&[f64]) -> Expected + Sync)| -> Vec<Goal> {
             (0..rows.len()).into_par_iter().map(|index| expect(rows.row(index)).into()).collect()
@@ -95,7 +95,7 @@ impl Job<'_> {
         }
     }
 
-    /// The kernel whose parameters name the columns: the first language's.
+    /// The kernel of the first language, whose parameters name the columns.
     pub fn kernel(&self) -> &Kernel {
         &self.kernels[0].1
     }
@@ -143,7 +143,7 @@ pub fn prepare<'a>(
     if errors.is_empty() { Ok(done) } else { Err(errors) }
 }
 
-/// An error about a function is put at the first case that names the function.
+/// Puts an error about a function at the first case that names the function.
 fn placed(error: Diagnostic, first: &HashMap<&str, &Case>) -> Diagnostic {
     match error.item.as_deref().and_then(|item| first.get(item)) {
         Some(case) if error.labels.is_empty() => error.at(case.span, "named here"),
@@ -151,12 +151,12 @@ fn placed(error: Diagnostic, first: &HashMap<&str, &Case>) -> Diagnostic {
     }
 }
 
-/// An error that has no place yet is put at the case.
+/// Puts an error without a place at the case.
 fn placed_at(error: Diagnostic, case: &Case) -> Diagnostic {
     if error.labels.is_empty() { error.at(case.span, "in this case") } else { error }
 }
 
-/// The function in each language, with the same interface in all; there is at least one.
+/// The function in each language, at least one. Its interface must be the same in all.
 fn kernels(
     case: &Case,
     modules: &[(Language, Arc<naga::Module>)],
@@ -325,10 +325,10 @@ fn expected(job: &Job<'_>) -> Result<Vec<Goal>, Diagnostic> {
     }
 }
 
-/// Rows that one thread runs before it asks for more.
+/// How many rows a thread runs before it asks for more.
 const CHUNK: usize = 1024;
 
-/// Value plus error of every row.
+/// The value of every row, with a bound of its error.
 pub fn bounded(
     interpreter: &Interpreter,
     rows: &Rows,

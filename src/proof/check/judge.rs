@@ -8,15 +8,15 @@ use crate::proof::cases::Rows;
 use crate::proof::tolerance;
 use naga::ScalarKind;
 
-/// What became of the rows of a case.
+/// The result of checking the rows of a case.
 #[derive(Debug, Default)]
 pub struct Verdict {
-    /// Rows tried.
+    /// How many rows were tried.
     pub inputs: usize,
     /// Rows for which every result is accepted: f32 cannot represent the expected value, or the
     /// function promises nothing there.
     pub indeterminate: usize,
-    /// Rows that are wrong, but within the margin of a comparison that rounding may decide.
+    /// Rows that are wrong, but where rounding may decide a comparison.
     pub ambiguous: usize,
     /// Whether there are more ambiguous rows than the case allows.
     pub too_ambiguous: bool,
@@ -27,11 +27,11 @@ pub struct Verdict {
     /// Rows that are wrong.
     pub failing: Vec<usize>,
     pub laws: Vec<LawVerdict>,
-    /// Largest distance from the first language's results, in units in the last place.
+    /// Largest distance from the results of the first language, in units in the last place.
     pub parity: Option<f64>,
-    /// A small failing input, as a text with a case to paste.
+    /// A small failing input, as text, with a case to paste.
     pub smallest: Option<String>,
-    /// How the error runs over the inputs, where it was asked for.
+    /// How the error depends on the inputs, if that was asked for.
     pub profile: Option<Box<Profile>>,
 }
 
@@ -57,14 +57,14 @@ impl Verdict {
         !self.too_ambiguous && !self.proves_nothing() && self.laws.iter().all(|law| law.broken == 0)
     }
 
-    /// Whether every possible value would have been accepted, so that nothing was tested.
+    /// Whether every possible value would have been accepted. Then nothing was tested.
     pub fn proves_nothing(&self) -> bool {
         self.inputs > 0 && self.indeterminate == self.inputs
     }
 }
 
 impl Worst {
-    /// Error over what is allowed; at most 1 passes.
+    /// The error divided by what is allowed. It passes up to 1.
     pub fn share(&self) -> f64 {
         if self.error == 0.0 { 0.0 } else { self.error / self.allowed }
     }
@@ -74,7 +74,7 @@ impl Worst {
         self.error / tolerance::ulp(self.expected)
     }
 
-    /// What is allowed in units in the last place of the expected value.
+    /// What is allowed, in units in the last place of the expected value.
     pub fn allowed_ulps(&self) -> f64 {
         self.allowed / tolerance::ulp(self.expected)
     }
@@ -114,7 +114,7 @@ pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]) -> 
     verdict
 }
 
-/// The worst component of the alternative that fits best.
+/// Compares with each accepted value, and returns the worst component of the one that fits best.
 pub fn compare(
     job: &Job<'_>,
     row: &[f64],
@@ -128,7 +128,8 @@ pub fn compare(
     values.filter_map(one).min_by(|a, b| a.share().total_cmp(&b.share()))
 }
 
-/// `of` is the expected value and what each word may be off beside the terms.
+/// Compares with one value. `of` is the expected value and the error that each word may have beside
+/// the terms.
 fn compare_one(
     job: &Job<'_>,
     row: &[f64],
@@ -160,7 +161,8 @@ fn compare_one(
     (0..kinds.len()).map(component).max_by(|a, b| a.share().total_cmp(&b.share()))
 }
 
-/// The error of a component. Subnormal results may be flushed to zero; NaN has an infinite error.
+/// The error of a component. A subnormal result may have been flushed to zero. NaN has an infinite
+/// error.
 pub fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
     let error = if found == expected { 0.0 } else { (found - expected).abs() };
     if error.is_nan() {
@@ -172,7 +174,7 @@ pub fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
     }
 }
 
-/// Whether anything is right.
+/// Whether every result is accepted.
 pub fn is_indeterminate(goal: &Goal) -> bool {
     let held = |value: &f64| value.is_finite() && value.abs() <= f64::from(f32::MAX);
     !goal.expected.value.iter().all(held) || !goal.errors.iter().all(|error| error.is_finite())
@@ -183,7 +185,8 @@ pub fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
     job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
 }
 
-/// The distance of two languages on one executor. It is infinite if values differ that are not f32.
+/// The distance between the results of two languages on one executor. It is infinite if values
+/// differ that are not f32.
 pub fn parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
     let kinds = job.kernel().result_kinds();
     let apart = |((a, b), kind): ((&u32, &u32), &ScalarKind)| {

@@ -8,27 +8,27 @@ use crate::proof::laws::{self, Integral, Law};
 use crate::proof::tolerance;
 use naga::ScalarKind;
 
-/// What became of a law.
+/// The result of checking a law.
 #[derive(Debug)]
 pub struct LawVerdict {
     pub name: &'static str,
     /// Rows that break it, with the first one's words.
     pub broken: usize,
     pub example: Option<String>,
-    /// The first row that breaks it, where it is one row that does.
+    /// The first row that breaks it, if a single row can break it.
     pub row: Option<usize>,
     /// A small input that breaks it, with a case to paste.
     pub smallest: Option<String>,
 }
 
-/// Rows with what they gave.
+/// Rows with their results.
 #[derive(Clone, Copy)]
 pub struct Given<'a> {
     pub rows: &'a Rows,
-    /// What each should give; none where that is not known.
+    /// The expected value of each row, if that is known.
     pub expected: &'a [Goal],
     pub results: &'a [u32],
-    /// The rows that a law compares these with, and what they gave.
+    /// The rows that the law compares with, and their results.
     pub transformed: Option<(&'a Rows, &'a [u32])>,
 }
 
@@ -48,7 +48,7 @@ pub fn judge(job: &Job<'_>, law: &Law, given: &Given<'_>) -> LawVerdict {
     }
 }
 
-/// A law of single rows, or of a row and its transformed one.
+/// Judges a law about single rows, or about a row and its transformed row.
 fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
     for index in 0..given.rows.len() {
@@ -99,7 +99,7 @@ pub fn amount(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.2e}") }
 }
 
-/// Distance between the numbers of two rows.
+/// The distance between the inputs of two rows.
 fn apart(row: &[f64], other: &[f64]) -> f64 {
     row.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }

@@ -32,8 +32,8 @@ use crate::source::Span;
 use crate::validate::on_large_stack;
 use job::Job;
 
-/// Gives the module that holds functions of a library module, in a language: composed, parsed
-/// and valid. Names of the functions are kept.
+/// Gives the module with some functions of a library module in a language: composed, parsed and
+/// valid. The functions keep their names.
 pub type Subjects<'a> =
     dyn Fn(&str, Language, &[String]) -> Result<Arc<naga::Module>, Diagnostics> + Sync + 'a;
 
@@ -44,11 +44,11 @@ pub struct Open {
     pub session: Box<dyn Session>,
 }
 
-/// What a check found, in the order of files, cases, languages, executors.
+/// What a check found, in the order of files, cases, languages and executors.
 #[derive(Debug, Default)]
 pub struct Report {
     pub outcomes: Vec<Outcome>,
-    /// One for each case, where they were asked for.
+    /// The proof of each case, if proofs were asked for.
     pub proofs: Vec<Proof>,
     /// Paths of functions that no case calls.
     pub untested: Vec<String>,
@@ -68,14 +68,14 @@ pub struct Outcome {
     pub case: usize,
     /// Where the case names the function.
     pub span: Span,
-    /// What its measurements are recorded under: the function's path and, from its second case
-    /// on, the number of the case, `math::safe::saturate#2`.
+    /// The name under which its measurements are recorded: the function's path and, from its second
+    /// case on, the number of the case, as in `math::safe::saturate#2`.
     pub record: String,
-    /// What was found; or why the executor did not run it.
+    /// The result, or why the executor did not run the function.
     pub verdict: Result<Verdict, Diagnostic>,
-    /// Share of the stated tolerance that was recorded for this adapter.
+    /// The share of the stated tolerance that is recorded for this adapter.
     pub recorded: Option<f64>,
-    /// Share that a waiver lets the executor need, and its reason.
+    /// The share that a waiver allows the executor, with its reason.
     pub waiver: Option<(f64, String)>,
 }
 
@@ -85,35 +85,36 @@ impl Outcome {
         format!("{}::{}", self.module, self.function)
     }
 
-    /// Whether every row and law holds, and no more is needed than was recorded.
+    /// Whether every row and law holds, and the error is not larger than recorded.
     pub fn passed(&self) -> bool {
         self.is_within() && !self.exceeds_driver()
     }
 
-    /// Why the executor has no way to run the function, where that is so: it neither passes nor
+    /// Why the executor cannot run the function, if it cannot. Such an outcome neither passes nor
     /// fails.
     pub fn lacks(&self) -> Option<&Diagnostic> {
         let is_lack = |error: &&Diagnostic| error.code.name == codes::EXECUTOR_LACKS.name;
         self.verdict.as_ref().err().filter(is_lack)
     }
 
-    /// Whether it ran and does not pass.
+    /// Whether the function ran and does not pass.
     pub fn failed(&self) -> bool {
         !self.passed() && self.lacks().is_none()
     }
 
-    /// Whether more error was met than the driver tier allows.
+    /// Whether the error is larger than the driver tier allows.
     pub fn exceeds_driver(&self) -> bool {
         self.of_driver().is_some_and(|share| share > 1.0)
     }
 
-    /// The worst error over what the driver tier allows, where it was recorded for this adapter.
+    /// The worst error divided by what the driver tier allows, if that is recorded for this
+    /// adapter.
     pub fn of_driver(&self) -> Option<f64> {
         let share = self.verdict.as_ref().ok()?.worst.map_or(0.0, |worst| worst.share());
         Some(share / (ratchet::SLACK * self.recorded?))
     }
 
-    /// Whether the values are within what is stated, or what a waiver allows.
+    /// Whether the values are within what the case states, or what a waiver allows.
     pub fn is_within(&self) -> bool {
         self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict))
     }
@@ -142,13 +143,14 @@ impl Report {
 /// How to check.
 #[derive(Debug, Clone, Copy)]
 pub struct Options<'a> {
-    /// Whether the references of `src/proof/references/` are meant by a module's path.
+    /// Whether the references of `src/proof/references/` apply to modules of these paths.
     pub references: bool,
-    /// Whether to keep how the error runs over the inputs.
+    /// Whether to record how the error depends on the inputs.
     pub profile: bool,
-    /// Whether to compare with what WGSL allows, and the languages in f64.
+    /// Whether to compare tolerances with what WGSL allows, and the languages with each other in
+    /// f64.
     pub prove: bool,
-    /// Whether to judge laws that are about several functions.
+    /// Whether to judge laws about several functions.
     pub partners: bool,
     /// What drivers were measured to need.
     pub ratchet: Option<&'a Ratchet>,
@@ -172,7 +174,7 @@ pub fn check(
 
 /// Checks the cases of each module (`lighting::spot` and its file).
 ///
-/// Errors are mistakes in the cases or in the modules; failing numbers are in the report.
+/// Errors are mistakes in the cases or in the modules. Wrong results are in the report.
 pub fn check_with(
     files: &[(String, File)],
     languages: &[Language],
@@ -180,8 +182,8 @@ pub fn check_with(
     open: &mut [Open],
     options: &Options<'_>,
 ) -> Result<Report, Diagnostics> {
-    // One batch on the large stacks: a thread that waits for a part of its job takes up other jobs
-    // meanwhile, on top of it.
+    // All in one batch on the large stacks. A thread that waits for a part of its job takes up
+    // another job on the same stack meanwhile.
     let prepared: Vec<_> = on_large_stack(|| {
         files
             .par_iter()
@@ -259,7 +261,8 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outc
     outcomes
 }
 
-/// One case in one language; `first` keeps the first language's results, which others are compared with.
+/// Runs one case in one language. `first` keeps the results of the first language, with which the
+/// others are compared.
 fn run(
     job: &Job<'_>,
     (language, kernel): (Language, &Kernel),

@@ -1,4 +1,4 @@
-//! Laws about several functions: kernels of the others, and what they must give.
+//! Judges laws about several functions, with kernels of the other functions.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::proof::laws::{Albedo, Inverse, Law, Wanted};
 /// Another function that a law is about.
 pub struct Partner {
     pub kernels: Vec<(Language, Kernel)>,
-    /// What it is called with, where that does not depend on results.
+    /// The arguments that it is called with, where they do not depend on results.
     rows: Option<Rows>,
 }
 
@@ -74,7 +74,7 @@ pub fn judge(
     }
 }
 
-/// Components of a function's values, one list a call.
+/// The components of a function's values, one list for each call.
 type Values = Vec<Vec<f64>>;
 
 fn run(
@@ -94,7 +94,7 @@ fn run(
     Ok(words.chunks(kinds.len().max(1)).map(call).collect())
 }
 
-/// By component; a number goes with every component.
+/// The product, component by component. A single number is multiplied with every component.
 fn product(left: &Values, right: &Values) -> Values {
     let pick = |values: &[f64], index: usize| values[if values.len() == 1 { 0 } else { index }];
     let one = |(a, b): (&Vec<f64>, &Vec<f64>)| {
@@ -136,7 +136,7 @@ fn albedo(
             };
             let at_most = matches!(rule.wanted, Wanted::AtMost(_));
             let off = if at_most { (sum - wanted).max(0.0) } else { (sum - wanted).abs() };
-            // No number is off, too.
+            // An error of NaN counts as too large.
             if off.is_nan() || off > rule.within {
                 verdict.broken += 1;
                 let most = if at_most { "at most " } else { "" };
@@ -158,7 +158,7 @@ fn wanted(rule: &Albedo, scope: &Scope<'_>) -> Result<Option<Formula>, Diagnosti
     }
 }
 
-/// A component of a formula's value; a number is for every component.
+/// A component of a formula's value. A single number stands for every component.
 fn component_of(values: &[f64], component: usize) -> f64 {
     let index = if values.len() == 1 { 0 } else { component };
     values.get(index).copied().unwrap_or(f64::NAN)
@@ -207,12 +207,12 @@ fn inverse(
     Ok(verdict)
 }
 
-/// The larger one, or no number if either is none.
+/// The larger number; NaN if one of them is NaN.
 fn nan_max(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
-/// The calls that lead back: the value's words first, then parameters of the case by name.
+/// The calls of the inverse: the value's words first, then parameters of the case by name.
 fn back(job: &Job<'_>, kernel: &Kernel, scope: &Scope<'_>, results: &[u32]) -> Rows {
     let kinds: Vec<_> = kernel.words().flat_map(|(_, shape)| shape.kinds()).collect();
     let (count, own) = (job.kernel().result_words() as usize, job.kernel().result_kinds());

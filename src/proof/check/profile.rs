@@ -1,26 +1,26 @@
-//! How the error of a case runs over its inputs: what the plots of a report show.
+//! How the error of a case depends on its inputs, for the plots of a report.
 
 use super::job::{Goal, Job};
 use super::judge::{self, Worst};
 use crate::execute::kernel::Shape;
 
-/// Bins along a parameter.
+/// How many bins an axis is divided into.
 pub const BINS: usize = 48;
-/// Cells along each side of a map.
+/// How many cells each side of a map has.
 pub const CELLS: usize = 32;
-/// Inputs that are kept whole.
+/// How many of the worst inputs are kept.
 const WORST: usize = 5;
-/// Largest over median magnitude from which a scale is no longer linear.
+/// The largest magnitude divided by the median one, above which a scale is not linear.
 const WIDE: f64 = 1e3;
 
 /// The error over the inputs of one case in one language on one executor.
 #[derive(Debug, Clone)]
 pub struct Profile {
-    /// One for each word of a row that varies.
+    /// An axis for each word of a row that varies.
     pub axes: Vec<Axis>,
-    /// Where exactly two words vary.
+    /// A map, if exactly two words vary.
     pub map: Option<Map>,
-    /// The inputs that came nearest to what is allowed, or went beyond.
+    /// The inputs whose error is closest to what is allowed, or beyond it.
     pub worst: Vec<Input>,
 }
 
@@ -30,20 +30,21 @@ pub struct Axis {
     /// `c`, `at.uv.x`.
     pub name: String,
     pub scale: Scale,
-    /// By place along the scale; bins without a row are left out.
+    /// The bins, by their place along the scale. Bins without a row are left out.
     pub bins: Vec<Bin>,
 }
 
-/// How values of an axis lie along a plot.
+/// How the values of an axis are placed along a plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     pub low: f64,
     pub high: f64,
-    /// Around zero, values up to this size lie evenly, larger ones by their logarithm; 0 for an even scale.
+    /// Values up to this size are placed linearly, larger ones by their logarithm; 0 for a linear
+    /// scale.
     pub bend: f64,
 }
 
-/// The largest of a slice of rows.
+/// The largest errors of the rows in a part of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bin {
     /// Index along the axis, below [`BINS`].
@@ -53,13 +54,13 @@ pub struct Bin {
     pub ulps: f64,
 }
 
-/// Largest share of what is allowed over two parameters.
+/// The largest share of what is allowed, over two parameters.
 #[derive(Debug, Clone)]
 pub struct Map {
     /// Indices of the axes.
     pub across: usize,
     pub up: usize,
-    /// [`CELLS`]² shares, row by row from the lowest value of `up`; NaN where there is no row.
+    /// [`CELLS`]² shares, row by row from the lowest value of `up`. A cell without a row is NaN.
     pub cells: Vec<f64>,
 }
 

@@ -1,5 +1,5 @@
-//! What is known of a case without a device: what WGSL allows its code, and whether both
-//! languages mean the same.
+//! What can be proven about a case without a device: how its tolerance compares with what WGSL
+//! allows, and whether both languages mean the same.
 
 use rayon::prelude::*;
 
@@ -13,13 +13,13 @@ use crate::source::Span;
 use crate::validate::on_large_stack;
 use naga::ScalarKind;
 
-/// Largest relative difference of the two languages in f64.
+/// The largest relative difference between the two languages in f64.
 const PARITY: f64 = 1e-12;
-/// Most of what a case allows that the code as written may be off in f64: the rest is for rounding.
-/// A table's digits are rounded themselves.
+/// The largest share of a case's tolerance that the code may be off in f64. The rest is for
+/// rounding. The digits of a table are rounded themselves.
 const VALUE: f64 = 0.5;
 const VALUE_OF_TABLE: f64 = 1.0;
-/// What rounding in f64 may add of what it may add in f32, with a few bits to spare.
+/// The rounding error in f64 as a share of the one in f32, with a few bits to spare.
 const F64_SHARE: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// What was found of one case.
@@ -31,37 +31,39 @@ pub struct Proof {
     pub case: usize,
     /// Where the case names the function.
     pub span: Span,
-    /// The arguments with which what is proven fails most, where it fails.
+    /// The arguments with the worst failure, if there is one.
     pub arguments: Option<String>,
-    /// What WGSL allows, against what the case allows; or why it cannot be told.
+    /// What WGSL allows, compared with what the case allows; or why that is not known.
     pub spec: Result<Spec, String>,
-    /// The code in f64 against the oracle, where that is not the code itself.
+    /// The code in f64 compared with the oracle, unless the oracle is the code itself.
     pub value: Option<Value>,
-    /// WESL against GLSL in f64, where there are both.
+    /// WESL compared with GLSL in f64, if both exist.
     pub parity: Option<Result<Parity, String>>,
 }
 
-/// The case's tolerance beside the error bound of its code under the accuracy WGSL demands.
+/// The tolerance of a case, compared with the error bound of its code under the accuracy that WGSL
+/// demands.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Spec {
-    /// Rows on which no comparison is in doubt and the bound is finite.
+    /// Rows where the bound is finite and no comparison is in doubt.
     pub rows: usize,
-    /// Of those, rows where the case allows less than WGSL does.
+    /// How many of those have a tolerance below what WGSL allows.
     pub stricter: usize,
-    /// Least stated tolerance over bound, with the two in units in the last place; 0 without rows.
+    /// The smallest tolerance divided by bound, and both of them in units in the last place; 0
+    /// without rows.
     pub least: f64,
     pub stated_ulps: f64,
     pub bound_ulps: f64,
 }
 
-/// How far the code as written is from the oracle, before any rounding of f32.
+/// How far the code is from the oracle before any rounding to f32.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Value {
-    /// Rows compared: those on which no comparison is in doubt.
+    /// Rows that were compared: those where no comparison is in doubt.
     pub rows: usize,
-    /// Rows that are off by more than rounding leaves of what the case allows.
+    /// Rows whose error leaves too little of the tolerance for rounding.
     pub off: usize,
-    /// Largest distance over what the case allows, and the row it is in.
+    /// The largest error divided by the tolerance, and its row.
     pub share: f64,
     pub row: usize,
 }
@@ -69,11 +71,11 @@ pub struct Value {
 /// How far the two languages are apart.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Parity {
-    /// Rows compared: those on which no comparison is in doubt.
+    /// Rows that were compared: those where no comparison is in doubt.
     pub rows: usize,
-    /// Rows that are apart.
+    /// Rows on which they differ.
     pub apart: usize,
-    /// Largest relative difference, and the row it is in.
+    /// The largest relative difference, and its row.
     pub worst: f64,
     pub row: usize,
 }
@@ -203,8 +205,8 @@ fn value(job: &Job<'_>, found: &[Goal]) -> Option<Value> {
     Some(value)
 }
 
-/// Distance over what the case allows, of the component where that is largest, in the alternative
-/// that fits best.
+/// The error divided by the tolerance: of the worst component, for the accepted value that fits
+/// best.
 fn share(job: &Job<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> f64 {
     let values = tolerance::values(&job.terms, inputs);
     let of = |expected: &Vec<f64>| {
@@ -236,7 +238,7 @@ fn apart(first: &[Goal], second: &[Goal], kinds: &[ScalarKind]) -> Parity {
             let (x, y) = (a.expected.value[word], b.expected.value[word]);
             let difference = (x - y).abs();
             let relative = difference / x.abs().max(y.abs()).max(f64::from(f32::MIN_POSITIVE));
-            // Where terms cancel, what rounding in f64 leaves is relative to the terms.
+            // Where terms cancel, the rounding error in f64 is relative to the terms.
             let rounding = a.errors[word].max(b.errors[word]) * F64_SHARE;
             if difference > rounding && relative > PARITY {
                 is_apart = true;

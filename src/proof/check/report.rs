@@ -1,4 +1,4 @@
-//! A report as text.
+//! Writes a report as text.
 
 use super::{Outcome, Proof, Report};
 use crate::bundle::Language;
@@ -79,7 +79,7 @@ fn row(outcome: &Outcome) -> [String; COLUMNS] {
     std::array::from_fn(|_| cells.next().unwrap_or_default())
 }
 
-/// Cases that state less than WGSL allows their code, one line each.
+/// The cases whose tolerance is below what WGSL allows their code, one line for each.
 pub fn stricter(report: &Report) -> String {
     let line = |proof: &Proof| {
         let spec = proof.spec.as_ref().ok().filter(|spec| spec.stricter > 0)?;
@@ -94,7 +94,7 @@ pub fn stricter(report: &Report) -> String {
     report.proofs.iter().filter_map(line).collect()
 }
 
-/// What executors have no way to run, with the reason, one line each.
+/// What executors cannot run, with the reason, one line for each.
 pub fn lacking(report: &Report) -> String {
     let line = |outcome: &Outcome| {
         let (reason, case) = (&outcome.lacks()?.message, outcome.case + 1);

@@ -1,4 +1,5 @@
-//! Makes a failing input small: towards 0, 1 and few mantissa bits, a batch of candidates a draw.
+//! Makes a failing input simpler: towards 0, 1 and few mantissa bits, with a batch of candidates in
+//! each draw.
 
 use super::job::{Goal, Job};
 use super::judge;
@@ -12,11 +13,11 @@ use crate::proof::formula::Scope;
 use crate::proof::laws::{self, Law};
 use naga::ScalarKind;
 
-/// Rounds of candidates: each round keeps the simplest input that still fails.
+/// The most rounds. Each round keeps the simplest input that still fails.
 const ROUNDS: usize = 24;
 
-/// The smallest failing input found from a failing row, as text: values in decimal and hex, and a
-/// case ready to paste.
+/// Simplifies a failing row. Returns text: the values in decimal and hexadecimal, and a case ready
+/// to paste.
 pub fn shrink(
     job: &Job<'_>,
     kernel: &Kernel,
@@ -71,7 +72,7 @@ pub fn shrink_law(
     Ok(format!("{}{found}{head}{laws}inputs = {{ {} }}\n", input.text, input.lists))
 }
 
-/// The simplest input found that still fails; `first_failing` gives the index of a row that does.
+/// The simplest input found that still fails. `first_failing` gives the index of a row that does.
 fn smallest(
     job: &Job<'_>,
     failing: usize,
@@ -109,7 +110,7 @@ fn candidates(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
             found.push(candidate);
         }
     }
-    // A function without parameters has a row of one word, and that word has no kind.
+    // A function without parameters has rows of one word, which has no kind.
     for (index, (word, kind)) in row.iter().zip(&job.rows.kinds).enumerate() {
         if !job.rows.units.iter().any(|range| range.contains(&index)) {
             found.extend(simpler(*word, *kind).into_iter().map(|value| {
@@ -143,7 +144,7 @@ fn ranges(job: &Job<'_>) -> Vec<(f64, f64)> {
     ranges
 }
 
-/// Whether the case means such an input: within the columns' values, and not filtered out.
+/// Whether the case is about such an input: within the ranges of the columns, and not filtered out.
 fn meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
     let row = crate::proof::cases::numbers(candidate, &job.rows.kinds);
     let is_within =
@@ -151,7 +152,8 @@ fn meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
     is_within && job.filter.as_ref().is_none_or(|filter| filter.scalar(&row) == 1.0)
 }
 
-/// Lower is simpler: values other than 0, then mantissa bits, then magnitude.
+/// A measure of complexity, smaller is simpler: how many values are not 0, then mantissa bits, then
+/// magnitude.
 fn complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
     let cost = |(word, kind): (&u32, &ScalarKind)| match kind {
         ScalarKind::Float if *word & 0x7fff_ffff == 0 => (0, *word >> 31),
@@ -169,11 +171,11 @@ fn complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
 
 /// One row, parameter by parameter.
 struct Input {
-    /// In decimal and hex, a line each.
+    /// In decimal and hexadecimal, one line for each value.
     text: String,
-    /// As a table's row has them.
+    /// As the row of a table.
     row: String,
-    /// As `inputs` lists them.
+    /// As lists for `inputs`.
     lists: String,
     bits: String,
 }
@@ -202,7 +204,7 @@ impl Input {
     }
 }
 
-/// The input in decimal and hex, then a case to paste that fails alike.
+/// The input in decimal and hexadecimal, then a case to paste that fails in the same way.
 fn describe(job: &Job<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> String {
     let input = Input::new(job, words);
     let worst =
@@ -216,7 +218,7 @@ fn describe(job: &Job<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> String 
     input.text.clone() + &said + &pasted(job, &input, &expected, allowed)
 }
 
-/// A case with the one row, with the fixtures that it names.
+/// A case with the one row, and the fixtures that it names.
 fn pasted(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> String {
     let mut text = format!("[[case]]\nfunction = {:?}\n", job.case.function);
     if allowed > 0.0 {

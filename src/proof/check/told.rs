@@ -1,11 +1,11 @@
-//! What failed of a check, as diagnostics at the cases.
+//! Turns what failed in a check into diagnostics at the cases.
 
 use super::report::{language, short};
 use super::{Outcome, Proof, Report, Verdict};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::proof::ratchet::SLACK;
 
-/// What failed of a report, each with its smallest input; empty when nothing did.
+/// What failed in a report, each with its simplest input; empty if nothing did.
 pub fn failures(report: &Report) -> Diagnostics {
     let proofs = report.proofs.iter().filter_map(of_proof);
     proofs.chain(report.outcomes.iter().filter_map(of_outcome)).collect()
@@ -20,7 +20,7 @@ pub fn failures_as_text(failures: &[Diagnostic]) -> String {
     failures.iter().map(line).collect()
 }
 
-/// What does not hold of a proof.
+/// What fails in a proof.
 pub fn of_proof(proof: &Proof) -> Option<Diagnostic> {
     let path = proof.path();
     let mut reasons = Vec::new();
@@ -49,7 +49,7 @@ pub fn of_proof(proof: &Proof) -> Option<Diagnostic> {
     })
 }
 
-/// What failed of an outcome.
+/// What fails in an outcome.
 pub fn of_outcome(outcome: &Outcome) -> Option<Diagnostic> {
     if !outcome.failed() {
         return None;
@@ -74,7 +74,7 @@ fn failed(message: String) -> Diagnostic {
     Diagnostic::error(codes::CHECK_FAILED, message)
 }
 
-/// Why a verdict is no pass.
+/// Why a verdict does not pass.
 fn reasons(outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
     let mut reasons = Vec::new();
     if !verdict.failing.is_empty() {
@@ -109,7 +109,7 @@ fn reasons(outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
     reasons
 }
 
-/// The smallest inputs that fail, each with a case to paste.
+/// The simplest inputs that fail, each with a case to paste.
 fn smallest(verdict: &Verdict) -> impl Iterator<Item = String> {
     let of_laws = verdict.laws.iter().filter_map(|law| law.smallest.as_deref());
     let texts = of_laws.chain(verdict.smallest.as_deref());

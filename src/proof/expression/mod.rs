@@ -1,4 +1,4 @@
-//! Values of expressions over the library's functions, on any executor.
+//! Evaluates expressions over the library's functions on any executor.
 //!
 //! An expression is WGSL: `lighting::spot::cone_exponent(0.9, 0.8, 4.0)`. It becomes the body of a
 //! function of a root module; naga finds its type. For GLSL the same expression is translated
@@ -144,7 +144,7 @@ fn returning(validated: Validated) -> Result<(naga::Module, Handle<naga::Type>),
     Ok((module, ty))
 }
 
-/// A diagnostic with its labels in the wrapper moved to the expression.
+/// Moves the labels of a diagnostic from the wrapper to the expression.
 fn relocated(
     mut error: Diagnostic,
     sources: &SourceSet,

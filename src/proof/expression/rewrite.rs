@@ -1,4 +1,4 @@
-//! An expression as a module, in either language, with a map back to its bytes.
+//! Writes an expression as a module in either language, with a map back to its bytes.
 
 use std::ops::Range;
 
@@ -8,17 +8,18 @@ use super::FUNCTION;
 use crate::project::LIBRARY;
 use crate::proof::library::Library;
 
-/// A text made from an expression.
+/// A module's text made from an expression.
 pub struct Rewritten {
     pub text: String,
-    /// Where each copied or translated piece stands, and what it was.
+    /// For each piece that was copied or translated, its range in the text and in the expression.
     pieces: Vec<(Range<usize>, Range<usize>)>,
     /// Bytes of the expression.
     length: usize,
 }
 
 impl Rewritten {
-    /// The bytes of the expression behind a range of the text; all of it for what was added.
+    /// The bytes of the expression for a range of the text; the whole expression for text that was
+    /// added.
     pub fn original(&self, range: Range<usize>) -> Range<usize> {
         let touched = self.pieces.iter().filter(|(made, _)| {
             made.start < range.end.max(range.start + 1) && range.start < made.end
@@ -129,7 +130,7 @@ pub fn glsl(expression: &str, library: &Library, module: &Module, ty: Handle<Typ
     made
 }
 
-/// The GLSL for the first tokens, and how many those are.
+/// The GLSL for the first tokens, and how many tokens that covers.
 fn translate(
     expression: &str,
     tokens: &[Range<usize>],
@@ -153,7 +154,7 @@ fn translate(
             return ((*name).to_owned(), used);
         }
     }
-    // Types may have spaces in them: they are read without, and counted with.
+    // A type may have spaces in it. They are skipped here, but counted.
     let solid: Vec<usize> =
         (0..tokens.len().min(48)).filter(|index| !text(*index).trim().is_empty()).collect();
     let starts_here = solid.first() == Some(&0);

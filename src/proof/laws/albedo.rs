@@ -1,5 +1,5 @@
-//! Directional albedo by quadrature: what a surface reflects of all the light that comes from one
-//! direction, for functions of cosines as for functions of directions.
+//! Directional albedo by quadrature: the share of the light from one direction that a surface
+//! reflects to all directions. It works for functions of cosines and for functions of directions.
 //!
 //! The factors' parameters are found by name. Those of the geometry (`nl nv nh lh vh lv th bh tl bl
 //! tv bv n_cross_h2 mu cos_theta`, or the directions `n l v h`) come from the rule, the others from the case's
@@ -13,8 +13,8 @@
 //! | `below` | product * -n.l over the other hemisphere of `l` |
 //! | `sphere` | product over all directions `l`, without a cosine |
 //!
-//! A narrow lobe needs `peak`, a formula of its width alpha: the directions are then chosen about
-//! the half vector as GGX of that width is distributed.
+//! A narrow lobe needs `peak`, a formula for its width alpha. Half vectors are then distributed as
+//! those of GGX with that width.
 
 use std::f64::consts::PI;
 
@@ -31,13 +31,13 @@ pub struct Albedo {
     pub view: String,
     /// Angle of the viewer about the normal from the tangent, radians.
     pub azimuth: f64,
-    /// Width of the lobe about the half vector.
+    /// The width of the lobe around the half vector.
     pub peak: Option<Text>,
     /// Formulas for parameters that neither the geometry nor the case has.
     pub with: Vec<(String, Text)>,
-    /// The one component of the function's value that is the albedo, and of the product.
+    /// The component of the function's value and of the product that is the albedo.
     pub component: Option<usize>,
-    /// Steps in the cosine; there are twice as many azimuths.
+    /// Steps in the cosine. There are twice as many azimuths.
     pub steps: usize,
     pub within: f64,
     pub wanted: Wanted,
@@ -64,7 +64,7 @@ pub enum Wanted {
 
 type Vector = [f64; 3];
 
-/// Directions of one call.
+/// The directions of one call.
 #[derive(Debug, Clone, Copy)]
 struct Geometry {
     l: Vector,
@@ -100,7 +100,7 @@ const DIRECTIONS: &[Direction] =
     &[("n", |_| [0.0, 0.0, 1.0]), ("l", |g| g.l), ("v", |g| g.v), ("h", |g| g.h)];
 
 impl Albedo {
-    /// The case's rows that are integrated.
+    /// The rows of the case that are integrated.
     pub fn chosen(&self, rows: &Rows) -> Vec<usize> {
         let most = MOST_ROWS.min(MOST_CALLS / self.calls()).max(1);
         let count = rows.len().min(most);
@@ -138,7 +138,7 @@ impl Albedo {
         Ok(Rows::of(words, kinds))
     }
 
-    /// Directions and weights of the rule for one row; calls that have no weight are among them.
+    /// The directions and weights of the rule for one row. Calls without weight are included.
     fn nodes(&self, row: &[f64], case: &Scope<'_>) -> Result<Vec<(Geometry, f64)>, Diagnostic> {
         let nv = self.cosine_to_viewer(row, case);
         let sine = (1.0 - nv * nv).max(0.0).sqrt();
@@ -164,7 +164,7 @@ impl Albedo {
         found.and_then(|(first, _)| row.get(first)).copied().unwrap_or(1.0).clamp(0.0, 1.0)
     }
 
-    /// The integrals of one component, a value for each call, for the chosen rows.
+    /// The integrals of one component for the chosen rows; `values` has one value for each call.
     pub fn sums(
         &self,
         rows: &Rows,
@@ -183,7 +183,8 @@ impl Albedo {
     }
 }
 
-/// A parameter of a factor, from a row of the case and the formulas that the law names.
+/// The value of a factor's parameter, from a row of the case or from the formulas that the law
+/// gives.
 fn value(
     name: &str,
     geometry: &Geometry,
@@ -223,7 +224,7 @@ fn about_half(steps: usize, alpha: f64) -> Vec<(Vector, f64)> {
     })
 }
 
-/// Directions at even azimuths whose cosine, with its slope, is a function on [0, 1].
+/// Directions at evenly spaced azimuths, whose cosine and its slope are functions on [0, 1].
 fn ring(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vector, f64)> {
     let azimuths = 2 * steps;
     let mut found = Vec::new();

@@ -1,4 +1,5 @@
-//! Integrals over directions, by a product rule: Gauss-Legendre in the cosine, even azimuths.
+//! Integrals over directions by a product rule: Gauss-Legendre in the cosine, evenly spaced
+//! azimuths.
 //!
 //! With `p` steps the rule is exact for polynomials of degree `2p - 1` in the direction's
 //! components; a lobe of exponent `s` wants about `sqrt(s)` times as many.
@@ -8,15 +9,16 @@ use std::ops::Range;
 
 use crate::proof::cases::Rows;
 
-/// Most calls of one law, over all its rows.
+/// The most calls of one law, over all its rows.
 pub const MOST_CALLS: usize = 1 << 17;
-/// Most of a case's rows that are integrated: those that differ in more than the direction.
+/// The most rows of a case that are integrated. They differ in more than the direction.
 pub const MOST_ROWS: usize = 48;
 
 /// What an integral is over, and what it must be.
 #[derive(Debug, Clone)]
 pub struct Integral {
-    /// Parameter that the hemisphere is about; the whole sphere without it.
+    /// The parameter that the hemisphere is around. Without it, the integral is over the whole
+    /// sphere.
     pub about: Option<String>,
     /// Whether the cosine to `about` is a factor.
     pub cosine: bool,
@@ -24,11 +26,11 @@ pub struct Integral {
     pub steps: usize,
     /// The largest allowed error of the sum, which covers the error of the quadrature rule.
     pub within: f64,
-    /// Whether the law's number is an upper bound: less is right too.
+    /// Whether the law's number is an upper bound, so that a smaller integral is right too.
     pub at_most: bool,
 }
 
-/// One direction of the rule in the frame of `about`, which is z, with its weight.
+/// A direction of the rule and its weight. The frame is that of `about`, which is z.
 struct Node {
     direction: [f64; 3],
     weight: f64,
@@ -50,7 +52,8 @@ impl Integral {
         rings.collect()
     }
 
-    /// Rows of a case, each once for every direction of the rule in place of the words `direction`.
+    /// The rows of a case, each once for every direction of the rule, which replaces the words
+    /// `direction`.
     pub fn rows(&self, rows: &Rows, direction: Range<usize>, about: Option<Range<usize>>) -> Rows {
         let nodes = self.nodes();
         let chosen =
@@ -89,13 +92,13 @@ impl Integral {
         2 * self.steps * self.steps
     }
 
-    /// How far a sum is from what it must be.
+    /// How far a sum is from the right one.
     pub fn off(&self, sum: f64, wanted: f64) -> f64 {
         if self.at_most { (sum - wanted).max(0.0) } else { (sum - wanted).abs() }
     }
 }
 
-/// Rows that differ in more than the direction, at most so many of them, from all over.
+/// Rows that differ in more than the direction, at most `most` of them, spread over all rows.
 fn distinct(
     rows: &Rows,
     direction: &Range<usize>,

@@ -13,7 +13,8 @@
 //! | `albedo = ["d_ggx", "v_smith_ggx"], within = 0.001` | the function's value is the directional albedo of the product of these, by quadrature (see [`Albedo`]); or `gives`, `at_most` |
 //! | `inverse = "g", within = 1e-6` | `g` of the value gives the first parameter back, or that named by `of` |
 //!
-//! The last two are about other functions too: those of the same module by name, others by path.
+//! The last two are also about other functions. Those of the same module are given by name, others
+//! by path.
 
 mod albedo;
 mod integral;
@@ -36,7 +37,7 @@ pub struct Kind {
     pub takes: Takes,
 }
 
-/// What the law's key is given.
+/// What is given for the law's key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Takes {
     Numbers,
@@ -54,7 +55,7 @@ pub enum Takes {
 }
 
 impl Takes {
-    /// What else the law's table may have.
+    /// The other keys that the law's table may have.
     pub fn options(self) -> &'static [&'static str] {
         match self {
             Self::Numbers | Self::Names => &[],
@@ -104,17 +105,17 @@ pub struct Law {
     pub integral: Option<Integral>,
     pub albedo: Option<Albedo>,
     pub inverse: Option<Inverse>,
-    /// The other functions that the law is about, as they are named.
+    /// The other functions that the law is about, by their names in the file.
     pub partners: Vec<String>,
 }
 
-/// A way back: the function of the law, fed with a row's value and the row's other parameters of
-/// its names, gives a parameter of the row.
+/// An inverse: called with a row's value, and with the row's other parameters by name, the function
+/// gives a parameter of the row back.
 #[derive(Debug, Clone)]
 pub struct Inverse {
-    /// The parameter; the first one without it.
+    /// The parameter that must come back; the first one without it.
     pub of: Option<String>,
-    /// How far off it may be, relative to it above 1.
+    /// The allowed error: relative for values above 1, absolute below.
     pub within: f64,
 }
 
@@ -124,7 +125,7 @@ impl std::fmt::Debug for Kind {
     }
 }
 
-/// The law as a case file writes it. An integral is a property of many rows together: no single
+/// The law as text for a case file. An integral is a property of many rows together, so no single
 /// row breaks it.
 pub fn toml(law: &Law) -> String {
     let names = law.names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
@@ -146,7 +147,7 @@ pub fn toml(law: &Law) -> String {
 }
 
 impl Law {
-    /// A law of a kind, of which nothing else is known yet.
+    /// A law of a kind, without any of its values yet.
     pub fn new(kind: &'static Kind, span: Span) -> Self {
         Self {
             kind,
@@ -161,7 +162,7 @@ impl Law {
         }
     }
 
-    /// The number for a component: a single one is for all.
+    /// The number for a component. A single number is for all components.
     pub fn number(&self, word: usize) -> f64 {
         self.numbers
             .get(if self.numbers.len() == 1 { 0 } else { word })
@@ -175,7 +176,7 @@ pub fn find(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
-/// The rows that the law compares a case's rows with; `None` for laws of single values.
+/// The rows that the law compares the case's rows with; `None` for laws about single values.
 pub fn transformed(law: &Law, rows: &Rows, scope: &Scope<'_>) -> Result<Option<Rows>, Diagnostic> {
     if !law.partners.is_empty() {
         return Ok(None);
@@ -235,7 +236,7 @@ fn words_of<'a>(places: &'a [(usize, &Shape)]) -> impl Iterator<Item = usize> + 
     places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize)
 }
 
-/// A slightly larger value, far enough away to lie beyond an edge that the case approaches.
+/// A slightly larger value. The step is large enough to pass an edge that the case approaches.
 fn nudge(word: &mut u32, kind: ScalarKind) {
     if kind == ScalarKind::Float {
         let value = f32::from_bits(*word);
@@ -243,7 +244,7 @@ fn nudge(word: &mut u32, kind: ScalarKind) {
     }
 }
 
-/// A value one part in sixteen larger, at least by the smallest normal number.
+/// A value that is larger by one part in sixteen, at least by the smallest normal number.
 fn raise(word: &mut u32, kind: ScalarKind) {
     *word = match kind {
         ScalarKind::Float => {
@@ -274,8 +275,8 @@ fn set(law: &Law, row: &mut [u32], scope: &Scope<'_>) -> Result<(), Diagnostic> 
     Ok(())
 }
 
-/// By how much a value breaks a law; 0 if it does not. `value` is that of the row, `other` that of
-/// the transformed row at the distance `moved`, and `word` is the component.
+/// By how much a value breaks a law; 0 if it does not. `value` is the row's, `other` that of the
+/// transformed row at the distance `moved`, and `word` is the component.
 pub fn broken_by(law: &Law, value: f64, other: Option<f64>, moved: f64, word: usize) -> f64 {
     let number = |index: usize| law.number(index);
     match (law.kind.name, other) {

@@ -1,4 +1,4 @@
-//! Which statements and branches of the modules the cases reach.
+//! Finds which statements and branches of the modules the cases reach.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -12,11 +12,12 @@ use crate::proof::library::Library;
 use crate::source::SourceSet;
 use crate::validate::on_large_stack;
 
-/// What of one module was reached.
+/// What was reached of one module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Coverage {
     pub module: String,
-    /// Blocks of statements: bodies, arms of branches (written or not), what follows a branch.
+    /// How many blocks of statements there are: bodies, branches (written or not), and what follows
+    /// a branch.
     pub blocks: usize,
     pub uncovered: Vec<Place>,
 }
@@ -74,7 +75,7 @@ fn key(function: &str, point: &Point) -> Key {
     (function.to_owned(), range.start as u32, range.end as u32, point.branch as u8)
 }
 
-/// Hits of every block that some case reaches.
+/// How often each block was reached.
 fn reached(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
     let mut reached = BTreeMap::new();
     for case in &suite.cases {
@@ -93,7 +94,7 @@ fn reached(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
                 *reached.entry(key(name(point), point)).or_insert(0) += hits;
             }
         };
-        // A case that does not run reaches nothing, and says so when it is checked.
+        // A case that cannot be run reaches nothing. Checking it reports why.
         if case.record(&interpreter, &mut count).is_err() {
             continue;
         }

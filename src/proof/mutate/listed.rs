@@ -33,7 +33,7 @@ pub struct Listed {
 }
 
 impl Listed {
-    /// Whether the entry means this mutant.
+    /// Whether the entry is about this mutant.
     pub fn is(&self, outcome: &Outcome) -> bool {
         self.function == outcome.function
             && self.line == outcome.line
@@ -47,7 +47,7 @@ impl fmt::Display for Listed {
     }
 }
 
-/// The entries of the package's list; none without the file.
+/// The entries of the package's list; none if there is no file.
 pub fn read(library: &Library) -> Result<Vec<Listed>, Diagnostics> {
     let Some(text) = library.text(FILE) else { return Ok(Vec::new()) };
     let invalid =

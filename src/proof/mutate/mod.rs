@@ -1,14 +1,14 @@
-//! How much the numeric cases notice: coverage of the library's statements and branches, and
-//! mutants, each a library function with one mistake put in.
+//! Measures how much the numeric cases notice: by the coverage of the library's statements and
+//! branches, and by mutants. A mutant is a function of the library with one mistake put in.
 //!
 //! `module -> sites (what could be wrong where) -> mutant -> rows until one fails -> fate`
 //!
-//! A mutant is made in naga's representation and runs in the evaluator in f32, under the same
-//! verdicts as `lamplight check`: it is killed when a row is off by more than its tolerance, when
-//! a law breaks, or when a call does not end. Before that it runs in f64, where an oracle that is
-//! not the code itself holds to nine digits beside those that the code as written loses. Mutants
-//! that no input can tell from the original, and those that live for another reason, are listed
-//! in `survivors.toml` at the package's root.
+//! A mutant is made in naga's module and runs on the evaluator in f32, with the same verdicts as
+//! `lamplight check`. It is killed when a row is off by more than its tolerance, when a law is
+//! broken, or when a call does not end. Before that it runs in f64. There it is compared to nine
+//! digits with the oracle, unless that is the code itself; digits that the code as written loses do
+//! not count. Mutants that no input can distinguish from the original, and those that survive for
+//! another reason, are listed in `survivors.toml` at the package's root.
 
 mod apply;
 mod coverage;
@@ -73,7 +73,7 @@ fn mutants<'a, 'f>(
     suite.subjects.iter().flat_map(sites).map(move |(subject, site)| (suite, subject, site))
 }
 
-/// What became of one mutant; `None` where it is not valid.
+/// The fate of one mutant; `None` if it is not valid.
 fn outcome(
     sources: &SourceSet,
     listed: &[Listed],

@@ -2,10 +2,10 @@
 
 use super::listed::Listed;
 
-/// Share of the mutants that the cases must kill.
+/// The share of the mutants that the cases must kill.
 pub const LEAST_SHARE: f64 = 0.97;
 
-/// What became of one mutant.
+/// The fate of one mutant, and where its mistake is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Outcome {
     /// `lighting::spot::cone_hard`.
@@ -14,7 +14,7 @@ pub struct Outcome {
     pub place: String,
     /// That line, trimmed.
     pub line: String,
-    /// The mistake.
+    /// A description of the mistake.
     pub words: String,
     pub fate: Fate,
 }
@@ -36,7 +36,7 @@ pub enum Fate {
 #[derive(Debug, Default)]
 pub struct Report {
     pub outcomes: Vec<Outcome>,
-    /// Entries of the list that no surviving mutant is like, in words.
+    /// Entries of the list that match no surviving mutant.
     pub stale: Vec<String>,
     /// Reasons of the list's entries.
     reasons: Vec<String>,
@@ -58,7 +58,7 @@ pub fn report(outcomes: Vec<Outcome>, listed: &[Listed]) -> Report {
 }
 
 impl Report {
-    /// Mutants killed, and those that count: all but the listed ones.
+    /// How many mutants were killed, and how many count: all but those listed as equivalent.
     pub fn killed(&self) -> (usize, usize) {
         let of = |fates: fn(Fate) -> bool| {
             self.outcomes.iter().filter(|outcome| fates(outcome.fate)).count()
@@ -72,7 +72,7 @@ impl Report {
         killed as f64 >= LEAST_SHARE * all as f64
     }
 
-    /// One line for each mutant that got through.
+    /// One line for each mutant that survived.
     pub fn survivors(&self) -> String {
         let through = self.outcomes.iter().filter_map(|outcome| match outcome.fate {
             Fate::Survived => Some((outcome, "")),

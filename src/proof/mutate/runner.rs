@@ -1,4 +1,4 @@
-//! Rows of a kernel on the evaluator, in f32.
+//! Runs rows of a kernel on the evaluator, in f32.
 
 use naga::ScalarKind;
 
@@ -20,7 +20,7 @@ impl<'p> Runner<'p> {
         Ok(Self { calls, kinds: kernel.result_kinds(), stride: kernel.input_words() as usize })
     }
 
-    /// A function without parameters has one row.
+    /// Runs the rows. A function without parameters has one row.
     pub fn run(&mut self, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
         let mut results = Vec::new();
         let count = inputs.len().checked_div(self.stride).unwrap_or(1);

@@ -18,22 +18,22 @@ pub struct Site {
 pub enum Edit {
     /// An expression becomes another over the same operands.
     Expression { at: Handle<Expression>, with: Expression, how: How },
-    /// The arms of an `if` change places: its condition is negated.
+    /// The branches of an `if` are swapped: its condition is negated.
     Negated { statement: usize, condition: Handle<Expression> },
-    /// An `if` that leaves the function is not there.
+    /// An `if` that leaves the function is removed.
     NoExit { statement: usize, condition: Handle<Expression> },
-    /// An assignment is not there.
+    /// An assignment is removed.
     NoStore { statement: usize },
-    /// A call gives its argument back.
+    /// A call is replaced by its argument.
     Argument { statement: usize, result: Handle<Expression>, argument: Handle<Expression> },
 }
 
-/// How an expression was changed, for words.
+/// How an expression was changed, for a description.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum How {
     Swapped,
     Operator(&'static str),
-    /// Only this operand is left.
+    /// Only this operand remains.
     Kept(Handle<Expression>),
     NoLowerBound,
     NoUpperBound,
@@ -65,10 +65,10 @@ const OPERATORS: &[(Op, &[(Op, &str)])] = &[
     (Op::ShiftRight, &[(Op::ShiftLeft, "<<")]),
 ];
 
-/// Operators whose operands matter by side, comparisons aside.
+/// Operators whose operands cannot be swapped, apart from comparisons.
 const SIDED: &[Op] = &[Op::Subtract, Op::Divide, Op::Modulo, Op::ShiftLeft, Op::ShiftRight];
 
-/// Built-ins of two arguments that matter by side.
+/// Built-ins of two arguments that cannot be swapped.
 const SIDED_MATH: &[Math] =
     &[Math::Pow, Math::Atan2, Math::Step, Math::Cross, Math::Reflect, Math::Mix, Math::SmoothStep];
 
@@ -88,7 +88,8 @@ pub fn sites(module: &Module, info: &ModuleInfo, handle: Handle<Function>) -> Ve
     sites
 }
 
-/// A value that equals an operand, in place of another expression: the least of it and itself.
+/// A value that equals an operand, to replace another expression: the minimum of the operand and
+/// itself.
 pub fn same(inner: &TypeInner, of: Handle<Expression>) -> Option<Expression> {
     match inner {
         TypeInner::Scalar(scalar) | TypeInner::Vector { scalar, .. }
@@ -219,8 +220,9 @@ impl Finder<'_> {
         }
     }
 
-    /// A variable that naga made for `&&` and `||`. Mistakes in its branches are covered by mistakes
-    /// in the operator.
+    /// Whether it is a variable that naga made for `&&` or `
+    ///
+    /// `. Mistakes in its branches are covered by mistakes in the operator.
     fn is_unnamed(&self, pointer: Handle<Expression>) -> bool {
         match self.function.expressions[pointer] {
             Expression::LocalVariable(variable) => {

@@ -1,4 +1,4 @@
-//! A module with its cases made ready to be run many times.
+//! Prepares a module and its cases to be run many times.
 
 use std::sync::{Arc, Mutex};
 
@@ -25,14 +25,15 @@ use crate::proof::library::Library;
 use crate::proof::tolerance;
 use crate::source::SourceSet;
 
-/// Loop trips of one call: many times what any case needs, few enough for a mutant without end.
+/// The most loop iterations of one call: many times what any case needs, and few enough to stop a
+/// mutant without end soon.
 pub const TRIPS: u64 = 20_000;
 
-/// Rows run before the first look at them; each later batch is four times as large.
+/// How many rows are run before the first look at them. Each later batch is four times as large.
 const FIRST_BATCH: usize = 48;
 
-/// The error that is allowed in f64: a share of the value, and a share of what the case allows in
-/// f32. The rounding of f64 is 2^-29 of that of f32.
+/// The allowed error in f64: a share of the value, plus a share of what the case allows in f32. The
+/// rounding error of f64 is 2^-29 of that of f32.
 const RELATIVE: f64 = 1e-9;
 const OF_STATED: f64 = 1.0 / (1u64 << 26) as f64;
 
@@ -40,7 +41,7 @@ const OF_STATED: f64 = 1.0 / (1u64 << 26) as f64;
 pub struct Suite<'f> {
     pub module: String,
     pub map: SourceMap,
-    /// Everything the module declares and reaches, compacted as kernels are.
+    /// Everything that the module declares and reaches, compacted as kernels are.
     pub whole: Module,
     pub info: ModuleInfo,
     /// The module's own functions.
@@ -54,19 +55,19 @@ pub struct Subject {
     pub name: String,
 }
 
-/// A case with its rows in batches. Rows that are likely to notice a mistake come first.
+/// A case with its rows in batches. Rows that probably notice a mistake come first.
 pub struct Ready<'f> {
     pub job: Job<'f>,
     order: Vec<usize>,
     batches: Vec<Batch>,
 }
 
-/// Rows with what they should give.
+/// Rows with their expected values.
 struct Batch {
     rows: Rows,
     expected: Vec<Goal>,
-    /// The allowed error of each word in f64: twice the error of the code without a mistake, which
-    /// comes from its constants in f32. It is infinite where the oracle is the code itself, or
+    /// The allowed error of each word in f64. It is twice the error of the code without a mistake,
+    /// which comes from its constants in f32. It is infinite where the oracle is the code itself or
     /// accepts every value.
     slack: Vec<f64>,
 }
@@ -118,7 +119,8 @@ fn suite<'f>(
             file,
             &[Language::Wesl],
             &|_, _, _| Ok(parsed.clone()),
-            // A mutant is of one module, and what it gives is compared with its oracle.
+            // A mutant changes one module, and its results are compared with the case's oracle, so
+            // laws about several functions are left out.
             &Options { partners: false, ..Options::default() },
         )?,
         None => Vec::new(),
@@ -202,7 +204,7 @@ fn slack(
     Ok(slack)
 }
 
-/// One row's result in f64.
+/// The result of one row in f64.
 fn exact(
     calls: &mut Calls<'_, f64>,
     row: &[u32],
@@ -211,7 +213,7 @@ fn exact(
     Ok(calls.call(row)?.iter().zip(kinds).map(|(slot, kind)| value(*slot, *kind)).collect())
 }
 
-/// Distance of a word from what is right of it.
+/// The distance of a word from the nearest accepted value.
 fn nearest(goal: &Goal, found: &[f64], word: usize) -> f64 {
     let all = std::iter::once(&goal.expected.value).chain(&goal.expected.alternatives);
     all.map(
@@ -220,7 +222,8 @@ fn nearest(goal: &Goal, found: &[f64], word: usize) -> f64 {
     .fold(f64::INFINITY, f64::min)
 }
 
-/// Rows at the ends of their columns and of simple values take turns with rows from all over.
+/// An order of the rows in which rows with simple values, or at the ends of their columns,
+/// alternate with rows from everywhere.
 fn order(rows: &Rows) -> Vec<usize> {
     let column = |index: usize| (0..rows.len()).map(move |row| rows.row(row)[index]);
     let ends: Vec<(f64, f64)> = (0..rows.stride.min(rows.row(0).len()))
@@ -235,7 +238,7 @@ fn order(rows: &Rows) -> Vec<usize> {
         value == low || value == high || *value == 0.0 || value.abs() == 1.0
     };
     let edges = |row: usize| rows.row(row).iter().zip(&ends).filter(|pair| is_edge(*pair)).count();
-    // A step near the golden section visits rows evenly.
+    // With a step near the golden section the rows are visited evenly.
     let count = rows.len();
     let step = (1..=count)
         .rev()
@@ -270,7 +273,7 @@ impl Suite<'_> {
         })
     }
 
-    /// Whether a case notices the mistake; `None` where it is not valid.
+    /// Whether a case notices the mistake; `None` if the mutant is not valid.
     pub fn fate(&self, subject: &Subject, site: &Site) -> Option<Fate> {
         let reaching = |case: &&Ready<'_>| find(&case.job.kernel().module, &subject.name).is_some();
         let (own, others): (Vec<_>, Vec<_>) = self
@@ -318,7 +321,7 @@ impl Ready<'_> {
         Ok(self.is_off(interpreter)? || self.fails(interpreter)?)
     }
 
-    /// Whether a value in f64 differs from the oracle in nearly any of its digits.
+    /// Whether a value in f64 differs from the oracle in any of the digits that are compared.
     fn is_off(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
         let kinds = self.job.kernel().result_kinds();
         let mut calls = interpreter.calls::<f64>()?;
@@ -327,7 +330,7 @@ impl Ready<'_> {
             for (index, goal) in batch.expected.iter().enumerate() {
                 let found = exact(&mut calls, batch.rows.row_words(index), &kinds)?;
                 let slack = &batch.slack[index * kinds.len()..];
-                // NaN is infinitely far from every value, unless the oracle accepts all.
+                // NaN is infinitely far from every value, unless the oracle accepts every result.
                 if (0..kinds.len()).any(|word| nearest(goal, &found, word) > slack[word]) {
                     return Ok(true);
                 }
@@ -336,7 +339,7 @@ impl Ready<'_> {
         Ok(false)
     }
 
-    /// Whether a row in f32 or a law fails, as `lamplight check` judges them.
+    /// Whether a row in f32, or a law, fails as `lamplight check` judges them.
     fn fails(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
         let mut runner = Runner::new(self.job.kernel(), interpreter)?;
         let words = self.job.kernel().result_words() as usize;
@@ -373,7 +376,7 @@ impl Ready<'_> {
         Ok(false)
     }
 
-    /// Runs every row of the case, for what the machine records meanwhile.
+    /// Runs every row of the case, for what the machine records during that.
     pub fn record(
         &self,
         interpreter: &Interpreter,

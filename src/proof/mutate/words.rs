@@ -1,4 +1,4 @@
-//! A mistake in the author's words and place.
+//! Describes a mistake in the author's terms, with its place.
 
 use naga::{Expression, Function, Handle, Span};
 
@@ -6,10 +6,10 @@ use super::site::{Edit, How, Site};
 use crate::compose::SourceMap;
 use crate::source::{self, SourceSet};
 
-/// Characters of an excerpt.
+/// The most characters of an excerpt.
 const LONGEST: usize = 80;
 
-/// Where the text of a composed function came from.
+/// The source of a composed function's text.
 pub struct Text<'a> {
     pub sources: &'a SourceSet,
     pub map: &'a SourceMap,
@@ -64,7 +64,7 @@ impl Text<'_> {
                 .get(index as usize)
                 .and_then(|argument| argument.name.clone())
                 .unwrap_or_default(),
-            // naga gives the reading of a variable no place.
+            // naga gives the load of a variable no place.
             Expression::Load { pointer } => self
                 .variable(pointer)
                 .unwrap_or_else(|| self.excerpt(self.function.expressions.get_span(handle))),
@@ -81,7 +81,7 @@ impl Text<'_> {
         }
     }
 
-    /// The author's text in single spaces.
+    /// The author's text, with white space replaced by single blanks.
     fn excerpt(&self, span: Span) -> String {
         let text = author(self.map, span).map_or("?", |found| self.whole_call(found));
         let spaced = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -91,7 +91,7 @@ impl Text<'_> {
         }
     }
 
-    /// naga places a call at the name of what is called: its arguments belong to it.
+    /// naga gives a call the place of the function's name, so its arguments are added.
     fn whole_call(&self, span: source::Span) -> &str {
         let text = &self.sources.get(span.source).text;
         let (name, rest) = (self.sources.text(span), &text[span.end as usize..]);

@@ -16,7 +16,7 @@ const COLUMNS: &[(&str, &str)] = &[
     ("headroom", "the part of the tolerance that was left, below 0 under a waiver"),
     ("of driver", "how much of what was recorded for this driver was needed"),
     ("ambiguous", "inputs that are off where a comparison is too close to call"),
-    ("free", "inputs for which nothing is promised: the expected value is no finite f32"),
+    ("free", "inputs for which nothing is promised: the expected value is not a finite f32"),
     ("parity ULP", "the largest distance from the results of the first language"),
 ];
 

@@ -1,4 +1,4 @@
-//! Where the path of an `#include` may lead.
+//! Finds the files that the path of an `#include` may name.
 
 use super::Place;
 use crate::diagnostic::{Diagnostic, codes};
@@ -8,7 +8,7 @@ use crate::source::Package;
 /// Number of the root package; dependency `i` is `i + 1`.
 pub const ROOT: usize = 0;
 
-/// Extensions of files worth suggesting.
+/// Extensions of the files that are worth suggesting.
 pub const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp", "h"];
 
 /// The package of that number.

@@ -16,13 +16,13 @@ pub struct Graph {
     pub root: String,
     /// The root first, then in the order of first mention, breadth first.
     pub modules: Vec<Module>,
-    /// For each module, the target of each of its includes.
+    /// For each module, where each of its includes leads.
     pub targets: Vec<Vec<Target>>,
     /// Spellings of all tokens.
     pub symbols: Symbols,
-    /// Paths as diagnostics show them, for each module.
+    /// For each module, its path as diagnostics show it.
     pub paths: Vec<String>,
-    /// Numbers of the packages that the modules are of; 0 is the root's.
+    /// For each module, the number of its package; 0 is the root's.
     pub packages: Vec<usize>,
 }
 
@@ -49,7 +49,7 @@ impl Graph {
             .fold(diagnostic, Diagnostic::note)
     }
 
-    /// Whether the file is of the root package.
+    /// Whether the file is in the root package.
     pub fn is_own(&self, source: SourceId) -> bool {
         self.modules
             .iter()
@@ -57,7 +57,8 @@ impl Graph {
             .is_some_and(|module| self.packages[module] == include::ROOT)
     }
 
-    /// The first file that includes a module, and the line: one read before it, so that chains end.
+    /// The first file that includes a module, and the line of the `#include`. That file was read
+    /// before the module, so following includers always ends.
     fn includer(&self, module: usize) -> Option<(usize, usize)> {
         self.targets[..module].iter().enumerate().find_map(|(includer, targets)| {
             let index = targets
@@ -74,7 +75,7 @@ impl Graph {
 pub enum Target {
     /// Index of a module.
     Module(usize),
-    /// Nowhere: an error once the directive is active.
+    /// Nowhere. This is an error once the directive is active.
     Missing(Box<Diagnostic>),
 }
 
@@ -95,8 +96,8 @@ struct Loader<'a> {
 
 /// Reads `root`, a path relative to the root package, and all that it may include.
 ///
-/// A missing or unreadable include is no error here, since its directive may never be active;
-/// a missing root is.
+/// A file that is missing or cannot be read is not an error here, since its `#include` may never be
+/// active. A missing root is an error.
 pub fn load(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -184,7 +185,7 @@ impl Loader<'_> {
         error.suggest(path, spellings.iter().map(String::as_str))
     }
 
-    /// The module at a place, read at the first request.
+    /// The module at a place, which is read when first asked for.
     fn module(&mut self, place: &Place) -> Result<Option<usize>, Box<Diagnostic>> {
         if let Some(known) = self.known.get(place) {
             return known.clone();

@@ -15,12 +15,12 @@ pub struct Graph {
     pub(crate) names: Names,
     /// The root module first.
     pub(crate) nodes: Vec<Node>,
-    /// Indices of the nodes in the order of the output: by label, the root module last.
+    /// The nodes in the order of the output: by label, with the root module last.
     pub(crate) order: Vec<u32>,
     pub(crate) constants: Vec<Constant>,
-    /// Errors that count once something needs what they are about.
+    /// Errors that are reported once something needs what failed.
     pub(crate) failures: Vec<Diagnostic>,
-    /// Items, conditions and bindings of all nodes: the ends of the nodes' bases.
+    /// How many items, conditions and bindings all nodes have together.
     pub(crate) totals: Bases,
     pub(crate) by_source: BTreeMap<SourceId, u32>,
 }
@@ -71,7 +71,7 @@ impl Graph {
     }
 }
 
-/// Where a module's own tables start in tables over all modules.
+/// Where a module's entries start in tables over all modules.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Bases {
     pub items: u32,
@@ -79,7 +79,7 @@ pub struct Bases {
     pub bindings: u32,
 }
 
-/// A module in its place.
+/// A module with its place in the graph.
 #[derive(Debug)]
 pub struct Node {
     /// Its items, imports and conditions.
@@ -92,20 +92,21 @@ pub struct Node {
     pub label: String,
     /// Item indices by name, in source order.
     pub sets: HashMap<Name, Vec<u32>>,
-    /// Import indices by the name they bring.
+    /// Indices of imports, by the name that they bring into scope.
     pub aliases: HashMap<Name, Vec<usize>>,
-    /// By import: where it may lead.
+    /// For each import, what it may lead to.
     pub imports: Vec<Vec<Target>>,
-    /// By reference: what it may mean, the first whose conditions hold.
+    /// For each reference, what it may mean: the first candidate whose conditions hold.
     pub bindings: Vec<Vec<Candidate>>,
-    /// Imports that lead nowhere: they count if the module is reached and the conditions hold.
+    /// Imports that lead nowhere, with their conditions. They are reported if the module is reached
+    /// and the conditions hold.
     pub broken_imports: Vec<(Vec<ConditionId>, u32)>,
-    /// Declarations of a name that another one has too under the same condition: failures that
-    /// count if the module is reached as a whole.
+    /// Declarations of a name that is declared twice under the same condition. These failures are
+    /// reported if the module is reached as a whole.
     pub duplicates: Vec<(Option<ConditionId>, u32)>,
-    /// Warnings, for modules of the root package.
+    /// Warnings, only for modules of the root package.
     pub lints: Vec<Diagnostic>,
-    /// What led here first; nothing for the root module.
+    /// What led here first; `None` for the root module.
     pub importer: Option<Importer>,
     /// What its references mean.
     pub bases: Bases,
@@ -118,10 +119,10 @@ pub struct Importer {
     pub note: String,
 }
 
-/// Something a use may mean.
+/// One thing that a use may mean.
 #[derive(Debug, Clone)]
 pub struct Candidate {
-    /// All must hold; of the module that uses it.
+    /// Conditions of the module that uses it. All must hold.
     pub conditions: Vec<ConditionId>,
     /// What the import leads to.
     pub target: Target,
@@ -139,7 +140,7 @@ pub enum Target {
     },
     /// Index into [`Graph::constants`].
     Constant(u32),
-    /// A module: fine to import, no value in itself.
+    /// A module, which can be imported but is no value itself.
     Module,
     /// Index into [`Graph::failures`].
     Failed(u32),

@@ -1,4 +1,4 @@
-//! Imports that do nothing, or nothing good.
+//! Warns of imports without effect, and reports names that are declared or imported twice.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -9,7 +9,8 @@ use crate::parse::wesl::{ConditionId, Expression, Name, Origin, Path, Reference}
 use crate::permute::Settings;
 use crate::source::Span;
 
-/// Warnings about a module's imports. Modules of dependencies have none: their users cannot mend them.
+/// Warnings about a module's imports. Modules of dependencies have none, since their users cannot
+/// change them.
 pub fn lints(loader: &Loader<'_>, node: &Node) -> Vec<Diagnostic> {
     if node.package != 0 {
         return Vec::new();
@@ -48,7 +49,7 @@ pub fn lints(loader: &Loader<'_>, node: &Node) -> Vec<Diagnostic> {
     found
 }
 
-/// The package of an import's path, where there is no such package.
+/// The name of the package that an import's path starts with, if there is no such package.
 fn absent_package<'l>(loader: &'l Loader<'_>, node: &Node, path: &Path) -> Option<&'l str> {
     let is_there = |name: Name| {
         let text = loader.names.text(name);
@@ -61,14 +62,14 @@ fn absent_package<'l>(loader: &'l Loader<'_>, node: &Node, path: &Path) -> Optio
     (!is_there(first)).then(|| loader.names.text(first))
 }
 
-/// Whether an import that leads nowhere may stay: nothing uses it, and its package is not here.
-/// The warning about what is unused says so.
+/// Whether an import that leads nowhere is not an error: nothing uses it, and its package is not
+/// installed. The warning about unused imports tells of that.
 pub fn is_harmless(loader: &mut Loader<'_>, node: u32, alias: Name, failure: u32) -> bool {
     loader.failures[failure as usize].code == codes::UNKNOWN_PACKAGE && !loader.is_used(node, alias)
 }
 
-/// Fails declarations of one name that the same settings keep, whether anything reaches them or
-/// not: those without a condition, and those of one block.
+/// Reports declarations of one name that the same settings keep, whether or not anything reaches
+/// them: those without a condition, and those of one block.
 pub fn duplicates(loader: &mut Loader<'_>, node: u32) {
     let here = &loader.nodes[node as usize];
     let mut first: HashMap<(Name, Option<ConditionId>), usize> = HashMap::new();
@@ -92,7 +93,7 @@ pub fn duplicates(loader: &mut Loader<'_>, node: u32) {
     }
 }
 
-/// Fails unconditional imports of different things under one name.
+/// Reports unconditional imports of different things under one name.
 pub fn clashes(loader: &mut Loader<'_>, node: u32, imported: &HashMap<Name, Vec<Candidate>>) {
     let mut failures = Vec::new();
     let here = &loader.nodes[node as usize];
@@ -129,7 +130,7 @@ pub fn clashes(loader: &mut Loader<'_>, node: u32, imported: &HashMap<Name, Vec<
     }
 }
 
-/// Whether candidates lead to different things, those aside that lead nowhere.
+/// Whether candidates lead to different things, without those that lead nowhere.
 fn differ(candidates: &[Candidate]) -> bool {
     let mut targets = candidates
         .iter()
@@ -139,8 +140,8 @@ fn differ(candidates: &[Candidate]) -> bool {
     targets.any(|target| Some(target) != first)
 }
 
-/// The names that references and the paths of imports start with. An import whose own path starts
-/// with its name means a package by it.
+/// The names with which references and paths of imports start. If an import's own path starts with
+/// the name that it imports, that means a package.
 pub fn used(node: &Node) -> HashSet<Name> {
     let start =
         |path: &Path| path.segments.first().copied().filter(|_| path.origin == Origin::Scope);
@@ -156,7 +157,7 @@ pub fn used(node: &Node) -> HashSet<Name> {
     named.chain(passed).collect()
 }
 
-/// Places of one diagnostic that are shown; the others are counted.
+/// The most places that one diagnostic shows. The others are counted.
 pub const PLACES: usize = 12;
 
 /// Every place of a condition that names a flag, by flag, dependencies' included.
@@ -184,9 +185,9 @@ pub fn shown_at(error: Diagnostic, mut places: Vec<Span>, label: &str) -> Diagno
     }
 }
 
-/// Warnings about flags of the root package's conditions that no axis declares, each once with its
-/// places. Where one is asked for, that is an error of the composition; these are hidden behind
-/// other conditions.
+/// Warnings about flags in conditions of the root package that no axis declares: one for each flag,
+/// with its places. Asking for such a flag is an error of the composition; these were not reached,
+/// since another condition was decided first.
 pub fn undeclared(graph: &Graph, settings: &Settings) -> Diagnostics {
     let mut found: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
     for node in graph.nodes.iter().filter(|node| node.package == 0) {

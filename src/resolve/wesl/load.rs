@@ -11,7 +11,7 @@ use crate::parse::wesl::{self, ConditionId, Module, Name, Names, Path, Reference
 use crate::resolve::Packages;
 use crate::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
 
-/// The graph while it grows.
+/// The graph that is being built.
 pub struct Loader<'a> {
     pub(super) sources: &'a mut SourceSet,
     pub(super) packages: &'a Packages,
@@ -21,11 +21,12 @@ pub struct Loader<'a> {
     /// Where each of them is.
     pub(super) constant_places: HashMap<Name, u32>,
     pub(super) failures: Vec<Diagnostic>,
-    /// Modules are read for an editor.
+    /// Whether modules are read for an editor.
     pub(super) for_editor: bool,
-    /// By package and path: the node of a file, nothing, or why it cannot be read.
+    /// By package and path: the node of a file, `None` if there is no such file, or why it cannot
+    /// be read.
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
-    /// By package: its files, once something is missing.
+    /// The files of a package, once a module of it is missing.
     listings: HashMap<usize, Vec<String>>,
     /// Steps of looking names up.
     steps: Cell<Steps>,
@@ -143,7 +144,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// The module of a package at a path, read at first sight.
+    /// The module of a package at a path, which is read when first asked for.
     pub(super) fn module(
         &mut self,
         package: usize,
@@ -167,7 +168,7 @@ impl<'a> Loader<'a> {
         asker: Span,
     ) -> Result<Option<u32>, Diagnostic> {
         for stem in self.stems(package, path) {
-            // A package's own module may have been read under its file's name, or will be.
+            // A package's own module may also be reached by the name of its file.
             if let Some(known @ (Ok(Some(_)) | Err(_))) = self.known.get(&(package, stem.clone())) {
                 return known.clone();
             }
@@ -360,8 +361,8 @@ pub fn too_entangled(module: &Module, most: u64) -> Diagnostic {
         .at(module.span(0..0), "in this file and what it imports")
 }
 
-/// The errors that every composition meets: of the root module and of what it imports
-/// unconditionally.
+/// The errors that every composition has: those of the root module, and of what it imports without
+/// a condition.
 fn certain_errors(graph: &Graph) -> Diagnostics {
     let mut certain = vec![false; graph.nodes.len()];
     let mut failed = vec![false; graph.failures.len()];

@@ -1,4 +1,4 @@
-//! Where a path leads: through imported names and packages to a module, and in it to an item.
+//! Finds what a path names: follows imports and packages to a module, and finds the item in it.
 
 use super::graph::{Candidate, Constant, Target};
 use super::load::Loader;
@@ -15,18 +15,18 @@ struct Absolute {
     conditions: Vec<ConditionId>,
 }
 
-/// How many meanings one path may have under different conditions.
+/// The most meanings that one path may have under different conditions.
 const MEANINGS: usize = 64;
 
-/// Failures of a graph for which names are suggested.
+/// The most failures of a graph for which names are suggested.
 const SUGGESTED: usize = 100;
 
-/// What of a path an error may be about.
+/// The places of a path that an error may be about.
 #[derive(Debug, Clone, Copy)]
 struct Places {
     whole: Span,
     first: Span,
-    /// The whole path where its parents are not written in one piece.
+    /// The whole path, where its parents are not written in one piece.
     parents: Span,
     last: Span,
 }
@@ -45,8 +45,9 @@ impl Places {
 }
 
 impl Loader<'_> {
-    /// What a path of a module may mean. `import` is its index if an import has it: that one's
-    /// own name does not count for its first segment, and it may lead to a module.
+    /// What a path in a module may mean. `import` is the index of the import that has the path, if
+    /// one has it: the name that this import brings does not count for the path's first segment,
+    /// and the path may name a module.
     pub(super) fn candidates(
         &mut self,
         node: u32,
@@ -89,7 +90,8 @@ impl Loader<'_> {
                 let place = places.whole;
                 self.above(node, ups as usize, &path.segments, place).map(|absolute| vec![absolute])
             }
-            // The path of an import starts with a package, whatever other imports bring.
+            // The path of an import starts with a package, even where another import brings the
+            // same name.
             Origin::Scope if !visiting.is_empty() && self.is_package(node, path.segments[0]) => {
                 self.in_package(node, &path.segments, places, false).map(|absolute| vec![absolute])
             }
@@ -121,7 +123,7 @@ impl Loader<'_> {
             Diagnostic::error(codes::CYCLIC_IMPORT, message)
                 .at(module.span(path.range.clone()), "here")
         };
-        // Each import has a meaning or an error, and none is followed in vain.
+        // Each import has a meaning or an error, so a bound on imports bounds the meanings.
         if imports.len() > MEANINGS || !self.step(imports.len()) {
             return Err(many());
         }
@@ -239,12 +241,12 @@ impl Loader<'_> {
             return Ok(Target::Module);
         }
         Err(match parent {
-            // What is missing may be in the part that could not be read.
+            // The missing item may be in the part of the module that could not be parsed.
             Some(node) if !self.nodes[node as usize].module.errors.is_empty() => {
                 self.nodes[node as usize].module.errors[0].clone()
             }
             Some(node) => self.missing_item(node, *last, places.last),
-            // The last name may be an item's or a module's: below a folder, a module's.
+            // The last name may be an item or a module. Below a folder it is a module.
             None if parents.is_empty() || self.is_module(package, parents, span, false)? => {
                 self.missing_module(package, &absolute.segments, span)
             }
@@ -270,7 +272,7 @@ impl Loader<'_> {
         }
     }
 
-    /// Whether a module or a folder is there. Only imports need to know that of files.
+    /// Whether there is a module or a folder at a path. Only imports need to know this of files.
     fn is_module(
         &mut self,
         package: usize,

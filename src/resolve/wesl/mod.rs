@@ -1,5 +1,5 @@
-//! WESL modules to a graph: every module that is reached under any condition, every use resolved
-//! to the items it may mean.
+//! Builds the graph of WESL modules: every module that is reached under any condition, with every
+//! use resolved to the items that it may mean.
 
 mod graph;
 mod lint;
@@ -16,8 +16,8 @@ use super::Packages;
 
 /// Reads the module `root`, a path relative to the root package, and all it may import.
 ///
-/// Errors that only some settings meet (in a module that is imported under a condition, say) are
-/// kept in the graph, and composing reports them.
+/// Some errors concern only some settings, such as one in a module that is imported under a
+/// condition. They are kept in the graph, and composing reports them.
 pub fn load(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -31,8 +31,9 @@ pub fn load(
     }
 }
 
-/// Every module of the root package at one of the paths, and all that they lead to: for editors,
-/// which ask who uses what. What is wrong is in the graph; nothing where no module can be read.
+/// Reads every module of the root package at one of the paths, and all that they lead to. This is
+/// for editors, which ask who uses what. Errors are in the graph. `None` where no module can be
+/// read.
 pub fn load_all(sources: &mut SourceSet, packages: &Packages, paths: &[String]) -> Option<Graph> {
     load::Loader::new(sources, packages).every(paths)
 }

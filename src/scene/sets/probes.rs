@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette;
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Material, Object, Scene, Set, base, placed};
 use crate::scene::shape::Shape;
 
 const WHITE: DVec3 = DVec3::splat(0.85);
@@ -32,12 +32,5 @@ pub fn scene() -> Scene {
         near: 0.5,
         far: 40.0,
     };
-    let key = Lamp {
-        color: DVec3::splat(0.95),
-        position: DVec3::new(-3.5, 5.5, 6.5),
-        target: DVec3::ZERO,
-        half_angle: 0.5,
-        kind: LampKind::Directional,
-    };
-    base(objects, eye, palette::lamps(key, 5.0, 4.0, 0.22))
+    base(objects, eye, palette::over_the_shoulder())
 }

@@ -78,7 +78,7 @@ fn collision(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Sai
     });
     let message = match other {
         Some((other, _)) => {
-            format!("{name} and {} have one place:{place}", variable(module, other))
+            format!("{name} and {} have the same place:{place}", variable(module, other))
         }
         None => format!("{name} has a place that something else has:{place}"),
     };
@@ -95,7 +95,7 @@ pub fn varying(module: &Module, error: &VaryingError) -> Said {
             ty(module, *handle)
         ),
         VaryingError::InvalidInterpolationInStage(_, stage) => {
-            format!("`@interpolate` like this is for {} shaders", stage_name(*stage))
+            format!("this `@interpolate` is only allowed in {} shaders", stage_name(*stage))
         }
         VaryingError::InvalidInterpolationSamplingCombination { .. } => {
             "these two parts of `@interpolate` do not go together".to_owned()
@@ -132,7 +132,7 @@ pub fn varying(module: &Module, error: &VaryingError) -> Said {
             );
         }
         VaryingError::DuplicateBuiltIn(built_in) => {
-            format!("`{}` is there twice", built_in_name(*built_in))
+            format!("`{}` occurs twice", built_in_name(*built_in))
         }
         VaryingError::UnsupportedCapability(capabilities) => return lacking(*capabilities),
         VaryingError::InvalidInputAttributeInStage(name, stage) => {

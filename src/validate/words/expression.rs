@@ -14,7 +14,7 @@ pub fn expression(module: &Module, error: &ExpressionError) -> Said {
         E::InvalidIndexType(_) => "an index is an integer",
         E::NegativeIndex(_) => "an index is not negative",
         E::IndexOutOfBounds(_, index) => {
-            return Said::plain(format!("there is no element {index}: it has fewer"));
+            return Said::plain(format!("there is no element {index}: there are fewer"));
         }
         E::InvalidPointerType(_) => "there is nothing to be read here",
         E::InvalidArrayType(_) => "only arrays in storage buffers have a length to ask for",
@@ -50,10 +50,10 @@ pub fn expression(module: &Module, error: &ExpressionError) -> Said {
         E::ExpectedGlobalVariable | E::ExpectedGlobalOrArgument => {
             "a texture or sampler must be named directly"
         }
-        E::ExpectedBindingArrayType(_) => "this is no array of bindings",
-        E::ExpectedImageType(_) => "this is no texture",
-        E::ExpectedSamplerType(_) => "this is no sampler",
-        E::InvalidDerivative => "derivatives are of floating-point scalars and vectors",
+        E::ExpectedBindingArrayType(_) => "this is not an array of bindings",
+        E::ExpectedImageType(_) => "this is not a texture",
+        E::ExpectedSamplerType(_) => "this is not a sampler",
+        E::InvalidDerivative => "derivatives need floating-point scalars or vectors",
         E::InvalidImageClass(_)
         | E::InvalidImageFormat(_)
         | E::InvalidImageStorageAccess(_)
@@ -102,7 +102,7 @@ pub fn expression(module: &Module, error: &ExpressionError) -> Said {
         E::InvalidRayQueryType(_) => return foreign("ray tracing"),
         E::InvalidCooperativeOperand(_) => return foreign("cooperative matrices"),
         E::NotInScope | E::FunctionArgumentDoesntExist(_) => {
-            "naga read the expression in a way that it does not understand itself"
+            "naga's parser gave the expression a form that naga's validator refuses"
         }
         E::InvalidWorkGroupUniformLoadResultType(_) => {
             "this type cannot be loaded for a whole workgroup"
@@ -116,13 +116,13 @@ fn texture(error: &ExpressionError) -> Said {
     use ExpressionError as E;
     let text = match error {
         E::InvalidImageArrayIndex => {
-            "an index of the layer is for arrays of textures, and they need one"
+            "array textures need the index of a layer, and other textures have none"
         }
         E::InvalidImageSampleSelector | E::MissingImageSampleSelector => {
-            "a sample is named for multisampled textures, and for no others"
+            "multisampled textures need the index of a sample, and other textures have none"
         }
         E::InvalidImageLevelSelector | E::MissingImageLevelSelector => {
-            "a level is named for textures with mip levels, and for no others"
+            "textures with mip levels need a level, and other textures have none"
         }
         E::InvalidImageArrayIndexType(_) | E::InvalidImageOtherIndexType(_) => {
             "a layer, a sample and a level are integers"

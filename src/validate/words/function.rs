@@ -29,9 +29,9 @@ pub fn function(module: &Module, of: &Function, error: &FunctionError) -> Said {
         FunctionError::InvalidReturnType { expected_ty, .. } => {
             return returned(module, *expected_ty);
         }
-        FunctionError::InvalidIfType(_) => "the condition of `if` is no `bool`".to_owned(),
+        FunctionError::InvalidIfType(_) => "the condition of `if` is not a `bool`".to_owned(),
         FunctionError::InvalidSwitchType(_) => "`switch` needs an integer".to_owned(),
-        FunctionError::ConflictingSwitchCase(_) => "a case is there twice".to_owned(),
+        FunctionError::ConflictingSwitchCase(_) => "a case occurs twice".to_owned(),
         FunctionError::ConflictingCaseType => "the cases have different types".to_owned(),
         FunctionError::MissingDefaultCase => "`switch` needs a `default`".to_owned(),
         FunctionError::MultipleDefaultCases => "`switch` has several `default`s".to_owned(),
@@ -70,7 +70,7 @@ pub fn function(module: &Module, of: &Function, error: &FunctionError) -> Said {
         | FunctionError::WorkgroupUniformLoadInvalidPointer(_)
         | FunctionError::EmitResult(_)
         | FunctionError::UnvisitedExpression(_) => {
-            "naga read the function in a way that it does not understand itself".to_owned()
+            "naga's parser gave the function a form that naga's validator refuses".to_owned()
         }
         FunctionError::InvalidAtomic(_)
         | FunctionError::InvalidImageAtomicFunction(_)
@@ -160,7 +160,7 @@ fn call(module: &Module, handle: Handle<Function>, error: &CallError) -> Said {
         CallError::ResultAlreadyInScope(_)
         | CallError::ResultAlreadyPopulated(_)
         | CallError::ExpressionMismatch(_) => {
-            Said::plain("naga read the call in a way that it does not understand itself")
+            Said::plain("naga's parser gave the call a form that naga's validator refuses")
         }
     };
     said.note(format!("declared: {}", signature(module, called)))

@@ -1,8 +1,8 @@
-//! naga's errors in the words of people who write shaders: for each kind of mistake a sentence,
-//! with the author's names and types in it.
+//! Explains naga's errors in the terms of people who write shaders: a sentence for each kind of
+//! mistake, with the author's names and types.
 //!
-//! Every enum of naga's is matched without a wildcard, so that a version of naga with a new kind
-//! does not compile until the kind has words here.
+//! Every enum of naga is matched without a wildcard. So a version of naga with a new kind of error
+//! does not compile until the kind has a sentence here.
 
 mod entry;
 mod expression;
@@ -19,13 +19,13 @@ use naga::{Handle, Module, Type, TypeInner};
 
 use crate::diagnostic::{Code, codes};
 
-/// A sentence, with the code where a kind has one of its own.
+/// A sentence, with the code for kinds that have one of their own.
 #[derive(Debug)]
 pub struct Said {
     pub code: Option<&'static Code>,
     pub message: String,
     pub notes: Vec<String>,
-    /// A place beside those of naga's error, with its label.
+    /// A second place, beside that of naga's error, with its label.
     pub beside: Option<(naga::Span, String)>,
 }
 
@@ -48,7 +48,7 @@ impl Said {
 pub fn validation(module: &Module, error: &ValidationError) -> Said {
     match error {
         ValidationError::InvalidHandle(_) | ValidationError::Corrupted => {
-            Said::plain("naga read the text in a way that it does not understand itself")
+            Said::plain("naga's parser gave the text a form that naga's validator refuses")
         }
         ValidationError::Layouter(_) => {
             Said::plain("a type has no layout in memory: its size is not known, or too large")
@@ -94,7 +94,7 @@ fn inner(module: &Module, inner: &TypeInner) -> String {
     }
 }
 
-/// What needs more than every target has.
+/// What needs a capability that not every target has.
 fn lacking(capabilities: Capabilities) -> Said {
     let names: Vec<String> =
         capabilities.iter_names().map(|(name, _)| name.to_lowercase().replace('_', " ")).collect();
@@ -118,12 +118,12 @@ fn stage_name(stage: naga::ShaderStage) -> &'static str {
     }
 }
 
-/// What only stages or devices have that no target has.
+/// Something that belongs to stages or devices which no target has.
 fn foreign(what: &str) -> Said {
     Said::coded(codes::NOT_PORTABLE, format!("no target has {what}"))
 }
 
-/// Words of naga's enums, such as `SampleCount`, as words: `sample count`.
+/// A name from naga's enums, such as `SampleCount`, as words: `sample count`.
 fn spaced(debug: &str) -> String {
     let mut text = String::with_capacity(debug.len() + 4);
     for (index, letter) in debug.chars().enumerate() {

@@ -1,10 +1,10 @@
-//! Tokens of GLSL as their authors write them.
+//! Tokens of GLSL as authors write them.
 
 use naga::front::glsl::{ErrorKind, ExpectedToken, TokenValue};
 
 use super::spaced;
 
-/// What the parser wanted.
+/// What the parser expected.
 fn expected(tokens: &[ExpectedToken]) -> String {
     let words: Vec<String> = tokens.iter().map(wanted).collect();
     match words.split_last() {
@@ -26,7 +26,7 @@ fn wanted(token: &ExpectedToken) -> String {
     }
 }
 
-/// A token, in backticks where it is a text of its own.
+/// A token, in backticks if it is text from the file.
 fn token(value: &TokenValue) -> String {
     use TokenValue as T;
     let text = match value {
@@ -111,7 +111,7 @@ fn token(value: &TokenValue) -> String {
     format!("`{text}`")
 }
 
-/// What naga's GLSL parser found, in our words.
+/// What naga's GLSL parser reports, as a sentence.
 pub fn glsl(kind: &ErrorKind) -> String {
     match kind {
         ErrorKind::EndOfFile => "the file ends too early".to_owned(),
@@ -137,7 +137,7 @@ pub fn glsl(kind: &ErrorKind) -> String {
         }
         ErrorKind::VariableAlreadyDeclared(name) => format!("`{name}` is declared twice"),
         ErrorKind::SemanticError(text) => text.to_string(),
-        // Its type belongs to a crate that is not ours to name.
+        // The type of this error belongs to a crate that is not a dependency of ours.
         ErrorKind::PreprocessorError(error) => spaced(&format!("{error:?}")),
         ErrorKind::InternalError(text) => format!("naga stopped: {text}"),
     }

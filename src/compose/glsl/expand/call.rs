@@ -1,4 +1,4 @@
-//! Calls of the author's macros: their arguments, and what is put in the place of a call.
+//! Calls of the author's macros: reads their arguments, and replaces each call by the macro's body.
 
 use super::{Call, Expander, Fatal, Frame, Input};
 use crate::compose::glsl::token::{NO_SETTING, NONE, Tok};
@@ -77,7 +77,7 @@ impl<'g> Expander<'g, '_> {
             if depth > LIMITS.nesting {
                 return Err(Box::new(self.too_deep(&token)));
             }
-            // The tokens of nested calls are read once for each level.
+            // Counted as work, since the tokens of nested calls are read once for each level.
             self.spend(1, 0, name.span(self.modules()))?;
             if let Some(argument) = arguments.last_mut() {
                 argument.push(Tok { before: NONE, after: NONE, ..token });
@@ -92,7 +92,7 @@ impl<'g> Expander<'g, '_> {
             .at(token.span(self.modules()), "one too many")
     }
 
-    /// Puts the macro's body, with its arguments, in front of what is still to be scanned.
+    /// Puts the macro's body, with its arguments, before what is still to be scanned.
     fn replace(
         &mut self,
         definition: &'g Macro,
@@ -135,7 +135,7 @@ impl<'g> Expander<'g, '_> {
     ) -> Result<Vec<Tok>, Fatal> {
         let mut result = Vec::with_capacity(definition.body.len());
         let mut expanded: Vec<Option<Vec<Tok>>> = vec![None; arguments.len()];
-        // Whether the left operand of a pending `##` has a token.
+        // Whether a `##` is pending, and whether its left operand has a token.
         let (mut pasting, mut has_left) = (false, false);
         for body in &definition.body {
             let own = [Tok { symbol: body.symbol, kind: body.kind, spaced: body.spaced, ..site }];
@@ -176,7 +176,8 @@ impl<'g> Expander<'g, '_> {
         Ok(cache.as_deref().unwrap_or_default())
     }
 
-    /// Joins the last token of `left` with the first of `right` if asked to; what is left of `right`.
+    /// Joins the last token of `left` with the first of `right`, if asked to. Returns what remains
+    /// of `right`.
     fn paste<'a>(
         &mut self,
         left: &mut Vec<Tok>,
@@ -191,8 +192,8 @@ impl<'g> Expander<'g, '_> {
         };
         for token in [&last, first] {
             if token.setting != NO_SETTING {
-                // The name that comes out depends on the value, so the value is asked for. A value
-                // that is not declared is reported where it is used as a number.
+                // The new name depends on the setting's value, so the setting counts as read. A
+                // value that its axis does not declare is reported where it is used as a number.
                 let _ = self.reads.read(token.setting);
             }
         }

@@ -1,4 +1,4 @@
-//! Which branch of a conditional is read.
+//! Chooses which branch of a conditional is read.
 
 use std::ops::Range;
 
@@ -13,8 +13,8 @@ use crate::parse::glsl::{Directive, Part};
 use crate::source::Span;
 
 impl State<'_, '_> {
-    /// Goes on in the first branch whose condition holds. If a condition has an error, no branch is
-    /// taken: errors in the others would only follow from it.
+    /// Continues in the first branch whose condition holds. If a condition has an error, no branch
+    /// is taken, since errors in the branches would only follow from it.
     pub(super) fn choose(&mut self, module: usize, mut index: usize) -> Result<(), Fatal> {
         while let Some(Part::Directive(directive, span)) =
             self.graph.modules[module].parts.get(index)
@@ -89,7 +89,7 @@ impl State<'_, '_> {
         Ok(evaluate(&mut self.expander, &tokens, span).map_err(|error| vec![error]))
     }
 
-    /// Goes on at the `#endif` of a conditional, one of whose later branches is `next`.
+    /// Continues at the `#endif` of a conditional; `next` is one of its later branches.
     fn skip_all(&mut self, mut next: usize) {
         let module = self.open.last().map_or(0, |open| open.module);
         let branch = self.graph.modules[module].parts.get(next);

@@ -1,4 +1,4 @@
-//! What a drawing's stages are bound to.
+//! The resources that a drawing's stages are bound to.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,13 +8,13 @@ use crate::diagnostic::Diagnostic;
 use crate::execute::fixture::{Address, Fixture, Sampler};
 use crate::execute::frame::{Buffers, Drawing, Item, Place};
 
-/// The places that the stages use, their textures and samplers uploaded.
+/// The bindings that the stages use, with their textures and samplers uploaded.
 pub struct Bindings {
     used: BTreeSet<Place>,
     kept: BTreeMap<Place, Kept>,
 }
 
-/// What a binding keeps alive.
+/// What keeps a binding's resource alive.
 enum Kept {
     Buffer(wgpu::Buffer),
     View(wgpu::TextureView),
@@ -61,8 +61,8 @@ impl Bindings {
         Ok(indices.into_iter().filter_map(group).collect())
     }
 
-    /// With samplers that nothing reads at those numbers of its groups that are left out: wgpu
-    /// numbers bindings without gaps, and a shipped stage has the author's numbers.
+    /// Adds samplers that nothing reads at the unused bindings of its groups. wgpu numbers bindings
+    /// without gaps, but a shipped stage has the author's numbers.
     pub fn without_gaps(mut self, gpu: &Gpu) -> Self {
         let last: BTreeMap<u32, u32> = self.used.iter().copied().collect();
         for place in last.iter().flat_map(|(group, last)| (0..*last).map(|one| (*group, one))) {
@@ -83,7 +83,8 @@ impl Bindings {
     ) -> BTreeMap<u32, wgpu::BindGroupLayout> {
         let places: BTreeSet<Place> = self.used.iter().chain(self.kept.keys()).copied().collect();
         let fixture = |place: &Place| drawing.fixtures.get(place).map(|fixture| &**fixture);
-        // Not every device filters textures of f32: only stages that filter need one that does.
+        // Not every device can filter f32 textures, so filtering is asked for only where a stage
+        // filters.
         let is_filter = |fixture: &Fixture| matches!(fixture, Fixture::Sampler(one) if one.linear && one.compare.is_none());
         let filters = self.used.iter().filter_map(fixture).any(is_filter);
         let entry = |place: &Place| wgpu::BindGroupLayoutEntry {

@@ -1,4 +1,4 @@
-//! Frames from the bytes of a bundle: what a driver of Vulkan takes as it is, and WGSL.
+//! Draws frames from the bytes of a bundle: from WGSL, and from everything that can become SPIR-V.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +21,7 @@ struct Loaded {
 }
 
 impl Gpu {
-    /// Draws the frame of every view with shipped stages and reads it back.
+    /// Draws the frame of each view with shipped stages, and reads it back.
     pub fn shipped_frames(
         &self,
         pair: Pair<'_>,
@@ -103,7 +103,8 @@ impl Gpu {
         Ok(frames)
     }
 
-    /// The stage as the driver takes it; sampler heaps go into the bind group `heaps`.
+    /// Loads the stage in the form that the driver accepts. Sampler heaps go into the bind group
+    /// `heaps`.
     fn loaded(&self, shipped: &Shipped, heaps: u32) -> Result<Loaded, Diagnostic> {
         let Shipped { target, native, reflection, .. } = shipped;
         if *target == Target::WGSL {
@@ -120,8 +121,8 @@ impl Gpu {
 }
 
 impl Gpu {
-    /// The stage as SPIR-V. Vertex stages are drawn with again and again, and translating takes
-    /// two programs.
+    /// The stage as SPIR-V. Results are kept, since many drawings share a vertex stage and
+    /// translating HLSL runs two programs.
     fn binary(&self, shipped: &Shipped, heaps: u32) -> Result<Binary, Diagnostic> {
         let key = (shipped.bytes.clone(), heaps);
         if let Some(known) = lock(&self.binaries).get(&key) {
@@ -135,7 +136,7 @@ impl Gpu {
     }
 }
 
-/// What the way to the device cannot do with a fragment stage.
+/// What cannot be done with a fragment stage on this way to the device.
 fn lacks(stage: &Shipped) -> Option<&'static str> {
     match stage.target {
         Target::WGSL => stage.lacks_of_webgpu(),
@@ -144,7 +145,7 @@ fn lacks(stage: &Shipped) -> Option<&'static str> {
     }
 }
 
-/// Everything that one of the stages reads.
+/// All bindings that one of the stages reads.
 fn places(pair: Pair<'_>) -> BTreeSet<Place> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     stages

@@ -1,4 +1,4 @@
-//! What a frame is drawn into, and how it comes back.
+//! The attachments of a frame, and how they are read back.
 
 use super::super::{Gpu, TARGET_FORMAT, pipeline};
 use crate::diagnostic::Diagnostic;
@@ -8,7 +8,7 @@ use crate::execute::shipped::Format;
 
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Depth cannot be copied into a buffer everywhere, only read: the shader that reads it.
+/// The shader that reads depth. Not every device can copy depth into a buffer, but all can read it.
 const DEPTH: &str = "
 @group(0) @binding(0) var drawn: texture_2d<f32>;
 @vertex fn triangle(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -27,7 +27,7 @@ pub struct Targets {
     keep_depth: bool,
 }
 
-/// A frame on its way back.
+/// A frame that is being copied back.
 pub struct Pending {
     size: [u32; 2],
     color: Vec<wgpu::Buffer>,
@@ -54,7 +54,7 @@ impl Targets {
         }
     }
 
-    /// One pass over cleared attachments.
+    /// A render pass over cleared attachments.
     pub fn pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -85,7 +85,7 @@ impl Targets {
         draws(&mut encoder.begin_render_pass(&descriptor));
     }
 
-    /// Has everything copied to where it can be read.
+    /// Copies everything to where it can be read.
     pub fn download(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Pending {
         let color =
             self.color.iter().map(|(target, _)| copied(gpu, encoder, target, self.size)).collect();
@@ -144,7 +144,7 @@ fn color_attachment(
     }
 }
 
-/// Bytes of a row in a buffer.
+/// Bytes of a row in a buffer, with its padding.
 fn padded(width: u32) -> u32 {
     (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
@@ -173,7 +173,7 @@ fn copied(
     buffer
 }
 
-/// A pipeline that reads the bits of a depth texture, with the layout of what it binds.
+/// A pipeline that reads the bits of a depth texture, and the layout of its bindings.
 fn reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
     let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
@@ -203,7 +203,7 @@ fn reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline
     (layout, pipeline)
 }
 
-/// The bits of a depth texture, drawn into a target of words.
+/// Draws the bits of a depth texture into a target of words.
 fn as_words(
     gpu: &Gpu,
     encoder: &mut wgpu::CommandEncoder,

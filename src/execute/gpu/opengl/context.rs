@@ -1,14 +1,14 @@
-//! Contexts of OpenGL and OpenGL ES in a chosen version, by EGL, without a window.
+//! Opens contexts of OpenGL and OpenGL ES in a chosen version, through EGL and without a window.
 //!
-//! wgpu opens one context, of the newest version that there is. A text of GLSL ES has to meet a
-//! context of OpenGL ES instead, and one of GLSL 3.30 a context of a core profile.
+//! wgpu opens one context, of the newest version that there is. But GLSL ES needs a context of
+//! OpenGL ES, and GLSL 3.30 one of a core profile.
 
 use std::ffi::{CStr, c_char, c_void};
 
 use glow::HasContext as _;
 use khronos_egl as egl;
 
-/// An interface and the least version that a context must have.
+/// An interface, and the lowest version that a context must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Api {
     /// OpenGL with the core profile.
@@ -37,19 +37,19 @@ type Egl = egl::DynamicInstance<egl::EGL1_5>;
 const PLATFORM_DEVICE: egl::Enum = 0x313f;
 /// `EGL_PLATFORM_SURFACELESS_MESA` of `EGL_MESA_platform_surfaceless`.
 const PLATFORM_SURFACELESS: egl::Enum = 0x31dd;
-/// Marks a device that renders on the CPU.
+/// The extension of a device that renders on the CPU.
 const SOFTWARE: &[u8] = b"EGL_MESA_device_software";
-/// Devices that are looked at.
+/// The most devices that are looked at.
 const DEVICES: usize = 16;
 
 type QueryDevices = extern "system" fn(egl::Int, *mut *mut c_void, *mut egl::Int) -> egl::Boolean;
 type QueryDeviceString = extern "system" fn(*mut c_void, egl::Int) -> *const c_char;
 
 impl Context {
-    /// Opens a context on the software device where there is one, since its numbers are the same
-    /// on every machine. The error is in words.
+    /// Opens a context on the software device if there is one, since its numbers are the same on
+    /// every machine. The error is a message.
     pub fn open(api: Api) -> Result<Self, String> {
-        // SAFETY: the library of that name is EGL's.
+        // SAFETY: the library with that name is EGL.
         let egl = unsafe { Egl::load_required() }.map_err(|error| format!("EGL: {error}"))?;
         let display = display(&egl)?;
         let failed = |error: egl::Error| format!("EGL: {error}");
@@ -73,23 +73,24 @@ impl Context {
         Ok(Self { egl, display, context, gl, api, adapter })
     }
 
-    /// Which interface it is of.
+    /// The interface of the context.
     pub fn api(&self) -> Api {
         self.api
     }
 
-    /// The renderer and the version that it answers to.
+    /// The renderer and the version that the context reports.
     pub fn adapter(&self) -> String {
         self.adapter.clone()
     }
 
-    /// Makes calls with the context current.
+    /// Runs calls while the context is current.
     pub fn with<T>(
         &self,
         calls: impl FnOnce(&glow::Context) -> Result<T, String>,
     ) -> Result<T, String> {
         let failed = |error: egl::Error| format!("EGL: {error}");
-        // What is bound belongs to the thread, and says whose context is released below.
+        // The bound interface is a property of the thread, and decides whose context is released
+        // below.
         self.egl.bind_api(self.api.bound()).map_err(failed)?;
         self.egl.make_current(self.display, None, None, Some(self.context)).map_err(failed)?;
         let result = calls(&self.gl);
@@ -149,7 +150,7 @@ fn display(egl: &Egl) -> Result<egl::Display, String> {
     found.map_err(|error| format!("EGL has no display without a window: {error}"))
 }
 
-/// The device that renders on the CPU, if EGL tells its devices.
+/// The device that renders on the CPU, if EGL can list devices.
 fn software(egl: &Egl) -> Option<egl::NativeDisplayType> {
     let query_devices = egl.get_proc_address("eglQueryDevicesEXT")?;
     let query_string = egl.get_proc_address("eglQueryDeviceStringEXT")?;

@@ -1,4 +1,4 @@
-//! Frames from the texts of a bundle.
+//! Draws frames from the texts of a bundle.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::execute::gpu::opengl::context::Api;
 use crate::execute::kernel::SENTINEL;
 use crate::execute::shipped::{Format, Shipped};
 
-/// A program with what stays the same over its frames.
+/// A program, with what is the same for all its frames.
 struct Ready {
     program: glow::Program,
     units: Vec<Unit>,
@@ -21,7 +21,7 @@ struct Ready {
     blocks: BTreeMap<Place, u32>,
 }
 
-/// Draws the frame of every view. Errors are in words.
+/// Draws the frame of each view. Errors are messages.
 pub fn draw(
     gl: &glow::Context,
     api: Api,
@@ -82,8 +82,8 @@ fn slot(stage: &Shipped, (group, binding): Place) -> Result<&Slot, String> {
         .ok_or_else(|| format!("group {group}, binding {binding} has no slot"))
 }
 
-/// A combined sampler on the unit that the text declares, or where the language cannot say, on the
-/// next one by name.
+/// The unit of a combined sampler: the one that the text declares. Where the language has no such
+/// declaration, the next free one is assigned by name.
 fn unit(
     gl: &glow::Context,
     program: glow::Program,
@@ -179,7 +179,7 @@ unsafe fn clear(gl: &glow::Context, formats: &[Format]) {
     }
 }
 
-/// The words of the target that is read from, row by row from the first in memory: the top one, as
+/// The words of the bound target, row by row in the order of memory. The top row is first, since
 /// outputs turn their positions over.
 unsafe fn read(gl: &glow::Context, [width, height]: [i32; 2], format: Format) -> Vec<u32> {
     let mut bytes = vec![0u8; width as usize * height as usize * 16];
@@ -229,13 +229,13 @@ unsafe fn draw_item(
     Ok(())
 }
 
-/// The attributes of a mesh for the array that is bound, and the buffer they are in.
+/// Describes the attributes of a mesh to the bound vertex array; returns the buffer with the data.
 unsafe fn attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow::Buffer>, String> {
     if mesh.attributes.is_empty() {
         return Ok(None);
     }
     let stride = mesh.stride() as i32;
-    // SAFETY: the offsets are those of the interleaved words.
+    // SAFETY: the offsets are within the interleaved words.
     unsafe {
         let vertices = buffer(gl, glow::ARRAY_BUFFER, &bytes(&mesh.words))?;
         for (attribute, offset) in mesh.layout() {

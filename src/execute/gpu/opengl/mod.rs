@@ -1,8 +1,8 @@
-//! Emitted GLSL on OpenGL and OpenGL ES themselves, as it is.
+//! Runs emitted GLSL unchanged, directly on OpenGL and OpenGL ES.
 //!
-//! Why not through wgpu: its GL backend takes a shader's text as it is, but learns which sampler
-//! belongs to which texture only from its own translation, so that shadow lookups cannot work;
-//! and it opens one kind of context only.
+//! Why not through wgpu? Its GL backend accepts a shader's text unchanged. But it learns only from
+//! its own translation which sampler belongs to which texture, so shadow lookups would not work. It
+//! also opens only one kind of context.
 
 mod context;
 mod frame;
@@ -36,14 +36,14 @@ pub struct OpenGl {
     runs: u32,
 }
 
-/// What a kernel keeps: the program, the unit of its inputs, and the fixtures on their units.
+/// What is kept for a kernel: the program, the unit of its inputs, and the fixtures on their units.
 struct Kept {
     program: glow::Program,
     inputs: u32,
     units: Vec<Unit>,
 }
 
-/// A texture unit and what is on it.
+/// A texture unit, and what is bound to it.
 struct Unit {
     index: u32,
     target: u32,
@@ -52,7 +52,7 @@ struct Unit {
 }
 
 impl OpenGl {
-    /// Opens a context for the texts of a target; the error is in words.
+    /// Opens a context for the texts of a target. The error is a message.
     pub fn open(api: Api, target: Target) -> Result<Self, String> {
         Ok(Self { context: Context::open(api)?, target, kept: HashMap::new(), runs: 0 })
     }
@@ -151,7 +151,8 @@ fn keep(
     Ok(Kept { program, inputs, units })
 }
 
-/// The unit that the text declares, or where the language cannot say, the next one by name.
+/// The unit that the text declares. Where the language has no such declaration, the next free one
+/// is assigned by name.
 fn unit(
     gl: &glow::Context,
     program: glow::Program,
@@ -223,8 +224,8 @@ fn draw(
     Ok(pixels.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect())
 }
 
-/// Every fragment is written, and cubes are filtered across their edges as WebGPU means it:
-/// OpenGL does so only where it is told to, OpenGL ES 3 knows no other way.
+/// Sets the state: every fragment is written, and cubes are filtered across their edges, as WebGPU
+/// demands. OpenGL does that only if it is enabled; OpenGL ES 3 always does.
 fn plain_state(gl: &glow::Context, api: Api) {
     let off =
         [glow::SCISSOR_TEST, glow::DEPTH_TEST, glow::STENCIL_TEST, glow::CULL_FACE, glow::BLEND];
@@ -238,7 +239,7 @@ fn plain_state(gl: &glow::Context, api: Api) {
     }
 }
 
-/// Puts the inputs and the fixtures on their units.
+/// Binds the inputs and the fixtures to their units.
 fn bind(gl: &glow::Context, kept: &Kept, inputs: glow::Texture) {
     // SAFETY: the context is current and every name is of it.
     unsafe {

@@ -1,4 +1,4 @@
-//! Programs of two texts.
+//! Compiles and links programs from two texts.
 
 use glow::HasContext as _;
 
@@ -21,7 +21,7 @@ pub fn triangle(api: Api) -> String {
     format!("#version {version}\n{TRIANGLE}")
 }
 
-/// The first extension that a text requires and the driver does not have.
+/// The first extension that a text requires and that the driver lacks.
 pub fn missing_extension(gl: &glow::Context, text: &[u8]) -> Option<String> {
     let text = String::from_utf8_lossy(text);
     let required = text.lines().filter_map(|line| {
@@ -57,7 +57,7 @@ pub fn link(gl: &glow::Context, vertex: &str, fragment: &str) -> Result<glow::Pr
     }
 }
 
-/// Puts a combined sampler on a texture unit. One that the driver dropped needs none.
+/// Assigns a combined sampler to a texture unit, unless the driver removed it.
 pub fn set_unit(gl: &glow::Context, program: glow::Program, name: &str, unit: u32) {
     // SAFETY: the context is current and the program is of it.
     unsafe {
@@ -68,7 +68,7 @@ pub fn set_unit(gl: &glow::Context, program: glow::Program, name: &str, unit: u3
     }
 }
 
-/// Puts a uniform block on a binding. One that the driver dropped needs none.
+/// Assigns a uniform block to a binding, unless the driver removed it.
 pub fn set_block(gl: &glow::Context, program: glow::Program, name: &str, binding: u32) {
     // SAFETY: the context is current and the program is of it.
     unsafe {
@@ -78,7 +78,7 @@ pub fn set_block(gl: &glow::Context, program: glow::Program, name: &str, binding
     }
 }
 
-/// The first error since the last look, in words.
+/// The first error since the last call, as a message.
 pub fn check(gl: &glow::Context) -> Result<(), String> {
     // SAFETY: the context is current.
     match unsafe { gl.get_error() } {

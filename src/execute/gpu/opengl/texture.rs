@@ -1,10 +1,10 @@
-//! Fixtures and words as textures and samplers of OpenGL.
+//! Uploads fixtures and words as textures and samplers of OpenGL.
 
 use glow::HasContext as _;
 
 use crate::execute::fixture::{Address, Compare, Sampler, Texture};
 
-/// The fixture as a texture, with its target.
+/// Uploads the fixture as a texture; also returns its target.
 pub fn upload(gl: &glow::Context, texture: &Texture) -> Result<(u32, glow::Texture), String> {
     let (internal, format) = if texture.kind.is_depth() {
         (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT)
@@ -15,8 +15,8 @@ pub fn upload(gl: &glow::Context, texture: &Texture) -> Result<(u32, glow::Textu
     let target = if cube { glow::TEXTURE_CUBE_MAP } else { glow::TEXTURE_2D };
     let layer = texture.texels.len() / texture.kind.layers() as usize;
     let bytes: Vec<u8> = texture.texels.iter().flat_map(|value| value.to_ne_bytes()).collect();
-    // SAFETY: the context is current; each slice has the texels of one layer, four bytes a
-    // component.
+    // SAFETY: the context is current. Each slice has the texels of one layer, with four bytes for
+    // each component.
     unsafe {
         let made = gl.create_texture()?;
         gl.active_texture(glow::TEXTURE0);
@@ -50,7 +50,7 @@ pub fn words(
     made(gl, size, (glow::RGBA32UI, glow::RGBA_INTEGER, glow::UNSIGNED_INT), texels)
 }
 
-/// A texture to draw into: of four floats, or four words.
+/// A texture to draw into, with four floats or four words for each texel.
 pub fn target(gl: &glow::Context, size: [u32; 2], is_float: bool) -> Result<glow::Texture, String> {
     match is_float {
         true => made(gl, size, (glow::RGBA32F, glow::RGBA, glow::FLOAT), None),
@@ -64,7 +64,7 @@ fn made(
     (internal, format, ty): (u32, u32, u32),
     texels: Option<&[u8]>,
 ) -> Result<glow::Texture, String> {
-    // SAFETY: the context is current, and the slice has 16 bytes a texel.
+    // SAFETY: the context is current, and the slice has 16 bytes for each texel.
     unsafe {
         let made = gl.create_texture()?;
         gl.active_texture(glow::TEXTURE0);
@@ -85,7 +85,7 @@ fn made(
     }
 }
 
-/// What a texture needs to be complete with one level, where no sampler says otherwise.
+/// Sets what a texture with one level needs to be complete, where no sampler object is bound.
 pub unsafe fn nearest(gl: &glow::Context, target: u32) {
     // SAFETY: a texture is bound to the target.
     unsafe {
@@ -95,7 +95,7 @@ pub unsafe fn nearest(gl: &glow::Context, target: u32) {
     }
 }
 
-/// The settings as a sampler object.
+/// A sampler object with these settings.
 pub fn sampler(gl: &glow::Context, settings: Sampler) -> Result<glow::Sampler, String> {
     let filter = if settings.linear { glow::LINEAR } else { glow::NEAREST };
     let wrap = match settings.address {

@@ -1,32 +1,24 @@
-//! Values as words, and back.
+//! Converts values to words, and back.
 
 use naga::{BinaryOperator as Op, Expression, Handle, ScalarKind, Type, TypeInner, VectorSize};
 
 use super::{Body, Value};
 
 impl Body<'_> {
-    /// A value of the type from words; `None` when the type is not made of words.
+    /// A value of the type from words; `None` if the type does not consist of words.
     pub(super) fn unflatten(
         &mut self,
         ty: Handle<Type>,
         words: &mut dyn Iterator<Item = Value>,
     ) -> Option<Value> {
-        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
-            TypeInner::Scalar(scalar) => {
-                return words.next().map(|word| self.word_as(word, scalar.kind));
-            }
-            TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
-            TypeInner::Matrix { columns, rows, scalar } => {
-                vec![self.vector(rows, scalar.kind); columns as usize]
-            }
-            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
-                vec![base; count.get() as usize]
-            }
-            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
-            _ => return None,
-        };
-        let components =
-            parts.into_iter().map(|part| self.unflatten(part, words)).collect::<Option<_>>()?;
+        if let TypeInner::Scalar(scalar) = self.module.types[ty].inner {
+            return words.next().map(|word| self.word_as(word, scalar.kind));
+        }
+        let components = self
+            .parts(ty)?
+            .into_iter()
+            .map(|part| self.unflatten(part, words))
+            .collect::<Option<_>>()?;
         Some(self.add(Expression::Compose { ty, components }))
     }
 
@@ -43,11 +35,19 @@ impl Body<'_> {
 
     /// Appends the words of a value.
     pub(super) fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
-        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
-            TypeInner::Scalar(scalar) => {
-                let word = self.as_word(value, scalar.kind);
-                return words.push(word);
-            }
+        if let TypeInner::Scalar(scalar) = self.module.types[ty].inner {
+            let word = self.as_word(value, scalar.kind);
+            return words.push(word);
+        }
+        for (index, part) in self.parts(ty).into_iter().flatten().enumerate() {
+            let component = self.component(value, index as u32);
+            self.flatten(component, part, words);
+        }
+    }
+
+    /// The types of what a value is made of; `None` where it has no words.
+    fn parts(&mut self, ty: Handle<Type>) -> Option<Vec<Handle<Type>>> {
+        Some(match self.module.types[ty].inner.clone() {
             TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
             TypeInner::Matrix { columns, rows, scalar } => {
                 vec![self.vector(rows, scalar.kind); columns as usize]
@@ -56,12 +56,8 @@ impl Body<'_> {
                 vec![base; count.get() as usize]
             }
             TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
-            _ => Vec::new(),
-        };
-        for (index, part) in parts.into_iter().enumerate() {
-            let component = self.component(value, index as u32);
-            self.flatten(component, part, words);
-        }
+            _ => return None,
+        })
     }
 
     fn as_word(&mut self, value: Value, kind: ScalarKind) -> Value {
@@ -75,7 +71,7 @@ impl Body<'_> {
         }
     }
 
-    /// The four words of this pixel: part 0, unless `part` says another.
+    /// The four words of this pixel: those of part 0, unless `part` is another.
     pub(super) fn choose(&mut self, words: &[Value], part: Value) -> Value {
         let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
         let zero = self.literal(0);

@@ -1,4 +1,4 @@
-//! The entry points of a program over all its permutations.
+//! Composes the entry points of a program for all its permutations.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,48 +14,50 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::link::Reason;
 use crate::permute::{Assignment, Key, ReadTree, Space};
 
-/// Permutations composed before their new texts are compiled: bounds the memory that texts take,
-/// which a small batch finds in the processor's caches.
+/// Permutations that are composed before their new texts are compiled. It bounds the memory for
+/// texts; a small batch also stays in the processor's caches.
 const BATCH: usize = 256;
 
-/// An entry point, compiled for every permutation.
-pub struct Woven {
+/// What one entry point became over all permutations.
+pub struct EntryResult {
     /// Its name in the bundle.
     pub label: String,
     pub language: Language,
-    /// One for each distinct text, in the order of the first permutation that has it.
+    /// The digest of each distinct text's unit, in the order in which the texts first occurred.
     pub made: Vec<Digest>,
     /// For each permutation, the index of its text.
     pub text_of: Vec<u32>,
     /// The axes that any composition asked for.
     pub reads: BTreeSet<String>,
-    /// How often anything was composed.
+    /// How many compositions were made.
     pub compositions: usize,
     /// How the conditions of GLSL came out.
     pub decided: Decided,
     pub warnings: Vec<Diagnostic>,
-    /// How many texts a target compiled as a whole for a reason, and the first one's permutation.
+    /// For a reason and a target, how many texts were compiled as a whole, and the first such
+    /// permutation.
     pub whole: BTreeMap<(Reason, Target), (usize, String)>,
 }
 
-/// Makes something of each text of a batch; all are new.
+/// Makes something of each text of a batch. All texts are new.
 pub type Make<'a> = dyn Fn(&[(&Text, &Entry)]) -> Vec<Result<Compiled, Diagnostics>> + 'a;
 
-/// Composes every entry point for every permutation, and makes something of each text, a batch of permutations at a time.
-pub fn weave(
+/// Composes every entry point for every permutation, a batch of permutations at a time, and makes
+/// something of each new text.
+pub fn compose_all(
     entries: &[Entry],
     space: &Space,
     points: &[Assignment],
     make: &Make<'_>,
     progress: &(dyn Fn(Progress) + Sync),
-) -> Result<Vec<Woven>, Diagnostics> {
-    let mut looms: Vec<Loom<'_>> = entries.iter().map(Loom::new).collect();
+) -> Result<Vec<EntryResult>, Diagnostics> {
+    let mut known: Vec<Known<'_>> = entries.iter().map(Known::new).collect();
     let stage = entries.first().map_or(String::new(), |entry| entry.program.clone());
     let at = |done| progress(Progress { stage: stage.clone(), done, total: points.len() });
     at(0);
     for start in (0..points.len()).step_by(BATCH) {
         let batch = start..points.len().min(start + BATCH);
-        let jobs = compose_batch(&mut looms, space, &points[batch.clone()])?;
+        let jobs = compose_batch(&mut known, space, &points[batch.clone()])?;
         let texts: Vec<_> = jobs.iter().map(|job| (&*job.text, &entries[job.entry])).collect();
         let made = make(&texts)
             .into_iter()
@@ -63,19 +65,19 @@ pub fn weave(
             .map(|(made, job)| job.named(made, entries, space, &points[batch.clone()]));
         let made = collect(made.collect())?;
         for ((entry, Compiled { digest, warnings, whole }), job) in made.into_iter().zip(&jobs) {
-            let woven = &mut looms[entry].woven;
-            woven.made.push(digest);
-            woven.warnings.extend(warnings);
+            let result = &mut known[entry].result;
+            result.made.push(digest);
+            result.warnings.extend(warnings);
             for (target, reason) in whole {
                 let example = || space.key(&points[start + job.point]).to_string();
-                woven.whole.entry((reason, target)).or_insert_with(|| (0, example())).0 += 1;
+                result.whole.entry((reason, target)).or_insert_with(|| (0, example())).0 += 1;
             }
         }
-        // Texts are many small pieces.
+        // Freed in parallel, since a text consists of many small allocations.
         jobs.into_par_iter().for_each(drop);
         at(batch.end);
     }
-    Ok(looms.into_iter().map(|loom| loom.woven).collect())
+    Ok(known.into_iter().map(|entry| entry.result).collect())
 }
 
 /// A text that no earlier permutation of its entry point had.
@@ -86,14 +88,14 @@ struct Job {
     text: Box<Text>,
 }
 
-/// A text as its author reads it, and as it is compiled.
+/// A text in two forms: as its author reads it, and as it is compiled.
 pub struct Text {
     pub composed: Composed,
     pub lean: Composed,
 }
 
 impl Job {
-    /// What was made of the text; errors and warnings name the permutation.
+    /// What was made of the text, with the permutation named in errors and warnings.
     fn named(
         &self,
         made: Result<Compiled, Diagnostics>,
@@ -109,36 +111,36 @@ impl Job {
     }
 }
 
-/// Composes whatever earlier batches did not answer, in parallel; several permutations of a batch
-/// may compose to one text: to compose is cheaper than to wait for each other.
+/// Composes in parallel whatever earlier batches did not answer. Several permutations of a batch
+/// may compose to one text: composing it again costs less than waiting for each other.
 fn compose_batch(
-    looms: &mut [Loom<'_>],
+    known: &mut [Known<'_>],
     space: &Space,
     batch: &[Assignment],
 ) -> Result<Vec<Job>, Diagnostics> {
-    let answers = |looms: &[Loom<'_>], point: &Assignment| {
+    let answers = |known: &[Known<'_>], point: &Assignment| {
         let settings = space.settings(point);
-        looms.iter().map(|loom| loom.find(&settings, space, point)).collect::<Result<Vec<_>, _>>()
+        known.iter().map(|entry| entry.find(&settings, space, point)).collect::<Result<Vec<_>, _>>()
     };
-    let found = collect(batch.par_iter().map(|point| answers(looms, point)).collect())?;
+    let found = collect(batch.par_iter().map(|point| answers(known, point)).collect())?;
     let mut jobs = Vec::new();
     for (point, answers) in found.into_iter().enumerate() {
         for (entry, answer) in answers.into_iter().enumerate() {
-            jobs.extend(looms[entry].place(answer).map(|text| Job { entry, point, text }));
+            jobs.extend(known[entry].place(answer).map(|text| Job { entry, point, text }));
         }
     }
-    // Long ones first would balance better still; neighbours of one entry point are alike, which
-    // the caches of the processor and rayon's splitting both like.
+    // Sorted by entry point, since neighbours are alike: that suits the processor's caches and the
+    // way in which rayon splits work. Long texts first would balance the load even better.
     jobs.sort_by_key(|job| job.entry);
     Ok(jobs)
 }
 
-/// What is known so far of one entry point.
-struct Loom<'a> {
+/// What is known of one entry point so far.
+struct Known<'a> {
     entry: &'a Entry,
-    woven: Woven,
+    result: EntryResult,
     tree: ReadTree<u32>,
-    /// Index by the hash of the text.
+    /// The index of each text, by its hash.
     texts: BTreeMap<Hash, u32>,
 }
 
@@ -147,9 +149,9 @@ enum Found {
     Text { text: Box<Text>, hash: Hash },
 }
 
-impl<'a> Loom<'a> {
+impl<'a> Known<'a> {
     fn new(entry: &'a Entry) -> Self {
-        let woven = Woven {
+        let result = EntryResult {
             label: entry.label.clone(),
             language: entry.language,
             made: Vec::new(),
@@ -160,7 +162,7 @@ impl<'a> Loom<'a> {
             warnings: Vec::new(),
             whole: BTreeMap::new(),
         };
-        Self { entry, woven, tree: ReadTree::default(), texts: BTreeMap::new() }
+        Self { entry, result, tree: ReadTree::default(), texts: BTreeMap::new() }
     }
 
     fn find(
@@ -181,34 +183,34 @@ impl<'a> Loom<'a> {
         Ok(Found::Text { text: Box::new(Text { composed, lean }), hash })
     }
 
-    /// Records a permutation's text; gives it back if no earlier one had it.
+    /// Records a permutation's text, and returns it if no earlier permutation had it.
     fn place(&mut self, found: Found) -> Option<Box<Text>> {
         let (text, hash) = match found {
             Found::Known(index) => {
-                self.woven.text_of.push(index);
+                self.result.text_of.push(index);
                 return None;
             }
             Found::Text { text, hash } => (text, hash),
         };
-        self.woven.compositions += 1;
-        self.woven.decided.see(&text.composed.decisions);
+        self.result.compositions += 1;
+        self.result.decided.see(&text.composed.decisions);
         for (name, _) in &text.composed.reads {
-            if !self.woven.reads.contains(name) {
-                self.woven.reads.insert(name.clone());
+            if !self.result.reads.contains(name) {
+                self.result.reads.insert(name.clone());
             }
         }
         let next = self.texts.len() as u32;
         let index = *self.texts.entry(hash).or_insert(next);
-        // A contradiction would only cost a composition that the tree could have saved.
+        // A contradiction would only cost one composition that the tree could have saved.
         let _ = self.tree.insert(&text.composed.reads, index);
-        self.woven.text_of.push(index);
+        self.result.text_of.push(index);
         if index < next {
             return None;
         }
         let warnings =
-            text.composed.warnings.iter().filter(|warning| !self.woven.warnings.contains(warning));
+            text.composed.warnings.iter().filter(|warning| !self.result.warnings.contains(warning));
         let new: Vec<_> = warnings.cloned().collect();
-        self.woven.warnings.extend(new);
+        self.result.warnings.extend(new);
         Some(text)
     }
 }
@@ -226,7 +228,8 @@ fn collect<T>(results: Vec<Result<T, Diagnostics>>) -> Result<Vec<T>, Diagnostic
     if errors.is_empty() { Ok(values) } else { Err(errors) }
 }
 
-/// The same mistake in many permutations is one mistake: the first shows it.
+/// Keeps a diagnostic unless it is known. The same mistake in many permutations is reported for the
+/// first.
 fn keep(errors: &mut Diagnostics, error: Diagnostic) {
     let same = |known: &Diagnostic| {
         known.code == error.code && known.message == error.message && known.labels == error.labels
