@@ -67,7 +67,7 @@ fn told() -> Outcome {
 
 fn verified() -> Outcome {
     let folder = package()?;
-    let written = thread::scope(|scope| {
+    thread::scope(|scope| {
         let writer = scope.spawn(|| {
             (1..=ROUNDS).try_for_each(|number| {
                 change(&folder, number)?;
@@ -79,7 +79,6 @@ fn verified() -> Outcome {
             fails(&run(&folder, &["bundle", "verify", "out"])?, 0, "")?;
             times += 1;
         }
-        writer.join().map_err(|_| Failed::from("the writer panicked"))
-    })?;
-    written
+        writer.join().map_err(|_| Failed::from("the writer panicked"))?
+    })
 }
