@@ -4,6 +4,8 @@
 //! once. `docs/guide/limits.md` has the same table, and a trial compares the two. Bounds on work
 //! are counted in steps and never in seconds: the same input has the same answer on every machine.
 
+use std::cell::Cell;
+
 /// A bound in a form for people.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
@@ -46,6 +48,75 @@ fn thousands(number: u64) -> String {
     }
 }
 
+/// Steps of a stage that are left of its bound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Steps {
+    most: u64,
+    left: u64,
+    is_exhausted: bool,
+}
+
+thread_local! {
+    /// Steps that stages took on this thread, for trials: what time depends on and is not time.
+    static TAKEN: Cell<u64> = const { Cell::new(0) };
+}
+
+/// Steps that stages took on this thread so far.
+pub fn taken() -> u64 {
+    TAKEN.get()
+}
+
+/// Counts steps of a loop that has a bound of another kind, such as on what it gives.
+pub fn count(steps: u64) {
+    TAKEN.set(TAKEN.get().wrapping_add(steps));
+}
+
+/// More steps were asked for than were left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Exhausted;
+
+impl Steps {
+    /// None taken yet.
+    pub const fn new(most: u64) -> Self {
+        Self { most, left: most, is_exhausted: false }
+    }
+
+    /// Takes so many.
+    ///
+    /// # Errors
+    /// Where fewer are left. Nothing is left afterwards.
+    pub fn spend(&mut self, steps: u64) -> Result<(), Exhausted> {
+        count(steps);
+        let left = self.left.checked_sub(steps);
+        self.left = left.unwrap_or(0);
+        self.is_exhausted |= left.is_none();
+        left.map(|_| ()).ok_or(Exhausted)
+    }
+
+    /// Adds to the bound, as more input comes.
+    pub fn grant(&mut self, steps: u64) {
+        self.most = self.most.saturating_add(steps);
+        if !self.is_exhausted {
+            self.left = self.left.saturating_add(steps);
+        }
+    }
+
+    /// Whether more were asked for than there were.
+    pub fn is_exhausted(self) -> bool {
+        self.is_exhausted
+    }
+
+    /// Steps that there were.
+    pub fn most(self) -> u64 {
+        self.most
+    }
+
+    /// Steps taken so far.
+    pub fn taken(self) -> u64 {
+        self.most - self.left
+    }
+}
+
 macro_rules! limits {
     ($($name:ident: $type:ty = $value:expr, $unit:ident, $what:literal, $protects:literal, $error:literal;)*) => {
         $(#[doc = concat!("Most: ", $what, ".")] pub const $name: $type = $value;)*
@@ -71,6 +142,11 @@ limits! {
         "`include-too-deep`";
     EXPANSION_BYTES: usize = 16 << 20, Bytes, "bytes of one composed text",
         "macros and includes that multiply", "`expansion-too-large`, `output-too-large`";
+    LINK_STEPS: u64 = 1 << 18, Count,
+        "steps to find what the names of a package mean", "time",
+        "`limit-exceeded`";
+    LINK_FACTOR: u64 = 16, Count, "such steps more for each byte that was read", "time",
+        "`limit-exceeded`";
     COMPILED_BYTES: usize = 4 << 20, Bytes, "bytes of a composed text that is compiled",
         "the stack and time of naga", "`limit-exceeded`";
     COMPILED_NESTING: usize = 256, Count, "brackets in it", "the stack of naga", "`limit-exceeded`";
@@ -110,13 +186,16 @@ limits! {
     CONSTRAINT_NESTING: usize = 64, Count, "levels of a constraint", "the stack",
         "`nesting-too-deep`";
     CONSTRAINTS: usize = 4096, Count, "constraints of a program", "time", "`space-too-complex`";
-    SPACE_STEPS: usize = 1 << 22, Count, "steps to count a program's permutations", "time",
+    SPACE_STEPS: u64 = 1 << 22, Count, "steps to count a program's permutations", "time",
         "`space-too-complex`";
     PERMUTATIONS: usize = 1_000_000, Count, "permutations of a program", "time, and your disk",
         "`too-many-permutations`";
     PACKAGES: usize = 1000, Count, "packages in `wesl.toml`", "time", "`wesl-toml`";
     MESSAGE_BYTES: u64 = 64 << 20, Bytes, "bytes of one message to the language server", "memory",
         "skipped, and answered with an error";
+    EDIT_STEPS: u64 = 1 << 29, Count,
+        "bytes of a document that the edits of one message read and move", "time",
+        "the document is closed, and its user is told";
     DIAGNOSTICS: usize = 100, Count, "diagnostics of one run", "your eyes", "`not-shown`";
     MANIFEST_BYTES: u64 = 1 << 30, Bytes, "bytes of a bundle's `manifest.json`", "memory",
         "the bundle cannot be read";
@@ -145,10 +224,16 @@ limits! {
         "pixels are more than";
     CACHE_BYTES: usize = 64 << 20, Bytes, "bytes of a cache record, packed or not", "memory",
         "taken as absent";
-    CASE_ROWS: usize = 1 << 20, Count, "inputs of a numeric case", "memory, time",
+    CASE_ROWS: usize = 1 << 20, Count, "inputs of the numeric cases of a file", "memory, time",
         "`case-invalid`";
-    CASE_WORDS: usize = 1 << 24, Count, "scalars of all inputs of a numeric case", "memory",
+    CASE_WORDS: usize = 1 << 24, Count, "scalars of those inputs, each law's included",
+        "memory",
         "`case-invalid`";
+    CASES: usize = 4096, Count, "numeric cases of a file", "time: each is compiled",
+        "`case-invalid`";
+    CASE_WORK: u64 = 1u64 << 31, Count,
+        "steps of all cases of a file, on `eval`: each may take its part of them", "time",
+        "`case-invalid`, `eval-loop-limit`";
     FORMULA_PARTS: usize = 1024, Count, "signs and operands of a formula", "the stack",
         "`case-invalid`";
     FORMULA_NESTING: usize = 100, Count, "parentheses of a formula", "the stack", "`case-invalid`";

@@ -1,9 +1,12 @@
 //! Input that is small and asks for much: memory, time, the stack. Each gets an error with a place
 //! and the exit code of wrong input, in a process that may use little memory.
 
+mod beside;
 mod bundles;
 mod cases;
+mod edits;
 mod isolated;
+mod linear;
 mod manifests;
 mod pictures;
 mod printed;
@@ -27,7 +30,15 @@ pub fn trials() -> Vec<Trial> {
         .into_iter()
         .flatten()
         .map(|case| Trial::test(format!("hostile::{}", case.name), move || case.check()));
-    let others = [bundles::trials(), isolated::trials(), printed::trials(), stores::trials()];
+    let others = [
+        beside::trials(),
+        bundles::trials(),
+        edits::trials(),
+        isolated::trials(),
+        linear::trials(),
+        printed::trials(),
+        stores::trials(),
+    ];
     rows.chain(others.into_iter().flatten()).collect()
 }
 

@@ -1,5 +1,7 @@
 //! Runs kernels on the crate's own evaluator, with any of its kinds of numbers.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use super::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use super::kernel::{Kernel, ParameterKind};
 use crate::diagnostic::{Diagnostic, codes};
@@ -14,6 +16,9 @@ pub struct Interpreter {
     /// What each slot of the arguments is filled with.
     slots: Vec<Slot>,
     resources: Resources,
+    /// Steps of all calls so far, and how many there may be.
+    steps: AtomicU64,
+    most: u64,
 }
 
 /// An argument slot of the function.
@@ -53,6 +58,8 @@ impl Interpreter {
             program,
             slots,
             resources: resources(kernel),
+            steps: AtomicU64::new(0),
+            most: kernel.steps,
         })
     }
 
@@ -78,7 +85,14 @@ impl<N: Number> Calls<'_, N> {
             Slot::Handle(handle) => N::from_word(*handle),
             Slot::Word(kind) => number(words.next().unwrap_or(0), *kind),
         }));
-        self.machine.call(self.interpreter.function, &self.arguments).map_err(failed)
+        let Interpreter { function, steps, most, .. } = self.interpreter;
+        self.machine.call(*function, &self.arguments).map_err(failed)?;
+        let taken = self.machine.steps();
+        if steps.fetch_add(taken, Ordering::Relaxed).saturating_add(taken) > *most {
+            let message = format!("all calls together take more than {most} steps");
+            return Err(Diagnostic::error(codes::EVAL_LOOP_LIMIT, message));
+        }
+        Ok(self.machine.result(*function))
     }
 }
 

@@ -25,6 +25,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use crate::catalogue;
+use crate::limits::{EDIT_STEPS, Steps};
 use crate::project;
 use look::Choice;
 use package::{Modules, Opened, Texts};
@@ -102,10 +103,7 @@ impl Server {
         let parameters = message.get("params").unwrap_or(&nothing);
         match (method, message.get("id")) {
             (Some(method), Some(id)) => vec![self.request(method, id, parameters)],
-            (Some(method), None) => {
-                self.notified(method, parameters);
-                Vec::new()
-            }
+            (Some(method), None) => self.notified(method, parameters),
             // Answers to what this server asks: it asks nothing.
             (None, _) if message.get("result").or(message.get("error")).is_some() => Vec::new(),
             (None, id) => {
@@ -135,7 +133,7 @@ impl Server {
         }
     }
 
-    fn notified(&mut self, method: &str, parameters: &Value) {
+    fn notified(&mut self, method: &str, parameters: &Value) -> Vec<Value> {
         let document = parameters.get("textDocument");
         let uri = document.and_then(|found| found.get("uri")).and_then(Value::as_str);
         let path = uri.and_then(place::path);
@@ -150,7 +148,7 @@ impl Server {
             }
             ("textDocument/didChange", Some(path)) => {
                 let version = document.and_then(|found| found.get("version")).cloned();
-                self.change(&path, parameters, version.unwrap_or_default());
+                return self.change(&path, parameters, version.unwrap_or_default());
             }
             ("textDocument/didClose", Some(path)) => {
                 self.documents.remove(&path);
@@ -160,6 +158,7 @@ impl Server {
             ("textDocument/didSave" | "workspace/didChangeWatchedFiles", _) => self.forget(None),
             _ => {}
         }
+        Vec::new()
     }
 
     fn open(&mut self, path: PathBuf, text: String, version: Value) {
@@ -169,11 +168,16 @@ impl Server {
         self.forget(Some(&path));
     }
 
-    fn change(&mut self, path: &Path, parameters: &Value, version: Value) {
-        let Some(document) = self.documents.get_mut(path) else { return };
+    fn change(&mut self, path: &Path, parameters: &Value, version: Value) -> Vec<Value> {
+        let Some(document) = self.documents.get_mut(path) else { return Vec::new() };
+        let mut steps = Steps::new(EDIT_STEPS);
         let changes = parameters.get("contentChanges").and_then(Value::as_array);
         for change in changes.into_iter().flatten() {
             let Some(new) = change.get("text").and_then(Value::as_str) else { continue };
+            // The place is looked for from the start, and what lies behind it is moved.
+            if steps.spend((2 * document.text.len() + new.len()) as u64).is_err() {
+                return self.close_overloaded(path);
+            }
             let range = change.get("range").map(|range| {
                 let byte = |end: &str| place::byte(&document.text, range.get(end)?);
                 byte("start").zip(byte("end")).filter(|(start, end)| start <= end)
@@ -186,6 +190,16 @@ impl Server {
         }
         document.version = version;
         self.forget(Some(path));
+        Vec::new()
+    }
+
+    /// A document that not all edits could be made to is another one in the editor: no answer about
+    /// it would be right.
+    fn close_overloaded(&mut self, path: &Path) -> Vec<Value> {
+        self.documents.remove(path);
+        self.forget(None);
+        let words = "one message edits this document too often: close it and open it again";
+        vec![notification("window/showMessage", json!({ "type": 1, "message": words }))]
     }
 
     /// Something changed: every open document is to be looked at again, the edited one first.

@@ -4,7 +4,7 @@
 use super::axis::{Axis, ValueSet};
 use super::space::{Constraint, Slice, Space};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::limits::SPACE_STEPS;
+use crate::limits::{SPACE_STEPS, Steps};
 use crate::source::Span;
 
 /// Warnings about a space; `what` and `place` name its program.
@@ -29,7 +29,8 @@ pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
             .zip(space.valid_values())
             .flat_map(|(axis, valid)| never_valid(axis, valid)),
     );
-    warnings.extend(space.lists().only.iter().filter_map(|slice| empty(space, slice)));
+    let most = SPACE_STEPS as usize / space.steps_of_meeting().max(1);
+    warnings.extend(space.lists().only.iter().take(most).filter_map(|slice| empty(space, slice)));
     warnings.extend(nothing_wanted(space, what, place));
     warnings
 }
@@ -45,12 +46,12 @@ pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnost
 /// Warnings about conditions that always have the same value. They share a limit on steps, and
 /// conditions beyond it are not looked at.
 fn trivial_constraints(space: &Space) -> Vec<Diagnostic> {
-    let mut steps = SPACE_STEPS;
+    let mut steps = Steps::new(SPACE_STEPS);
     let constraints = space.constraints().iter();
     constraints.filter_map(|constraint| trivial(space, constraint, &mut steps)).collect()
 }
 
-fn trivial(space: &Space, constraint: &Constraint, steps: &mut usize) -> Option<Diagnostic> {
+fn trivial(space: &Space, constraint: &Constraint, steps: &mut Steps) -> Option<Diagnostic> {
     let satisfying = space.satisfying(&constraint.formula, steps).ok()?;
     let (code, word) = match satisfying {
         0 => (codes::CONSTRAINT_ALWAYS_FALSE, "false"),

@@ -101,6 +101,17 @@ impl Formula {
         }
     }
 
+    /// Steps that evaluating it takes.
+    pub fn parts(&self) -> usize {
+        match self {
+            Self::Number(_) => 1,
+            Self::Words(_, count) => 1 + count,
+            Self::Negated(inner) => 1 + inner.parts(),
+            Self::Binary(_, left, right) => 1 + left.parts() + right.parts(),
+            Self::Call(_, arguments) => 1 + arguments.iter().map(Self::parts).sum::<usize>(),
+        }
+    }
+
     /// The first component.
     pub fn scalar(&self, row: &[f64]) -> f64 {
         self.eval(row).first().copied().unwrap_or(f64::NAN)

@@ -72,6 +72,13 @@ pub struct Bound {
     words: std::ops::Range<usize>,
 }
 
+impl Bound {
+    /// Steps that it takes for a row.
+    pub fn parts(&self) -> usize {
+        1 + self.term.formulas.iter().map(Formula::parts).sum::<usize>()
+    }
+}
+
 /// Binds the formulas of a case's terms.
 pub fn bind(
     terms: &[Term<super::cases::Text>],

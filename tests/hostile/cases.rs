@@ -6,6 +6,9 @@ const MODULE: &str = "
     fn one(x: f32) -> f32 { return x; }
     fn four(v: vec4f) -> f32 { return v.x; }
     fn pair(a: vec3f, b: vec2f) -> f32 { return a.x + b.x; }
+    fn three(a: vec3f, b: vec3f) -> f32 { return a.x + b.x; }
+    fn matrix(m: mat4x4f) -> f32 { return m[0].x; }
+    fn long(x: f32) -> f32 { var s = x; for (var i = 0; i < 200000; i++) { s += x; } return s; }
     fn nothing() -> f32 { return 1.0; }
 ";
 
@@ -69,6 +72,40 @@ pub const CASES: &[Hostile] = &[
     case("formula_of_sums", "signs and operands", || {
         let sums = "+1".repeat(20_000);
         over(&format!("function = \"one\"\nformula = \"x{sums}\"\ninputs = {{ x = 1.0 }}"))
+    }),
+    case("case_zip_made_anew_for_each_row", "more than 2147483648", || {
+        over(
+            "function = \"three\"\nmode = \"zip\"\ninputs = { a = { unit = 1000000 }, \
+             b = { hemisphere = \"a\", count = 1000000 } }",
+        )
+    }),
+    case("case_laws", "scalars with those of their laws", || {
+        let laws = "{ range = [0, 1] }, ".repeat(2000);
+        over(&format!(
+            "function = \"one\"\ninputs = {{ x = {{ random = [0, 1], count = 1000000 }} }}\n\
+             laws = [{laws}]"
+        ))
+    }),
+    case("case_tolerances", "more than 2147483648", || {
+        let terms = "{ abs = 1 }, ".repeat(4000);
+        over(&format!(
+            "function = \"one\"\ninputs = {{ x = {{ random = [0, 1], count = 1000000 }} }}\n\
+             tolerance = [{terms}]"
+        ))
+    }),
+    case("case_direction_of_many_dimensions", "a direction has 1 to 4 values", || {
+        over("function = \"matrix\"\ninputs = { m = { unit = 1000 } }")
+    }),
+    case("cases", "a file may have 4096 cases", || {
+        over(&"function = \"one\"\ninputs = { x = 1 }\n[[case]]\n".repeat(5000))
+    }),
+    case("cases_with_many_rows", "rows together", || {
+        let one = "function = \"one\"\ninputs = { x = { random = [0, 1], count = 400000 } }";
+        over(&[one, one, one].join("\n[[case]]\n"))
+    }),
+    case("case_calls", "all calls together take more than", || {
+        let short = "function = \"one\"\ninputs = { x = 1 }\n[[case]]\n".repeat(99);
+        over(&(short + "function = \"long\"\ninputs = { x = { random = [0, 1], count = 100 } }"))
     }),
     case("call_tree", "takes more than", call_tree),
     Hostile {

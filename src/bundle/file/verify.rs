@@ -2,35 +2,28 @@
 //! proportion to the file. So a small file cannot ask for much memory or time.
 
 use super::*;
-use crate::limits::{BUNDLE_BYTES, BUNDLE_FACTOR};
+use crate::limits::{BUNDLE_BYTES, BUNDLE_FACTOR, Steps};
 
 /// How many bytes may still be asked for.
 struct Budget {
-    left: u64,
+    left: Steps,
     part: &'static str,
 }
 
 impl Budget {
     /// The budget of one part, for a file of that size.
     fn new(bytes: usize, part: &'static str) -> Self {
-        Self { left: BUNDLE_BYTES.saturating_add(BUNDLE_FACTOR.saturating_mul(bytes as u64)), part }
+        let most = BUNDLE_BYTES.saturating_add(BUNDLE_FACTOR.saturating_mul(bytes as u64));
+        Self { left: Steps::new(most), part }
     }
 
     fn spend(&mut self, bytes: usize) -> Result<(), Error> {
         // An empty part costs time too, so it counts as a byte.
-        match self.left.checked_sub(bytes as u64 + 1) {
-            Some(left) => {
-                self.left = left;
-                Ok(())
-            }
-            None => Err(Error::corrupt(
-                self.part,
-                format!(
-                    "it holds more than {} MiB and {BUNDLE_FACTOR} times the file",
-                    BUNDLE_BYTES >> 20
-                ),
-            )),
-        }
+        self.left.spend(bytes as u64 + 1).map_err(|_| {
+            let mib = BUNDLE_BYTES >> 20;
+            let reason = format!("it holds more than {mib} MiB and {BUNDLE_FACTOR} times the file");
+            Error::corrupt(self.part, reason)
+        })
     }
 }
 

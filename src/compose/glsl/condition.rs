@@ -23,6 +23,9 @@ pub fn evaluate(
     }
 }
 
+/// Errors of a composition for which names are suggested.
+const SUGGESTED: usize = 100;
+
 struct Parser<'a, 'g, 's> {
     expander: &'a mut Expander<'g, 's>,
     tokens: &'a [Tok],
@@ -228,7 +231,9 @@ impl Parser<'_, '_, '_> {
             &format!("the macro `{name}` is not defined"),
             "used in a condition",
         );
-        Err(error.suggest(name, self.expander.table.names()))
+        let is_one_of_many = self.expander.errors.len() >= SUGGESTED;
+        let known = (!is_one_of_many).then(|| self.expander.table.names());
+        Err(error.suggest(name, known.into_iter().flatten()))
     }
 
     fn error(&self, token: &Tok, message: &str, label: &str) -> Diagnostic {

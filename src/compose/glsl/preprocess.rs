@@ -2,6 +2,7 @@
 
 mod branch;
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use super::expand::{Expander, Fatal, Input, same_definition};
@@ -10,6 +11,7 @@ use super::table::{Meaning, Spellings, Table};
 use super::token::Tok;
 use crate::compose::Decision;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::limits::count;
 use crate::parse::glsl::{Directive, Macro, Module, Part};
 use crate::permute::Settings;
 use crate::resolve::glsl::{Graph, Target};
@@ -51,6 +53,7 @@ pub fn preprocess<'g, 's>(
         tokens,
         version: None,
         header: Vec::new(),
+        headers: HashSet::new(),
         decisions: Vec::new(),
         warnings: Vec::new(),
     };
@@ -83,6 +86,8 @@ struct State<'g, 's> {
     tokens: Vec<Tok>,
     version: Option<Span>,
     header: Vec<Span>,
+    /// The text of each line in `header`.
+    headers: HashSet<&'g str>,
     decisions: Vec<Decision>,
     warnings: Vec<Diagnostic>,
 }
@@ -138,6 +143,7 @@ impl<'g> State<'g, '_> {
     }
 
     fn part(&mut self, open: Open, part: &'g Part) -> Result<(), Fatal> {
+        count(1);
         match part {
             Part::Text(text) => {
                 let input = Input::Source {
@@ -171,11 +177,11 @@ impl<'g> State<'g, '_> {
                 if name != "GL_GOOGLE_include_directive"
                     && name != "GL_ARB_shading_language_include"
                 {
-                    self.add_header(*line);
+                    self.add_header(open, *line);
                 }
             }
             Directive::PragmaOnce => self.once[open.module] = true,
-            Directive::Pragma(line) => self.add_header(*line),
+            Directive::Pragma(line) => self.add_header(open, *line),
             Directive::Invalid(error) => self.expander.errors.push((**error).clone()),
         }
         Ok(())
@@ -248,12 +254,8 @@ impl<'g> State<'g, '_> {
         }
     }
 
-    fn add_header(&mut self, line: Span) {
-        let text = |span: &Span| {
-            let module = self.graph.modules.iter().find(|module| module.source == span.source);
-            module.map_or("", |module| &module.text[span.range()])
-        };
-        if !self.header.iter().any(|known| text(known) == text(&line)) {
+    fn add_header(&mut self, open: Open, line: Span) {
+        if self.headers.insert(&self.graph.modules[open.module].text[line.range()]) {
             self.header.push(line);
         }
     }

@@ -1,11 +1,12 @@
 //! Evaluates conditions for one choice of settings, each at most once.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::limits::count;
 use crate::parse::wesl::{Comparison, ConditionId, Event, Expression, ExpressionId, Name, Operand};
 use crate::permute::{Setting, Settings};
-use crate::resolve::wesl::{Graph, places_of, shown_at};
+use crate::resolve::wesl::{Graph, places, shown_at};
 use crate::source::Span;
 
 /// What is known of a condition.
@@ -27,6 +28,10 @@ pub struct Evaluator<'a> {
     pub reads: Vec<(String, Setting)>,
     pub errors: Diagnostics,
     unknown: HashSet<Name>,
+    /// Where flags are named, once one of them has no value.
+    places: Option<HashMap<Name, Vec<Span>>>,
+    /// By module and guard: whether it or one behind it holds.
+    guards: HashMap<(u32, u32), bool>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -39,6 +44,8 @@ impl<'a> Evaluator<'a> {
             reads: Vec::new(),
             errors: Vec::new(),
             unknown: HashSet::new(),
+            places: None,
+            guards: HashMap::new(),
         }
     }
 
@@ -50,6 +57,7 @@ impl<'a> Evaluator<'a> {
         let mut next = Some(condition);
         while let Some(id) = next.filter(|id| state(self, *id) == State::Unknown) {
             chain.push(id);
+            count(1);
             next = here.module.conditions[id as usize].after;
         }
         for id in chain.into_iter().rev() {
@@ -76,6 +84,7 @@ impl<'a> Evaluator<'a> {
         let mut at = 0;
         while let Some(event) = events.get(at) {
             at += 1;
+            count(1);
             match *event {
                 Event::Node { condition, .. } if self.holds(node, condition) => {}
                 Event::Node { next, .. } => {
@@ -88,17 +97,27 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Whether a use means a local declaration whose condition holds.
+    /// Whether a use means a local declaration whose condition holds. Uses share the guards behind
+    /// theirs, and each is looked at once.
     fn is_local(&mut self, node: u32, mut guard: Option<u32>) -> bool {
         let graph = self.graph;
+        let (mut passed, mut answer) = (Vec::new(), false);
         while let Some(index) = guard {
+            if let Some(known) = self.guards.get(&(node, index)) {
+                answer = *known;
+                break;
+            }
             let found = graph.nodes[node as usize].module.guards[index as usize];
+            passed.push(index);
+            count(1);
             if self.holds(node, found.condition) {
-                return true;
+                answer = true;
+                break;
             }
             guard = found.next;
         }
-        false
+        self.guards.extend(passed.into_iter().map(|index| ((node, index), answer)));
+        answer
     }
 
     /// The default of a setting whose number stays open. It is not recorded, since the text is the
@@ -144,8 +163,10 @@ impl<'a> Evaluator<'a> {
                 let error =
                     Diagnostic::error(codes::UNKNOWN_FEATURE, format!("unknown feature `{text}`"))
                         .at(span, "asked for here");
-                let others = places_of(self.graph, name).into_iter().filter(|place| *place != span);
-                let error = shown_at(error, others.collect(), "and here");
+                let places = self.places.get_or_insert_with(|| places(self.graph));
+                let others = places.remove(&name).unwrap_or_default().into_iter();
+                let others = others.filter(|place| *place != span).collect();
+                let error = shown_at(error, others, "and here");
                 self.errors
                     .push(error.suggest(text, self.settings.values.keys().map(String::as_str)));
             }

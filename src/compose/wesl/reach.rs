@@ -4,9 +4,10 @@ use super::evaluate::Evaluator;
 use super::reached::{Dependency, Meaning, Reached, Thing, name_of};
 use crate::compose::{Keep, Options};
 use crate::diagnostic::{Diagnostic, codes};
+use crate::limits::count;
 use crate::parse::wesl::{Event, ItemKind, Name, Reference};
 use crate::permute::Setting;
-use crate::resolve::wesl::{Graph, Target};
+use crate::resolve::wesl::{Graph, PLACES, Target};
 use crate::source::Span;
 
 /// Finds what is kept. Errors are added to those of the evaluator.
@@ -213,6 +214,7 @@ impl Walk<'_, '_, '_> {
         let graph = self.graph;
         let mut disabled = Vec::new();
         for candidate in &graph.nodes[node as usize].bindings[reference as usize] {
+            count(1);
             if !self.evaluator.all_hold(node, &candidate.conditions) {
                 continue;
             }
@@ -248,6 +250,7 @@ impl Walk<'_, '_, '_> {
         let mut chosen = None;
         for index in here.sets.get(&name).into_iter().flatten() {
             let item = &here.module.items[*index as usize];
+            count(1);
             if !item.condition.is_none_or(|condition| self.evaluator.holds(node, condition)) {
                 continue;
             }
@@ -300,7 +303,8 @@ impl Walk<'_, '_, '_> {
         let mut error = Diagnostic::error(codes::DISABLED_ITEM, message).at(span, "used here");
         for (other, name) in disabled {
             let module = &graph.nodes[*other as usize].module;
-            for item in graph.nodes[*other as usize].sets.get(name).into_iter().flatten() {
+            let set = graph.nodes[*other as usize].sets.get(name);
+            for item in set.into_iter().flatten().take(PLACES) {
                 error = error.at(
                     module.span(module.items[*item as usize].name_range.clone()),
                     "not in this permutation",
@@ -311,6 +315,7 @@ impl Walk<'_, '_, '_> {
             .iter()
             .map(|index| &here.module.imports[*index])
             .filter(|import| import.condition.is_some())
+            .take(PLACES)
         {
             error = error
                 .at(here.module.span(import.alias_range.clone()), "imported under a condition");

@@ -228,6 +228,17 @@ impl<'p, N: Number> Machine<'p, N> {
         self.lane.killed
     }
 
+    /// Instructions of the last call, copies by their length.
+    pub fn steps(&self) -> u64 {
+        self.lane.steps
+    }
+
+    /// The flattened result of the last call, which was of this function.
+    pub fn result(&self, id: FunctionId) -> &[N] {
+        let function = self.program.signature(id);
+        function.map_or(&[], |function| outcome(&self.lane, function))
+    }
+
     /// Loop iterations of the last call.
     pub fn trips(&self) -> u64 {
         self.lane.trips

@@ -30,6 +30,7 @@ use naga::{Function, Handle, ImageClass, ImageDimension, Module, ScalarKind, Typ
 
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::fixture::Fixture;
+use crate::limits::CASE_WORK;
 
 /// Texels in a row of the input texture.
 pub const INPUT_WIDTH: u32 = 1024;
@@ -91,6 +92,8 @@ pub struct Kernel {
     pub parameters: Vec<Parameter>,
     /// The function's result, then the values behind its pointer parameters after the call.
     pub results: Vec<Shape>,
+    /// Steps that all calls of it together may take on the evaluator.
+    pub steps: u64,
 }
 
 impl Kernel {
@@ -163,6 +166,7 @@ pub fn build(
         function: handle,
         parameters,
         results,
+        steps: CASE_WORK,
     };
     if kernel.batch() == 0 {
         return Err(Diagnostic::error(

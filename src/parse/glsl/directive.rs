@@ -301,13 +301,17 @@ impl Line<'_> {
         }
         loop {
             match self.token(index) {
-                Some(token) if token.kind == Kind::Identifier && !names.contains(&token.symbol) => {
+                Some(token)
+                    if token.kind == Kind::Identifier
+                        && names.len() < LIMITS.nesting
+                        && !names.contains(&token.symbol) =>
+                {
                     names.push(token.symbol)
                 }
                 found => return Err(self.parameter_error(found)),
             }
             match self.token(index + 1) {
-                Some(token) if token.symbol == known::CLOSE && names.len() <= LIMITS.nesting => {
+                Some(token) if token.symbol == known::CLOSE => {
                     return Ok((names, index + 1));
                 }
                 Some(token) if token.symbol == known::COMMA => index += 2,

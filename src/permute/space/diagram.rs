@@ -75,6 +75,11 @@ impl Diagram {
         found
     }
 
+    /// Nodes of all levels.
+    pub fn nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
     pub fn contains(&self, point: &Assignment) -> bool {
         let below = |node: u32, axis: &usize| {
             self.nodes[node as usize].children.get(point.ordinal(*axis)).copied().unwrap_or(DEAD)

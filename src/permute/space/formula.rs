@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::TooComplex;
+use crate::limits::{Exhausted, Steps};
 use crate::permute::axis::ValueSet;
 
 /// A condition as written: axes by index, values by ordinal.
@@ -90,14 +91,14 @@ pub struct Conditions {
     support: Vec<u128>,
     ids: HashMap<Node, Id>,
     restricted: HashMap<(Id, u8, ValueSet), Id>,
-    steps: usize,
+    steps: Steps,
 }
 
 impl Conditions {
-    /// The interned constants. After `steps` steps the conditions are called too complex. Counting
-    /// the points that satisfy arbitrary conditions is #P-hard, so hostile input must meet a bound;
-    /// real manifests take some thousands of steps.
-    pub fn new(domains: Vec<ValueSet>, steps: usize) -> Self {
+    /// With so many steps before its conditions are called too complex. Counting the points that
+    /// satisfy arbitrary conditions is #P-hard, so hostile input must meet a bound; real manifests
+    /// take some thousands of steps.
+    pub fn new(domains: Vec<ValueSet>, steps: Steps) -> Self {
         let mut store = Self {
             domains,
             nodes: Vec::new(),
@@ -112,7 +113,7 @@ impl Conditions {
     }
 
     /// Steps that are left.
-    pub fn steps(&self) -> usize {
+    pub fn steps(&self) -> Steps {
         self.steps
     }
 
@@ -195,7 +196,7 @@ impl Conditions {
         let mut others: BTreeSet<Id> = BTreeSet::new();
         let mut pending = parts;
         while let Some(part) = pending.pop() {
-            self.step()?;
+            self.spend(1)?;
             match self.nodes[part.0 as usize].clone() {
                 _ if part == join.absorbing() => return Ok(part),
                 Node::Constant(_) => {}
@@ -205,13 +206,14 @@ impl Conditions {
                     let Some(merged) = self.merge(join, &mut atoms, axis, set) else {
                         return Ok(join.absorbing());
                     };
-                    let touched = others
-                        .iter()
-                        .copied()
-                        .filter(|other| self.support[other.0 as usize] >> axis & 1 == 1);
-                    let touched: Vec<Id> = touched.filter(|_| merged).collect();
-                    others.retain(|other| !touched.contains(other));
-                    pending.extend(touched);
+                    if merged {
+                        let support = &self.support;
+                        let (touched, rest) = std::mem::take(&mut others)
+                            .into_iter()
+                            .partition(|other: &Id| support[other.0 as usize] >> axis & 1 == 1);
+                        others = rest;
+                        pending.extend::<BTreeSet<Id>>(touched);
+                    }
                 }
             }
         }
@@ -293,8 +295,7 @@ impl Conditions {
         id
     }
 
-    fn step(&mut self) -> Result<(), TooComplex> {
-        self.steps = self.steps.checked_sub(1).ok_or(TooComplex)?;
-        Ok(())
+    fn spend(&mut self, steps: usize) -> Result<(), TooComplex> {
+        self.steps.spend(steps as u64).map_err(|Exhausted| TooComplex)
     }
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use super::axis::{Axis, Kind, Mode, ValueSet};
 use super::key::{Assignment, Key};
 use super::{Setting, Settings};
-use crate::limits::SPACE_STEPS;
+use crate::limits::{Exhausted, SPACE_STEPS, Steps};
 use crate::source::Span;
 use diagram::Diagram;
 use formula::Conditions;
@@ -194,16 +194,21 @@ impl Space {
         self.valid.pick(&allowed, choose)
     }
 
+    /// Steps that [`Self::meets`] takes.
+    pub fn steps_of_meeting(&self) -> usize {
+        self.valid.nodes()
+    }
+
     /// Whether some valid point is in the slice.
     pub fn meets(&self, slice: &Slice) -> bool {
         self.valid.meets(&slice.values)
     }
 
     /// How many points of the full product satisfy one condition, within the steps that are left.
-    pub fn satisfying(&self, formula: &Formula, steps: &mut usize) -> Result<u128, TooComplex> {
+    pub fn satisfying(&self, formula: &Formula, steps: &mut Steps) -> Result<u128, TooComplex> {
         let domains = domains(&self.axes);
         // Every level of the diagram is made, whatever the condition is.
-        *steps = steps.checked_sub(domains.len()).ok_or(TooComplex)?;
+        steps.spend(domains.len() as u64).map_err(|Exhausted| TooComplex)?;
         let mut conditions = Conditions::new(domains.clone(), *steps);
         let condition = conditions.add(formula)?;
         let order = (0..self.axes.len()).collect();
@@ -257,7 +262,7 @@ fn diagram(
     order: Vec<usize>,
 ) -> Result<Diagram, TooComplex> {
     let domains = domains(axes);
-    let mut conditions = Conditions::new(domains.clone(), SPACE_STEPS);
+    let mut conditions = Conditions::new(domains.clone(), Steps::new(SPACE_STEPS));
     let lists = lists.formula();
     let formulas = constraints.iter().map(|constraint| &constraint.formula).chain([&lists]);
     let parts = formulas.map(|formula| conditions.add(formula)).collect::<Result<_, _>>()?;

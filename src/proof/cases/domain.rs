@@ -209,6 +209,15 @@ impl Domain {
         }
     }
 
+    /// Values that are made anew for each row: all of those that go by another parameter.
+    pub fn fresh(&self) -> usize {
+        match self {
+            Self::About { count, .. } => *count as usize,
+            Self::Union(parts) => parts.iter().map(Self::fresh).fold(0, usize::saturating_add),
+            _ => 0,
+        }
+    }
+
     /// Whether every value is a unit vector.
     pub fn is_unit(&self) -> bool {
         match self {
@@ -241,8 +250,10 @@ impl Domain {
             Self::Grid { count, .. } | Self::Log { count, .. } => {
                 (0..size).fold(1, |all: usize, _| all.saturating_mul(*count as usize))
             }
-            Self::Random { count, .. } | Self::Unit { count, .. } => *count as usize,
+            Self::Random { count, .. } => *count as usize,
+            Self::Unit { count, .. } => direction(size).map(|()| *count as usize)?,
             Self::About { of, count, .. } => {
+                direction(size)?;
                 let given = other(of).map_or(0, |shape| shape.words() as usize);
                 if given != size {
                     return Err(format!("has {size} values, and `{of}` has {given}"));
@@ -312,6 +323,14 @@ impl Domain {
                 parts.iter().flat_map(|part| part.values(size, other, salt)).collect()
             }
         }
+    }
+}
+
+/// Directions are drawn until one is near enough to the sphere, which in many dimensions none is.
+fn direction(size: usize) -> Result<(), String> {
+    match size {
+        1..=4 => Ok(()),
+        _ => Err(format!("a direction has 1 to 4 values, and this has {size}")),
     }
 }
 

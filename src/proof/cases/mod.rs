@@ -56,7 +56,7 @@ mod rows;
 mod values;
 
 pub use domain::{Domain, word};
-pub use rows::{Rows, numbers, rows};
+pub use rows::{Rows, numbers, rows, spend};
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -66,6 +66,7 @@ use super::laws::Law;
 use super::tolerance::{self, Term};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::fixture::Fixture;
+use crate::limits::CASES;
 use crate::source::{SourceId, SourceSet, Span};
 use reader::Node;
 
@@ -178,6 +179,9 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<File, Diagnostics> {
     let fixtures = named_fixtures(&root)?;
     let nodes =
         root.get("case").map_or(Ok(&[][..]), Node::elements).map_err(|error| vec![error])?;
+    if let Some(node) = nodes.get(CASES) {
+        return Err(vec![node.error(format!("a file may have {CASES} cases"))]);
+    }
     let (mut cases, mut errors) = (Vec::new(), Vec::new());
     for node in nodes {
         match case(node, &fixtures) {

@@ -5,7 +5,7 @@ use super::{Case, Oracle, TableRow};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::Shape;
 use crate::execute::kernel::number;
-use crate::limits::{CASE_ROWS, CASE_WORDS};
+use crate::limits::{CASE_ROWS, CASE_WORDS, Steps};
 use crate::proof::formula::Scope;
 use naga::ScalarKind;
 
@@ -72,17 +72,18 @@ impl Rows {
     }
 }
 
-/// The rows of a case over a function's parameters.
-pub fn rows(case: &Case, scope: &Scope<'_>) -> Result<Rows, Diagnostic> {
+/// The rows of a case over a function's parameters, within the steps that are left to it.
+pub fn rows(case: &Case, scope: &Scope<'_>, steps: &mut Steps) -> Result<Rows, Diagnostic> {
     let kinds: Vec<ScalarKind> = scope.0.iter().flat_map(|(_, shape)| shape.kinds()).collect();
     let stride = kinds.len().max(1);
     let (words, units) = match &case.oracle {
         Oracle::Table(table) => (table_words(table, scope, stride)?, Vec::new()),
-        _ => generated(case, scope, &kinds, stride)?,
+        _ => generated(case, scope, &kinds, steps)?,
     };
     let rows = Rows { numbers: numbers(&words, &kinds), words, stride, kinds, units };
     let Some(filter) = &case.filter else { return Ok(rows) };
     let filter = filter.bind(scope)?;
+    spend(case, rows.len(), filter.parts(), steps)?;
     let kept = (0..rows.len())
         .filter(|index| filter.scalar(rows.row(*index)) == 1.0)
         .flat_map(|index| rows.row_words(index).to_vec())
@@ -96,10 +97,17 @@ fn generated(
     case: &Case,
     scope: &Scope<'_>,
     kinds: &[ScalarKind],
-    stride: usize,
+    steps: &mut Steps,
 ) -> Result<Generated, Diagnostic> {
     let columns = columns(case, scope)?;
-    bounded(case, &columns, stride)?;
+    let stride = kinds.len().max(1);
+    let count = bounded(case, &columns, stride)?;
+    let fresh = columns.iter().map(|column| match (column.domain.fresh(), case.zip) {
+        (0, _) | (_, false) => 1,
+        // All of them are made for each row, of which one is taken.
+        (_, true) => column.count,
+    });
+    spend(case, count, fresh.fold(stride, usize::saturating_add), steps)?;
     let grid = Grid { kinds, scope, stride };
     let mut rows = vec![0u32; stride];
     for (index, column) in columns.iter().enumerate() {
@@ -116,8 +124,27 @@ fn generated(
     Ok((rows, units.collect()))
 }
 
-/// Refuses a case with too many rows before any of them is made.
-fn bounded(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<(), Diagnostic> {
+/// Takes so many steps for each of so many rows.
+///
+/// # Errors
+/// Where the case has fewer left.
+pub fn spend(case: &Case, rows: usize, each: usize, steps: &mut Steps) -> Result<(), Diagnostic> {
+    let message = || {
+        let most = steps.most();
+        format!("the {rows} rows of `{}` take {each} steps each, more than {most}", case.function)
+    };
+    let mut left = *steps;
+    left.spend(rows as u64 * each as u64).map_err(|_| {
+        Diagnostic::error(codes::CASE_INVALID, message())
+            .at(case.span, "of this function")
+            .note("its domains, formulas, laws and tolerances are counted for every row")
+    })?;
+    *steps = left;
+    Ok(())
+}
+
+/// How many rows there will be. Refuses a case with too many, before any of them is made.
+fn bounded(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<usize, Diagnostic> {
     let counts = columns.iter().map(|column| column.count);
     let rows = match case.zip {
         true => counts.max().unwrap_or(1),
@@ -125,7 +152,7 @@ fn bounded(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<(), Dia
     };
     let most = CASE_ROWS.min(CASE_WORDS / stride.max(1));
     if rows <= most {
-        return Ok(());
+        return Ok(rows);
     }
     let message = format!("the domains of `{}` multiply to more than {most} rows", case.function);
     Err(Diagnostic::error(codes::CASE_INVALID, message)

@@ -56,15 +56,20 @@ fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
 
 /// The value and its neighbours in f32 on both sides. All components move together.
 pub(super) fn around(value: &[f64], ulps: u32) -> Vec<Vec<f64>> {
-    let ulps = ulps as i32;
-    let shift = |x: f64, by: i32| {
-        let (x, mut at) = (x as f32, x as f32);
-        for _ in 0..by.abs() {
-            at = if (by > 0) == (x >= 0.0) { at.next_up() } else { at.next_down() };
-        }
-        f64::from(at)
+    let neighbours = |x: f64| {
+        let walk = |step: fn(f32) -> f32| {
+            let next = std::iter::successors(Some(x as f32), move |at| Some(step(*at)));
+            next.take(ulps as usize + 1).map(f64::from).collect::<Vec<f64>>()
+        };
+        // Larger in magnitude behind the value, smaller before it.
+        let (up, down) = (walk(f32::next_up), walk(f32::next_down));
+        let (behind, before) = if x as f32 >= 0.0 { (up, down) } else { (down, up) };
+        before.into_iter().skip(1).rev().chain(behind).collect::<Vec<f64>>()
     };
-    (-ulps..=ulps).map(|by| value.iter().map(|x| shift(*x, by)).collect()).collect()
+    let columns: Vec<Vec<f64>> = value.iter().map(|x| neighbours(*x)).collect();
+    (0..2 * ulps as usize + 1)
+        .map(|row| columns.iter().map(|column| column[row]).collect())
+        .collect()
 }
 
 pub(super) fn special_values(special: Special) -> Vec<f64> {

@@ -1,10 +1,12 @@
 //! Prepares a case: kernels, rows, expected values. No executor is needed for this.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::partner::{self, Partner};
+use super::share::{Parts, Total, share};
 use super::{Options, Subjects};
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -115,12 +117,22 @@ pub fn prepare<'a>(
         .map(|language| Ok((*language, subjects(module, *language, &functions)?)))
         .collect::<Result<_, Diagnostics>>()
         .map_err(|errors| {
-            errors.into_iter().map(|error| placed(error, file)).collect::<Vec<_>>()
+            let mut first: HashMap<&str, &Case> = HashMap::new();
+            for case in &file.cases {
+                first.entry(&case.function).or_insert(case);
+            }
+            errors.into_iter().map(|error| placed(error, &first)).collect::<Vec<_>>()
         })?;
-    let jobs: Vec<_> = (0..file.cases.len())
-        .into_par_iter()
-        .map(|index| job(module, file, index, &modules, (subjects, options)))
+    let (records, total) = (records(module, file), Total::default());
+    let jobs: Vec<_> = records
+        .par_iter()
+        .enumerate()
+        .map(|(index, record)| {
+            let place = Place { file, index, record, total: &total };
+            job(module, place, &modules, (subjects, options))
+        })
         .collect();
+    total.check(file).map_err(|error| vec![error])?;
     let (mut done, mut errors) = (Vec::new(), Vec::new());
     for result in jobs {
         match result {
@@ -132,9 +144,8 @@ pub fn prepare<'a>(
 }
 
 /// Puts an error about a function at the first case that names the function.
-fn placed(error: Diagnostic, file: &File) -> Diagnostic {
-    let is_named = |case: &&Case| error.item.as_ref() == Some(&case.function);
-    match file.cases.iter().find(is_named) {
+fn placed(error: Diagnostic, first: &HashMap<&str, &Case>) -> Diagnostic {
+    match error.item.as_deref().and_then(|item| first.get(item)) {
         Some(case) if error.labels.is_empty() => error.at(case.span, "named here"),
         _ => error,
     }
@@ -163,24 +174,38 @@ fn kernels(
 
 fn job<'a>(
     module: &str,
-    file: &'a File,
-    index: usize,
+    Place { file, index, record, total }: Place<'a, '_>,
     modules: &[(Language, Arc<naga::Module>)],
     (subjects, options): (&Subjects<'_>, &Options<'_>),
 ) -> Result<Job<'a>, Diagnostic> {
     let case = &file.cases[index];
     let placed = |error: Diagnostic| placed_at(error, case);
-    let kernels = kernels(case, modules).map_err(placed)?;
+    let mut steps = share(file);
+    let mut kernels = kernels(case, modules).map_err(placed)?;
+    kernels.iter_mut().for_each(|(_, kernel)| kernel.steps = steps.most());
     let first = &kernels[0].1;
     let scope = Scope(first.words().collect());
-    let rows = cases::rows(case, &scope)?;
+    let rows = cases::rows(case, &scope, &mut steps)?;
+    total.add(&rows, case);
+    total.check(file)?;
     if rows.is_empty() {
         return Err(placed(Diagnostic::error(codes::CASE_INVALID, "no row is left to try")));
     }
     let terms = tolerance::bind(&case.tolerance, &scope, &first.results).map_err(placed)?;
     let languages: Vec<Language> = modules.iter().map(|(language, _)| *language).collect();
+    let near = case
+        .near
+        .as_ref()
+        .map(|(text, margin)| Ok::<_, Diagnostic>((text.bind(&scope)?, *margin)))
+        .transpose()?;
+    let filter = case.filter().map(|text| text.bind(&scope)).transpose()?;
+    let oracle = judge(module, case, &scope, first, options)?;
+    let parts = Parts { terms: &terms, near: &near, filter: &filter, oracle: &oracle };
+    parts.spend(case, &rows, &mut steps)?;
     let bound = |law| {
-        let partners = partner::prepare(law, module, &languages, subjects, &rows, &scope)?;
+        let mut partners = partner::prepare(law, module, &languages, subjects, &rows, &scope)?;
+        let kernels = partners.iter_mut().flat_map(|partner| &mut partner.kernels);
+        kernels.for_each(|(_, kernel)| kernel.steps = steps.most());
         Ok(BoundLaw { law, rows: laws::transformed(law, &rows, &scope)?, partners })
     };
     let laws = case
@@ -191,18 +216,14 @@ fn job<'a>(
         .collect::<Result<_, Diagnostic>>()?;
     let mut job = Job {
         module: module.to_owned(),
-        record: record(module, file, index),
+        record: record.to_owned(),
         case,
         index,
         terms,
-        near: case
-            .near
-            .as_ref()
-            .map(|(text, margin)| Ok::<_, Diagnostic>((text.bind(&scope)?, *margin)))
-            .transpose()?,
-        filter: case.filter().map(|text| text.bind(&scope)).transpose()?,
+        near,
+        filter,
         laws,
-        oracle: judge(module, case, &scope, first, options)?,
+        oracle,
         fixtures: first.resources().map(|resource| resource.fixture.clone()).collect(),
         expected: Vec::new(),
         rows,
@@ -212,14 +233,26 @@ fn job<'a>(
     Ok(job)
 }
 
-/// The name for records: `math::safe::saturate`; from a function's second case on,
-/// `math::safe::saturate#2`.
-fn record(module: &str, file: &File, index: usize) -> String {
-    let function = &file.cases[index].function;
-    match file.cases[..index].iter().filter(|case| case.function == *function).count() {
-        0 => format!("{module}::{function}"),
-        earlier => format!("{module}::{function}#{}", earlier + 1),
-    }
+/// A case of a file.
+struct Place<'a, 't> {
+    file: &'a File,
+    index: usize,
+    record: &'t str,
+    total: &'t Total,
+}
+
+/// `math::safe::saturate`, and from a function's second case on `math::safe::saturate#2`.
+fn records<'f>(module: &str, file: &'f File) -> Vec<String> {
+    let mut seen: HashMap<&'f str, usize> = HashMap::new();
+    let record = |case: &'f Case| {
+        let earlier = seen.entry(&case.function).or_default();
+        *earlier += 1;
+        match *earlier {
+            1 => format!("{module}::{}", case.function),
+            number => format!("{module}::{}#{number}", case.function),
+        }
+    };
+    file.cases.iter().map(record).collect()
 }
 
 /// Both languages must have the same parameters and results.

@@ -7,6 +7,7 @@ mod partner;
 mod profile;
 mod proof;
 mod report;
+mod share;
 mod shrink;
 mod told;
 

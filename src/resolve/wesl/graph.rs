@@ -6,6 +6,9 @@ use crate::diagnostic::Diagnostic;
 use crate::parse::wesl::{ConditionId, Expression, Module, Name, Names};
 use crate::source::{SourceId, Span};
 
+/// Imports that a diagnostic lists, of those that led to its file.
+const TRACED: usize = 16;
+
 /// Every module that a root module may reach, ready to be composed any number of times.
 #[derive(Debug)]
 pub struct Graph {
@@ -38,11 +41,8 @@ impl Graph {
     /// The diagnostic with the chain of imports that led to the file it stands in.
     pub fn traced(&self, diagnostic: Diagnostic) -> Diagnostic {
         let source = diagnostic.labels.first().map(|label| label.span.source);
-        source
-            .map(|source| self.trace(source))
-            .into_iter()
-            .flatten()
-            .fold(diagnostic, Diagnostic::note)
+        let notes = source.into_iter().flat_map(|source| self.importers(source)).take(TRACED);
+        notes.fold(diagnostic, |diagnostic, (_, note)| diagnostic.note(note))
     }
 
     /// Whether any condition or `constants::` may ask for the axis or feature.

@@ -64,10 +64,8 @@ fn absent_package<'l>(loader: &'l Loader<'_>, node: &Node, path: &Path) -> Optio
 
 /// Whether an import that leads nowhere is not an error: nothing uses it, and its package is not
 /// installed. The warning about unused imports tells of that.
-pub fn is_harmless(loader: &Loader<'_>, node: u32, import: usize, failure: u32) -> bool {
-    let here = &loader.nodes[node as usize];
-    loader.failures[failure as usize].code == codes::UNKNOWN_PACKAGE
-        && !used(here).contains(&here.module.imports[import].alias)
+pub fn is_harmless(loader: &mut Loader<'_>, node: u32, alias: Name, failure: u32) -> bool {
+    loader.failures[failure as usize].code == codes::UNKNOWN_PACKAGE && !loader.is_used(node, alias)
 }
 
 /// Reports declarations of one name that the same settings keep, whether or not anything reaches
@@ -144,7 +142,7 @@ fn differ(candidates: &[Candidate]) -> bool {
 
 /// The names with which references and paths of imports start. If an import's own path starts with
 /// the name that it imports, that means a package.
-fn used(node: &Node) -> HashSet<Name> {
+pub fn used(node: &Node) -> HashSet<Name> {
     let start =
         |path: &Path| path.segments.first().copied().filter(|_| path.origin == Origin::Scope);
     let named = node.module.references.iter().filter_map(|reference| match reference {
@@ -160,18 +158,19 @@ fn used(node: &Node) -> HashSet<Name> {
 }
 
 /// The most places that one diagnostic shows. The others are counted.
-const PLACES: usize = 12;
+pub const PLACES: usize = 12;
 
-/// Every place of a condition that names a flag, dependencies' included.
-pub fn places_of(graph: &Graph, flag: Name) -> Vec<Span> {
-    let of_node = |node: &Node| {
-        let found = node.module.expressions.iter().filter_map(|expression| match expression {
-            Expression::Flag(name, range) if *name == flag => Some(node.module.span(range.clone())),
-            _ => None,
-        });
-        found.collect::<Vec<_>>()
-    };
-    graph.nodes.iter().flat_map(of_node).collect()
+/// Every place of a condition that names a flag, by flag, dependencies' included.
+pub fn places(graph: &Graph) -> HashMap<Name, Vec<Span>> {
+    let mut places: HashMap<Name, Vec<Span>> = HashMap::new();
+    for node in &graph.nodes {
+        for expression in &node.module.expressions {
+            if let Expression::Flag(name, range) = expression {
+                places.entry(*name).or_default().push(node.module.span(range.clone()));
+            }
+        }
+    }
+    places
 }
 
 /// The diagnostic with labels at the first places, and a note that counts the others.

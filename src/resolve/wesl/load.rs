@@ -1,11 +1,13 @@
 //! Reads modules until no path leads to a new one.
 
-use std::collections::{BTreeMap, HashMap};
+use std::cell::Cell;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target};
 use super::lint;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::parse::wesl::{self, ConditionId, Name, Names, Path, Reference};
+use crate::limits::{LINK_FACTOR, LINK_STEPS, Steps};
+use crate::parse::wesl::{self, ConditionId, Module, Name, Names, Path, Reference};
 use crate::resolve::Packages;
 use crate::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
 
@@ -16,6 +18,8 @@ pub struct Loader<'a> {
     pub(super) names: Names,
     pub(super) nodes: Vec<Node>,
     pub(super) constants: Vec<Constant>,
+    /// Where each of them is.
+    pub(super) constant_places: HashMap<Name, u32>,
     pub(super) failures: Vec<Diagnostic>,
     /// Whether modules are read for an editor.
     pub(super) for_editor: bool,
@@ -24,6 +28,12 @@ pub struct Loader<'a> {
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
     /// The files of a package, once a module of it is missing.
     listings: HashMap<usize, Vec<String>>,
+    /// Steps of looking names up.
+    steps: Cell<Steps>,
+    /// By file: the last byte whose line and column were asked for, and those.
+    positions: HashMap<SourceId, (usize, usize, usize)>,
+    /// The names that the last module that was asked about uses.
+    used: Option<(u32, HashSet<Name>)>,
 }
 
 impl<'a> Loader<'a> {
@@ -34,10 +44,14 @@ impl<'a> Loader<'a> {
             names: Names::default(),
             nodes: Vec::new(),
             constants: Vec::new(),
+            constant_places: HashMap::new(),
             failures: Vec::new(),
             for_editor: false,
             known: HashMap::new(),
             listings: HashMap::new(),
+            steps: Cell::new(Steps::new(LINK_STEPS)),
+            positions: HashMap::new(),
+            used: None,
         }
     }
 
@@ -64,6 +78,10 @@ impl<'a> Loader<'a> {
         while at < self.nodes.len() {
             self.resolve(at as u32);
             at += 1;
+        }
+        let steps = self.steps.get();
+        if steps.is_exhausted() {
+            return Err(vec![too_entangled(&self.nodes[0].module, steps.most())]);
         }
         let graph = self.graph();
         let errors = certain_errors(&graph);
@@ -192,6 +210,9 @@ impl<'a> Loader<'a> {
         asker: Option<Span>,
     ) -> u32 {
         let text = self.sources.get(source).text.clone();
+        let mut steps = self.steps.get();
+        steps.grant(LINK_FACTOR.saturating_mul(text.len() as u64));
+        self.steps.set(steps);
         let parse = if self.for_editor { wesl::parse_for_editor } else { wesl::parse };
         let module = parse(source, text, &mut self.names);
         let mut sets: HashMap<Name, Vec<u32>> = HashMap::new();
@@ -232,8 +253,19 @@ impl<'a> Loader<'a> {
         std::iter::once(first).chain(path.iter().map(String::as_str)).collect::<Vec<_>>().join("::")
     }
 
-    fn note(&self, span: Span) -> String {
-        let (line, column) = self.sources.position(span.source, span.start as usize);
+    /// Imports are met in the order of their file, so that its text is read once for all of them.
+    fn note(&mut self, span: Span) -> String {
+        let (at, text) = (span.start as usize, &self.sources.get(span.source).text);
+        let known = self.positions.get(&span.source).copied().filter(|(before, ..)| *before <= at);
+        let (before, mut line, mut column) = known.unwrap_or((0, 1, 1));
+        let passed = text.get(before..at).unwrap_or_default();
+        if let Some((lines, last)) = passed.rsplit_once('\n') {
+            line += 1 + lines.matches('\n').count();
+            column = 1 + last.chars().count();
+        } else {
+            column += passed.chars().count();
+        }
+        self.positions.insert(span.source, (at, line, column));
         format!("imported by {}:{line}:{column}", self.sources.get(span.source).path)
     }
 
@@ -241,6 +273,23 @@ impl<'a> Loader<'a> {
     pub(super) fn listing(&mut self, package: usize) -> &[String] {
         let files = &self.package(package).files;
         self.listings.entry(package).or_insert_with(|| files.list(&["wesl", "wgsl"]))
+    }
+
+    /// Whether anything in a module uses a name.
+    pub(super) fn is_used(&mut self, node: u32, name: Name) -> bool {
+        let known = self.used.take().filter(|(known, _)| *known == node);
+        let (_, names) = self
+            .used
+            .insert(known.unwrap_or_else(|| (node, lint::used(&self.nodes[node as usize]))));
+        names.contains(&name)
+    }
+
+    /// Takes steps of looking names up; false once there are no more of them.
+    pub(super) fn step(&self, steps: usize) -> bool {
+        let mut left = self.steps.get();
+        let outcome = left.spend(steps as u64);
+        self.steps.set(left);
+        outcome.is_ok()
     }
 
     pub(super) fn fail(&mut self, error: Diagnostic) -> Target {
@@ -263,7 +312,7 @@ impl<'a> Loader<'a> {
                 candidate.conditions.extend(*condition);
                 targets.push(candidate.target);
                 if let Target::Failed(failure) = candidate.target
-                    && !lint::is_harmless(self, node, index, failure)
+                    && !lint::is_harmless(self, node, *alias, failure)
                 {
                     self.nodes[node as usize]
                         .broken_imports
@@ -291,6 +340,9 @@ impl<'a> Loader<'a> {
         match reference {
             Reference::Path(path) => self.candidates(node, path, None),
             Reference::Name(name) => {
+                if !self.step(1 + imported.get(name).map_or(0, Vec::len)) {
+                    return Vec::new();
+                }
                 let own = self.nodes[node as usize].sets.contains_key(name);
                 let own = own.then(|| Candidate {
                     conditions: Vec::new(),
@@ -300,6 +352,13 @@ impl<'a> Loader<'a> {
             }
         }
     }
+}
+
+/// What many names may mean is more than can be looked at.
+pub fn too_entangled(module: &Module, most: u64) -> Diagnostic {
+    let message = format!("what names mean here takes more than {most} steps to find");
+    Diagnostic::error(codes::LIMIT_EXCEEDED, message)
+        .at(module.span(0..0), "in this file and what it imports")
 }
 
 /// The errors that every composition has: those of the root module, and of what it imports without

@@ -54,6 +54,9 @@ impl Loader<'_> {
         path: &Path,
         import: Option<usize>,
     ) -> Vec<Candidate> {
+        if !self.step(1) {
+            return Vec::new();
+        }
         let places = Places::new(&self.nodes[node as usize].module, path);
         let mut visiting: Vec<usize> = import.into_iter().collect();
         let found = self.absolute(node, path, &mut visiting).and_then(|absolutes| {
@@ -121,7 +124,7 @@ impl Loader<'_> {
                 .at(module.span(path.range.clone()), "here")
         };
         // Each import has a meaning or an error, so a bound on imports bounds the meanings.
-        if imports.len() > MEANINGS {
+        if imports.len() > MEANINGS || !self.step(imports.len()) {
             return Err(many());
         }
         let mut found = Vec::new();
@@ -255,11 +258,12 @@ impl Loader<'_> {
         match segments {
             [] => Target::Module,
             [name] => {
-                let known = self.constants.iter().position(|constant| constant.name == *name);
-                Target::Constant(known.unwrap_or_else(|| {
+                let next = self.constants.len() as u32;
+                let index = *self.constant_places.entry(*name).or_insert(next);
+                if index == next {
                     self.constants.push(Constant { name: *name, span });
-                    self.constants.len() - 1
-                }) as u32)
+                }
+                Target::Constant(index)
             }
             _ => self.fail(
                 Diagnostic::error(codes::MISSING_MODULE, "the module `constants` has no modules")
@@ -280,11 +284,13 @@ impl Loader<'_> {
         if import && self.module(package, segments, span)?.is_some() {
             return Ok(true);
         }
+        // The listing is sorted: what begins so stands together.
         let listing = self.listing(package);
-        let within = |file: &String| {
-            file.strip_prefix(&path).is_some_and(|rest| rest.starts_with(['/', '.']))
+        let begins = |start: String| {
+            let at = listing.partition_point(|file| *file < start);
+            listing.get(at).is_some_and(|file| file.starts_with(&start))
         };
-        Ok(listing.iter().any(within))
+        Ok(begins(format!("{path}/")) || begins(format!("{path}.")))
     }
 
     fn missing_item(&mut self, node: u32, name: Name, span: Span) -> Diagnostic {

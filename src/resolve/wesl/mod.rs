@@ -7,7 +7,7 @@ mod load;
 mod locate;
 
 pub use graph::{Candidate, Constant, Graph, Node, Target};
-pub use lint::{places_of, shown_at, undeclared};
+pub use lint::{PLACES, places, shown_at, undeclared};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;

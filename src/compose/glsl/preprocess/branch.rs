@@ -8,6 +8,7 @@ use super::super::expand::{Fatal, Input};
 use super::State;
 use crate::compose::Decision;
 use crate::diagnostic::Diagnostics;
+use crate::limits::count;
 use crate::parse::glsl::{Directive, Part};
 use crate::source::Span;
 
@@ -18,6 +19,7 @@ impl State<'_, '_> {
         while let Some(Part::Directive(directive, span)) =
             self.graph.modules[module].parts.get(index)
         {
+            count(1);
             self.warnings.extend(always::warning(
                 &self.expander,
                 &self.graph.modules[module],

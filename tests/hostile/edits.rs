@@ -1,0 +1,43 @@
+//! Messages to the language server that ask for much.
+
+use lamplight::lsp::Server;
+use libtest_mimic::Trial;
+use serde_json::{Value, json};
+
+use super::Outcome;
+
+pub fn trials() -> Vec<Trial> {
+    vec![Trial::test("hostile::edits_of_a_large_document", many)]
+}
+
+const URI: &str = "file:///no/such/folder/lamp.wesl";
+/// A document and edits of it that read and move more bytes than one message may.
+const BYTES: usize = 1 << 20;
+const EDITS: usize = 300;
+
+fn edit() -> Value {
+    let place = json!({ "line": 0, "character": 0 });
+    json!({ "range": { "start": place, "end": place }, "text": "x" })
+}
+
+/// The user is told, and nothing is answered about a text that is another one in the editor.
+fn many() -> Outcome {
+    let mut server = Server::new(Box::new(|_| None));
+    let document = json!({ "uri": URI, "version": 1, "text": "x".repeat(BYTES) });
+    let opened = json!({ "textDocument": document });
+    server.receive(&json!({ "method": "textDocument/didOpen", "params": opened }));
+    let few = changed(&mut server, 10);
+    let many = changed(&mut server, EDITS);
+    let told = many.iter().any(|message| message["method"] == "window/showMessage");
+    match (few.is_empty(), told) {
+        (true, true) => Ok(()),
+        _ => Err(format!("{few:?}, {many:?}").into()),
+    }
+}
+
+fn changed(server: &mut Server, edits: usize) -> Vec<Value> {
+    let changes: Vec<Value> = (0..edits).map(|_| edit()).collect();
+    let parameters =
+        json!({ "textDocument": { "uri": URI, "version": 2 }, "contentChanges": changes });
+    server.receive(&json!({ "method": "textDocument/didChange", "params": parameters }))
+}
