@@ -196,6 +196,9 @@ pub mod execute;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
 pub mod lsp;
+#[cfg(all(feature = "harness", not(target_family = "wasm")))]
+#[doc(hidden)]
+pub mod model;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
 pub mod picture;

@@ -130,6 +130,19 @@ limits! {
         "has more bytes than are allowed";
     ENVIRONMENT_PIXELS: u64 = 1 << 24, Count, "pixels that its header may name", "memory",
         "pixels are more than";
+    MODEL_BYTES: u64 = 256 << 20, Bytes, "bytes of a model", "memory", "bytes are more than";
+    MODEL_JSON_BYTES: usize = 4 << 20, Bytes, "bytes of the document in it", "memory",
+        "has more bytes than";
+    MODEL_NODES: usize = 100_000, Count, "nodes of a model, each where it is placed", "time",
+        "more nodes than";
+    MODEL_NESTING: usize = 256, Count, "nodes within each other", "nodes without end",
+        "within each other";
+    MODEL_CORNERS: usize = 1 << 20, Count, "corners of all triangles of a model", "memory",
+        "corners";
+    MODEL_TEXTURES: usize = 64, Count, "sets of textures of a model", "time",
+        "sets of textures";
+    MODEL_PIXELS: u64 = 1 << 24, Count, "pixels of one of its images", "memory",
+        "pixels are more than";
     CACHE_BYTES: usize = 64 << 20, Bytes, "bytes of a cache record, packed or not", "memory",
         "taken as absent";
     CASE_ROWS: usize = 1 << 20, Count, "inputs of a numeric case", "memory, time",

@@ -7,6 +7,7 @@ mod command;
 mod compared;
 mod difference;
 mod frames;
+mod models;
 mod needs;
 mod pages;
 mod shadows;
@@ -66,6 +67,7 @@ pub fn trials() -> Vec<Trial> {
         .chain(compared::trials())
         .chain(pages::trials())
         .chain(command::trials())
+        .chain(models::trials())
         .chain(needs::trials())
         .collect()
 }

@@ -8,6 +8,8 @@ use lamplight::bundle::Language;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::executors;
 use lamplight::lsp::Server;
+use lamplight::model::View;
+use lamplight::picture::Picture;
 use lamplight::proof::check::{Open, failures, failures_as_text};
 use lamplight::proof::library::Library;
 use lamplight::scene::Equirect;
@@ -29,6 +31,14 @@ pub const KINDS: &[Kind] = &[
         corpus: &[("tests/regressions/picture", "")],
         words: "#?RADIANCE FORMAT=32-bit_rle_rgbe -Y +X",
         run: picture,
+    },
+    Kind {
+        name: "model",
+        corpus: &[("tests/regressions/model", "")],
+        words: "{} [] \"count\": \"byteOffset\": \"byteLength\": \"byteStride\": \"children\": \"mesh\": \"mode\": \
+            \"sparse\": \"normalized\": true 5120 5121 5122 5123 5125 5126 \"SCALAR\" \"MAT4\" 0 -1 1e308 4294967295 \
+            18446744073709551615 \"uri\": \"data:,\"",
+        run: model,
     },
     Kind {
         name: "lsp",
@@ -71,6 +81,39 @@ fn text(bytes: &[u8]) -> String {
 
 fn picture(bytes: &[u8]) -> String {
     Equirect::from_radiance(bytes).err().unwrap_or_default()
+}
+
+/// The document of a model, over a square and an image of one pixel.
+fn model(bytes: &[u8]) -> String {
+    let mut text = bytes.to_vec();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let chunk =
+        |kind: &[u8], bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes(), kind, bytes].concat();
+    let body = [chunk(b"JSON", &text), chunk(b"BIN\0", &square())].concat();
+    let length = (body.len() as u32 + 12).to_le_bytes();
+    let file = [b"glTF".as_slice(), &2_u32.to_le_bytes(), &length, &body].concat();
+    match lamplight::model::read(&file, View::Own) {
+        Ok(model) => format!("{:?} {:?} {:?}", model.notes, model.axes, model.scene.eye),
+        Err(problem) => problem,
+    }
+}
+
+/// Four corners with coordinates, two triangles, an image.
+fn square() -> Vec<u8> {
+    let corners: [[f32; 5]; 4] = [
+        [-1.0, 1.0, 0.0, 0.0, 0.0],
+        [-1.0, -1.0, 0.0, 0.0, 1.0],
+        [1.0, -1.0, 0.0, 1.0, 1.0],
+        [1.0, 1.0, 0.0, 1.0, 0.0],
+    ];
+    let indices: [u16; 6] = [0, 1, 2, 0, 2, 3];
+    let mut buffer: Vec<u8> =
+        corners.concat().iter().flat_map(|number| number.to_le_bytes()).collect();
+    buffer.extend(indices.iter().flat_map(|index| index.to_le_bytes()));
+    let pixel = Picture { width: 1, height: 1, pixels: vec![128; 3] };
+    buffer.extend(pixel.png().unwrap_or_default());
+    buffer.resize(256, 0);
+    buffer
 }
 
 const URI: &str = "file:///no/such/folder/lamp.wesl";

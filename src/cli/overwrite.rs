@@ -11,7 +11,7 @@ use crate::bundle;
 use crate::output::{Error, Foreign, Replace};
 
 /// What may be replaced.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Overwrite {
     /// Replace files that Lamplight did not write. Nothing else of yours is ever deleted.
     #[arg(long)]

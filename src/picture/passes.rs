@@ -52,7 +52,8 @@ pub fn prepare(
     plan: &Plan,
     shot: &Shot,
 ) -> Result<Prepared, Diagnostics> {
-    let (Some(last), Some(mut scene)) = (plan.last(), sets::scene(&plan.scene)) else {
+    let scene = plan.model.as_deref().cloned().or_else(|| sets::scene(&plan.scene));
+    let (Some(last), Some(mut scene)) = (plan.last(), scene) else {
         return Err(vec![Diagnostic::error(
             codes::EXECUTOR_FAILED,
             format!("there is no scene `{}`", plan.scene),

@@ -7,7 +7,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use super::Surroundings;
 use super::needs;
 use super::values::{Camera, Values};
-use crate::scene::irradiance_sh9;
+use crate::scene::{irradiance_sh9, linear_from_srgb};
 
 /// Sums of linear colours. Each sample is clamped to [0, 1], so that the edges of bright things are
 /// smooth.
@@ -156,11 +156,6 @@ fn encoded(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The inverse of [`encoded`].
-fn decoded(encoded: f64) -> f64 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
-}
-
 /// The signature of a PNG file and its first chunk, which is the header.
 const PNG_HEADER_BYTES: usize = 8 + 25;
 
@@ -246,7 +241,8 @@ impl Picture {
     pub fn shrunk(&self, factor: u32) -> Self {
         let factor = factor.max(1);
         let (width, height) = (self.width / factor, self.height / factor);
-        let light: Vec<f64> = (0..=255).map(|byte| decoded(f64::from(byte) / 255.0)).collect();
+        let light: Vec<f64> =
+            (0..=255).map(|byte| linear_from_srgb(f64::from(byte) / 255.0)).collect();
         let mean = |x: u32, y: u32, channel: u32| {
             let at = |i: u32, j: u32| {
                 let pixel = (y * factor + j) * self.width + x * factor + i;

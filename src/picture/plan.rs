@@ -1,6 +1,7 @@
 //! Plans a picture: which permutations are drawn, in which order, with which numbers.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -11,7 +12,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, Settings, key};
 use crate::picture::frame::Programs;
-use crate::scene::sets::Lamp;
+use crate::scene::sets::{Lamp, Scene};
 use crate::source::SourceSet;
 
 /// Everything about a picture, except how it is taken.
@@ -19,6 +20,8 @@ use crate::source::SourceSet;
 pub struct Plan {
     /// The name of the scene, one of [`sets::ALL`](crate::scene::sets::ALL).
     pub scene: String,
+    /// A scene that was read, instead of that one.
+    pub model: Option<Arc<Scene>>,
     /// The passes in order. The last one draws the picture.
     pub passes: Vec<Pass>,
     /// Published numbers by group and field, as in [`Preset`].
@@ -53,6 +56,7 @@ impl Plan {
             preset.probe.as_ref().and_then(|name| probes.iter().find(|probe| probe.name == *name));
         Ok(Self {
             scene: preset.scene.clone(),
+            model: None,
             passes: all
                 .map(|(program, key)| Pass::new(programs, program, key))
                 .collect::<Result<_, _>>()?,
@@ -101,7 +105,13 @@ impl Plan {
             .map(|(program, key)| Pass::new(programs, program, key))
             .collect::<Result<Vec<_>, _>>()?;
         let passes = earlier.into_iter().chain([last]).collect();
-        Ok(Self { scene: scene.to_owned(), passes, numbers: BTreeMap::new(), probe: None })
+        Ok(Self {
+            scene: scene.to_owned(),
+            model: None,
+            passes,
+            numbers: BTreeMap::new(),
+            probe: None,
+        })
     }
 
     /// The pass that draws the picture.

@@ -1,6 +1,8 @@
 //! The textures and samplers of a pass, from earlier passes, from the scene and from its
 //! surroundings.
 
+use std::sync::Arc;
+
 use super::values::Values;
 use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -27,7 +29,7 @@ pub fn sampler(binding: &Binding) -> Fixture {
 pub struct Library<'a> {
     values: &'a Values<'a>,
     left: &'a Left,
-    maps: Option<Maps>,
+    maps: Option<Arc<Maps>>,
 }
 
 /// The edges of the environment's cube maps, and the rows of the quadratures that fill them.
@@ -72,7 +74,8 @@ impl<'a> Library<'a> {
     }
 
     fn maps(&mut self) -> &Maps {
-        let make = self.values.scene.maps;
+        let scene = self.values.scene;
+        let make = || scene.own_maps.clone().unwrap_or_else(|| Arc::new((scene.maps)()));
         self.maps.get_or_insert_with(make)
     }
 }

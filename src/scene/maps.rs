@@ -59,6 +59,11 @@ impl Map {
     }
 }
 
+/// The linear share of light of an encoded one (IEC 61966-2-1, sRGB).
+pub fn linear_from_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
 /// A wall of bricks in a bond. Its baked light is a soft spot.
 pub fn bricks() -> Maps {
     Maps {

@@ -2,6 +2,8 @@
 
 pub use super::maps::{Map, Maps};
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3};
 
 use super::shape::Shape;
@@ -31,6 +33,8 @@ pub struct Scene {
     pub haze_range: (f64, f64),
     /// Makes the textures. They are made only when they are asked for.
     pub maps: fn() -> Maps,
+    /// Textures that were read, instead of those.
+    pub own_maps: Option<Arc<Maps>>,
     /// Texels along an edge of the shadow map, if that does not depend on the picture's size.
     pub map_size: Option<u32>,
     /// Whether lamps with a position are drawn as objects.
@@ -157,6 +161,11 @@ impl Object {
         }
     }
 
+    /// With a material of its own, the first of the array.
+    pub fn made(shape: Shape, place: DMat4, color: DVec3, material: Material) -> Self {
+        Self::new(shape, place, color).of(material, 0)
+    }
+
     fn of(self, material: Material, material_index: u32) -> Self {
         Self { material, material_index, ..self }
     }
@@ -182,6 +191,11 @@ impl Eye {
 }
 
 impl Scene {
+    /// The scene of a model that was read.
+    pub fn of_model(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Self {
+        base(objects, eye, lamps)
+    }
+
     /// A lamp as it is drawn: a bulb, and for a spot light a shade behind it.
     pub fn bulb(lamp: &Lamp, kind: LampKind) -> Vec<Object> {
         let glow = lamp.color / lamp.color.max_element().max(1e-6);
@@ -257,6 +271,7 @@ fn base(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
         haze: DVec3::new(0.42, 0.48, 0.56),
         haze_range: (5.0, 26.0),
         maps: maps::bricks,
+        own_maps: None,
         map_size: None,
         shows_lamps: false,
     }

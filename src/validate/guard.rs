@@ -35,20 +35,24 @@ pub fn on_large_stack<R: Send>(work: impl FnOnce() -> R + Send) -> R {
 
 /// Runs `work`, which calls naga with `text`. A panic becomes a diagnostic and prints nothing.
 pub fn guard<R>(text: &str, work: impl FnOnce() -> R) -> Result<R, Diagnostic> {
-    hush();
-    let outer = GUARDED.replace(true);
-    // A panic may leave values half changed. They are dropped with `work`, since callers keep only
-    // its result.
-    let result = panic::catch_unwind(AssertUnwindSafe(work));
-    GUARDED.set(outer);
-    result.map_err(|_| {
-        let reason = PANIC.take().unwrap_or_else(|| "no message".to_owned());
+    caught(work).map_err(|reason| {
         Diagnostic::error(
             codes::NAGA_INTERNAL,
             format!("naga stopped with an internal error: {reason}"),
         )
         .note(quote(text))
     })
+}
+
+/// Runs `work`, which calls code of others; a panic becomes its message, and prints nothing.
+pub fn caught<R>(work: impl FnOnce() -> R) -> Result<R, String> {
+    hush();
+    let outer = GUARDED.replace(true);
+    // A panic may leave values half changed. They are dropped with `work`, since callers keep only
+    // its result.
+    let result = panic::catch_unwind(AssertUnwindSafe(work));
+    GUARDED.set(outer);
+    result.map_err(|_| PANIC.take().unwrap_or_else(|| "no message".to_owned()))
 }
 
 fn pool() -> Option<&'static ThreadPool> {

@@ -16,7 +16,7 @@ mod uniformity;
 mod words;
 
 pub use every::every;
-pub use guard::{guard, on_large_stack};
+pub use guard::{caught, guard, on_large_stack};
 pub use limits::{LIMITS, Limits};
 #[doc(hidden)]
 pub use rehearsal::{Job, Outputs, STAGE, rehearse};

@@ -1,6 +1,7 @@
 //! `lamplight render`: pictures.
 
 mod gallery;
+mod model;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,7 @@ use crate::diagnostic::{Diagnostics, nearest};
 use crate::execute::executors::Entry;
 use crate::execute::on_thread;
 use crate::limits::ENVIRONMENT_BYTES;
+use crate::model::View;
 use crate::output;
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, key};
@@ -31,7 +33,7 @@ use crate::picture::{self, Picture, Plan, Shot, Surroundings, is_own_png};
 use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
 
 /// Draw a scene with one permutation.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Arguments {
     /// A preset: one published example (`lamplight list presets`); or a comparison, such as
     /// `shadow_filters`.
@@ -45,6 +47,14 @@ pub struct Arguments {
     /// What is drawn [default: the scene of the preset, or `casters`].
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
+    /// A model instead of a scene: a binary glTF file (`.glb`).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "all"])]
+    model: Option<PathBuf>,
+    /// From where the model is seen: the number of one of its cameras, or a place and what is
+    /// looked at [default: its first camera, or a place that sees all of it].
+    #[arg(long, value_name = "N|X,Y,Z,X,Y,Z", requires = "model", value_parser = model::view,
+        allow_hyphen_values = true)]
+    camera: Option<View>,
     /// Draw every preset, with pages that show them.
     #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene", "cascades"])]
     all: bool,
@@ -113,7 +123,7 @@ fn draw(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(comparison) = comparison(&programs, arguments)? {
         return drawn(&programs, arguments, &comparison, &shot, entry);
     }
-    let plan = plan(&programs, arguments)?;
+    let plan = planned(&programs, arguments)?;
     let painter = executor::open(entry)?;
     let start = Instant::now();
     let picture = picture::render(painter.as_ref(), &programs, &plan, &shot)
@@ -121,12 +131,21 @@ fn draw(arguments: &Arguments) -> Result<(), Failure> {
     let path = written(arguments, &picture)?;
     let last = plan.last().map_or("", |pass| pass.key.as_str());
     let [width, height] = shot.size;
-    let (path, scene, adapter, seconds) =
-        (path.display(), &plan.scene, painter.adapter(), start.elapsed().as_secs_f64());
+    let own = arguments.model.as_ref().map(|model| model.display().to_string());
+    let scene = own.as_ref().unwrap_or(&plan.scene);
+    let (path, adapter, seconds) =
+        (path.display(), painter.adapter(), start.elapsed().as_secs_f64());
     Ok(writeln!(
         stdout(),
         "{path}: {width} x {height} of {scene}, `{last}`, in {seconds:.2} s, {adapter}"
     )?)
+}
+
+/// What is drawn: a model, or a scene of ours.
+fn planned(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
+    let Some(own) = model::read(arguments)? else { return plan(programs, arguments) };
+    let plan = model::plan(programs, arguments, &own)?;
+    Ok(Plan { model: Some(Arc::new(own.scene)), ..plan })
 }
 
 /// Writes the picture where it is asked for.
@@ -182,7 +201,8 @@ fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
         Some(name) => of_preset(programs, arguments, name)?,
         None if arguments.set.is_empty()
             && arguments.program.is_none()
-            && arguments.scene.is_none() =>
+            && arguments.scene.is_none()
+            && arguments.model.is_none() =>
         {
             return Err(Failure::usage(
                 "name a preset (`lamplight list presets`), or a permutation with `--set`",

@@ -215,6 +215,7 @@ fn geometry(scene: &str) -> String {
         map_size,
         shows_lamps,
         maps: _,
+        own_maps: _,
     } = (set.make)();
     let seen = (objects, eye, lamps, materials);
     format!("{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}")

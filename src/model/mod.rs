@@ -1,0 +1,184 @@
+//! Models of users: a binary glTF file as a scene.
+//!
+//! `bytes -> document -> meshes in their places, lamps, textures -> scene`
+//!
+//! What the programs do not have is left out, and a note says so. What is broken is an error that
+//! names its place in the document. All memory is bounded by [`limits`](crate::limits).
+
+mod accessor;
+mod mesh;
+mod nodes;
+mod surface;
+mod texture;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use self::texture::Sheet;
+use crate::limits::{MODEL_BYTES, MODEL_JSON_BYTES};
+use crate::scene::sets::{Eye, Lamp, LampKind, Scene};
+use crate::validate::caught;
+
+/// A model, ready to be drawn.
+#[derive(Debug)]
+pub struct Model {
+    pub scene: Scene,
+    /// What was left out, each once.
+    pub notes: BTreeSet<String>,
+    /// Values of the axes of `forward` that show it, such as `specular=ggx`.
+    pub axes: Vec<String>,
+}
+
+/// From where a model is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum View {
+    /// The first camera of the model, or a place before it that sees all of it.
+    Own,
+    /// The camera with that number.
+    Camera(usize),
+    /// A place and what is looked at.
+    At(DVec3, DVec3),
+}
+
+/// What is gathered on the way.
+struct Reader<'b> {
+    document: &'b gltf::Document,
+    blob: &'b [u8],
+    notes: BTreeSet<String>,
+}
+
+/// Reads a binary glTF file.
+///
+/// # Errors
+/// In words, with the place in the document: a file that is none, or that is broken or too large.
+pub fn read(bytes: &[u8], view: View) -> Result<Model, String> {
+    if bytes.len() as u64 > MODEL_BYTES {
+        return Err(format!("{} bytes are more than {MODEL_BYTES}", bytes.len()));
+    }
+    let (json, blob) = chunks(bytes)?;
+    // The crate that reads documents panics at some that are broken.
+    let read = || -> Result<Model, String> {
+        let document = gltf::Gltf::from_slice(json).map_err(|error| told(&error))?.document;
+        scene(&mut Reader { document: &document, blob, notes: BTreeSet::new() }, view)
+    };
+    caught(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
+}
+
+/// The document of a binary file, and its bytes.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
+    const HEADER: usize = 12;
+    if !bytes.starts_with(b"glTF") {
+        return Err("the file is no binary glTF (`.glb`)".to_owned());
+    }
+    let version = word(bytes, 4)?;
+    if version != 2 {
+        return Err(format!("glTF of version {version} is not read, only of version 2"));
+    }
+    let (json, after) = chunk(bytes, HEADER, b"JSON")?;
+    if json.len() > MODEL_JSON_BYTES {
+        return Err(format!("its document has more bytes than {MODEL_JSON_BYTES}"));
+    }
+    let has_more = after + 8 <= bytes.len();
+    let blob = if has_more { chunk(bytes, after, b"BIN\0")?.0 } else { &[] };
+    Ok((json, blob))
+}
+
+/// The bytes of the chunk that begins at a place, and where the next one begins.
+fn chunk<'b>(bytes: &'b [u8], at: usize, kind: &[u8; 4]) -> Result<(&'b [u8], usize), String> {
+    let length = word(bytes, at)? as usize;
+    let end = (at + 8).checked_add(length).filter(|end| *end <= bytes.len());
+    let end = end
+        .ok_or_else(|| format!("the chunk at byte {at} has {length} bytes, more than the file"))?;
+    if &bytes[at + 4..at + 8] != kind {
+        return Err(format!("the chunk at byte {at} is not `{}`", kind.escape_ascii()));
+    }
+    Ok((&bytes[at + 8..end], end.next_multiple_of(4)))
+}
+
+fn word(bytes: &[u8], at: usize) -> Result<u32, String> {
+    let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
+    four.map(u32::from_le_bytes).ok_or_else(|| format!("the file ends at byte {}", bytes.len()))
+}
+
+/// What is wrong with a document, with the places that its reader names.
+fn told(error: &gltf::Error) -> String {
+    const SHOWN: usize = 4;
+    let gltf::Error::Validation(problems) = error else { return error.to_string() };
+    let told = |(path, problem): &(gltf::json::Path, gltf::json::validation::Error)| {
+        format!("{path}: {problem}")
+    };
+    let shown: Vec<String> = problems.iter().take(SHOWN).map(told).collect();
+    shown.join("; ")
+}
+
+fn scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
+    let placed = nodes::walk(reader)?;
+    let sheet = texture::sheet(reader, &placed)?;
+    let mut objects = Vec::new();
+    let mut corners = 0;
+    for part in &placed.parts {
+        objects.extend(mesh::objects(reader, part, &sheet, &mut corners)?);
+    }
+    if objects.is_empty() {
+        return Err("the model has no triangles".to_owned());
+    }
+    let bounds = nodes::bounds(&objects);
+    let eye = eye(&placed, &bounds, view)?;
+    let lamps = nodes::lamps(&placed, &bounds, &eye);
+    let axes = axes(reader, &placed, &sheet, &lamps);
+    let mut scene = Scene::of_model(objects, eye, lamps);
+    scene.own_maps = sheet.maps.map(Arc::new);
+    let notes = std::mem::take(&mut reader.notes);
+    Ok(Model { scene, notes, axes })
+}
+
+/// Microfacets as in glTF, as many lamps as there are, and textures where there are any.
+fn axes(reader: &Reader<'_>, placed: &nodes::Placed, sheet: &Sheet, lamps: &[Lamp]) -> Vec<String> {
+    let most = [1, 4, 10].into_iter().find(|most| lamps.len() <= *most).unwrap_or(10);
+    let shadow = match lamps.first().map(|lamp| lamp.kind) {
+        Some(LampKind::Directional) => "shadow=pcf_3x3,shadow_light=directional",
+        Some(LampKind::Spot) => "shadow=pcf_3x3,shadow_light=spot",
+        _ => "shadow=none",
+    };
+    let mut chosen = format!("specular=ggx,ambient=hemisphere,max_lights={most},{shadow}");
+    if sheet.has_colors {
+        chosen += ",base_map=true";
+    }
+    if sheet.has_normals {
+        chosen += ",normal_map=true";
+    }
+    let mut drawn = placed.parts.iter().filter_map(|part| reader.document.meshes().nth(part.mesh));
+    if drawn.any(|mesh| mesh.primitives().any(|part| part.material().double_sided())) {
+        chosen += ",two_sided=true";
+    }
+    chosen.split(',').map(str::to_owned).collect()
+}
+
+fn eye(placed: &nodes::Placed, bounds: &nodes::Ball, view: View) -> Result<Eye, String> {
+    let (near, far) = (0.005 * bounds.radius, 40.0 * bounds.radius);
+    let looking = |position: DVec3, target: DVec3, fov_y: f64| Eye {
+        position,
+        target,
+        fov_y,
+        near,
+        far: far.max(2.0 * position.distance(bounds.middle)),
+    };
+    match view {
+        View::At(position, target) => Ok(looking(position, target, 0.7)),
+        View::Own if placed.cameras.is_empty() => {
+            let towards = DVec3::new(0.35, 0.28, 1.0).normalize();
+            let position = bounds.middle + towards * bounds.radius / (0.5_f64 * 0.7).sin() * 1.02;
+            Ok(looking(position, bounds.middle, 0.7))
+        }
+        View::Own => Ok(placed.cameras[0].eye(bounds)),
+        View::Camera(index) => {
+            let count = placed.cameras.len();
+            let camera = placed.cameras.get(index);
+            let camera =
+                camera.ok_or_else(|| format!("there is no camera {index}, of {count} in it"))?;
+            Ok(camera.eye(bounds))
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Models that are broken, too large, or not one: each is an error with a place, and no picture.
+
+use libtest_mimic::{Failed, Trial};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use super::{demand, glb, render, square};
+
+pub fn trials() -> impl Iterator<Item = Trial> {
+    WRONG.iter().map(|(name, file, words)| {
+        Trial::test(format!("render/model/wrong/{name}"), || refused(&file(), words))
+    })
+}
+
+/// A name, a file, and what is said of it.
+type Wrong = (&'static str, fn() -> Vec<u8>, &'static str);
+
+const WRONG: &[Wrong] = &[
+    ("text", || b"solid cube".to_vec(), "no binary glTF"),
+    ("version", || [b"glTF".as_slice(), &[1, 0, 0, 0]].concat(), "version 1"),
+    ("cut_short", || changed(|_| ())[..40].to_vec(), "more than the file"),
+    ("no_document", || glb(&json!([1]), &[]), "model.glb"),
+    ("no_scene", || changed(|document| document["scenes"] = json!([])), "scene"),
+    ("index", || changed(|document| document["accessors"][0]["count"] = json!(2)), "is beyond"),
+    (
+        "view_beyond_the_buffer",
+        || changed(|document| document["bufferViews"][0]["byteLength"] = json!(4000)),
+        "buffer view 0 ends beyond",
+    ),
+    (
+        "view_beyond_all_numbers",
+        || changed(|document| document["bufferViews"][0]["byteOffset"] = json!(u64::MAX)),
+        "model.glb",
+    ),
+    (
+        "rows_beyond_the_view",
+        || changed(|document| document["accessors"][1]["count"] = json!(5)),
+        "TEXCOORD_0: accessor 1 ends beyond",
+    ),
+    (
+        "many_rows",
+        || changed(|document| document["accessors"][0]["count"] = json!(4_000_000_000_u32)),
+        "corners",
+    ),
+    (
+        "sparse",
+        || {
+            changed(|document| {
+                document["accessors"][0]["sparse"] = json!({ "count": 1,
+                    "indices": { "bufferView": 1, "componentType": 5123 },
+                    "values": { "bufferView": 0 } });
+            })
+        },
+        "sparse",
+    ),
+    (
+        "another_file",
+        || changed(|document| document["buffers"][0]["uri"] = json!("/etc/passwd")),
+        "in another file",
+    ),
+    (
+        "loop_of_nodes",
+        || changed(|document| document["nodes"][0]["children"] = json!([0])),
+        "nodes[0]",
+    ),
+    ("tower_of_nodes", tower, "more than 100000 nodes"),
+    ("no_number", || with_first(f32::NAN), "not finite"),
+    (
+        "infinite_place",
+        || {
+            changed(|document| {
+                document["nodes"] = json!([{ "children": [1], "scale": [1e38, 1e38, 1e38] },
+            { "children": [2], "scale": [1e38, 1e38, 1e38] }, { "mesh": 0, "scale": [1e308, 1.0, 1.0] }]);
+            })
+        },
+        "model.glb",
+    ),
+    ("image_of_gigapixels", huge_image, "images[0]"),
+    ("image_that_is_none", || pictured(b"no image".to_vec()), "images[0]"),
+];
+
+fn refused(file: &[u8], words: &str) -> Result<(), Failed> {
+    let folder = TempDir::new()?;
+    let output = render(folder.path(), file, &[])?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let is_told = output.status.code() == Some(1)
+        && said.contains(words)
+        && said.contains("model.glb")
+        && !said.contains("panicked");
+    demand(is_told, || format!("{}: {said}", output.status))?;
+    demand(!folder.path().join("out.png").exists(), || "a picture was written".to_owned())
+}
+
+fn changed(change: impl FnOnce(&mut Value)) -> Vec<u8> {
+    let (mut document, buffer) = square(&[]);
+    change(&mut document);
+    glb(&document, &buffer)
+}
+
+/// Thirty nodes, each with the next one twice.
+fn tower() -> Vec<u8> {
+    changed(|document| {
+        let node = |index: usize| json!({ "children": [index + 1, index + 1] });
+        let nodes = (0..30).map(node).chain([json!({ "mesh": 0 })]);
+        document["nodes"] = nodes.collect();
+    })
+}
+
+fn with_first(number: f32) -> Vec<u8> {
+    let (document, mut buffer) = square(&[]);
+    buffer[..4].copy_from_slice(&number.to_le_bytes());
+    glb(&document, &buffer)
+}
+
+fn pictured(image: Vec<u8>) -> Vec<u8> {
+    let (mut document, buffer) = square(&[image]);
+    document["materials"] =
+        json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    glb(&document, &buffer)
+}
+
+/// A PNG whose header says 65,535 by 65,535 pixels.
+fn huge_image() -> Vec<u8> {
+    let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xff\xff\0\0\xff\xff\x08\x06\0\0\0".to_vec();
+    png.extend([0xba, 0x58, 0x9b, 0x6b]);
+    pictured(png)
+}
