@@ -126,7 +126,7 @@ fn defs(migrated: &Migrated, text: &str, choice: usize) -> BTreeMap<String, bool
     let mut one = |name: &String| {
         let is_own = text.contains(name.as_str());
         let on = density > 0 && random(if is_own { 2 } else { density }) == 0;
-        (name.clone(), choice > 0 && on && (is_own || choice % 2 == 0))
+        (name.clone(), choice > 0 && on && (is_own || choice.is_multiple_of(2)))
     };
     migrated.features.iter().map(&mut one).collect()
 }
