@@ -1,5 +1,5 @@
-//! `cargo xtask fuzz link`: random programs, made, judged, run and compared by the trial
-//! `link::random` of the tests.
+//! `cargo xtask fuzz link`: random programs, which the trial `link::random` of the tests makes,
+//! judges, runs and compares.
 
 use crate::{Failure, Outcome, test};
 
@@ -12,7 +12,7 @@ const USAGE: &str =
   --run N       the outputs of one program in N are run, 0 for none (8)
   --shrink      make the first finding of each kind small";
 
-/// Runs the trial; findings are left in `target/fuzz/link/`, and are exit code 3.
+/// Runs the trial. Findings are left in `target/fuzz/link/` and give exit code 3.
 pub fn run(arguments: &[String]) -> Outcome {
     let mut settings = vec![("PROGRAMS", "20000".to_owned()), ("JUDGED", "16".to_owned())];
     settings.push(("RUN", "8".to_owned()));
