@@ -55,8 +55,14 @@ fn warning(
         codes::NON_UNIFORM_DERIVATIVE,
         format!("{what} in non-uniform control flow"),
     );
-    let warning =
-        warning.at(composed.map.lookup(range)?, "neighbouring fragments may not come here");
+    let place = composed.map.lookup(range);
+    // A lean text has no places at all.
+    if place.is_none() && !composed.map.is_empty() {
+        return None;
+    }
+    let warning = place.into_iter().fold(warning, |warning, span| {
+        warning.at(span, "neighbouring fragments may not come here")
+    });
     let cause = finding.cause.to_range().and_then(|range| composed.map.lookup(range));
     let warning = cause
         .into_iter()
