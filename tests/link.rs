@@ -21,7 +21,9 @@ use libtest_mimic::{Failed, Trial};
 use crate::link_compare as compare;
 
 use texts::{NAMES, NAMES_MANIFEST, ROWS, ROWS_MANIFEST, TRAPS, TRAPS_MANIFEST};
-use writers::{entry_points, kept_names, lacking, matrices_of_two_rows};
+use writers::{
+    entry_points, kept_matrices, kept_names, lacking, matrices_from_values, matrices_of_two_rows,
+};
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -30,17 +32,20 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 10] = [
+    let cases: [Case; 13] = [
         ("forward_alone_and_together", forward),
         ("traps_alone_and_together", traps),
         ("names_alone_and_together", names),
         ("whole_and_linked", whole_and_linked),
         ("reasons", reasons),
         ("warnings_are_not_lost", warnings),
+        ("warnings_beside_aliases", warnings_beside_aliases),
         ("an_entry_point_called_like_others", entry_points),
         ("names_of_hlsl_and_glsl", kept_names),
         ("functions_that_old_glsl_lacks", lacking),
         ("arrays_of_matrices_of_two_rows", matrices_of_two_rows),
+        ("arrays_of_matrices_are_kept", kept_matrices),
+        ("arrays_of_matrices_from_values", matrices_from_values),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("link::{name}"), case)).collect()
 }
@@ -287,6 +292,29 @@ fn warnings() -> Outcome {
 fn sampled(at: vec2f) -> vec4f { if far(at) { return textureSample(map, smp, at); } return vec4f(); }
 @fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f { return sampled(at); }
 ";
+    warned(text)
+}
+
+/// naga takes the array of an alias for another type: the text is valid once it is written out.
+fn warnings_beside_aliases() -> Outcome {
+    let text = "
+alias Colour = vec4f;
+var<private> colours: array<Colour, 2>;
+@group(0) @binding(0) var map: texture_2d<f32>;
+@group(0) @binding(1) var smp: sampler;
+@if(parted) fn far(at: vec2f) -> bool { return at.x > 0.5; }
+@else fn far(at: vec2f) -> bool { return true; }
+fn sampled(at: vec2f) -> vec4f { if far(at) { return textureSample(map, smp, at); } return vec4f(); }
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    colours = array<vec4f, 2>(at.xyxy, at.xxyy);
+    return sampled(at) + colours[1];
+}
+";
+    warned(text)
+}
+
+/// A program is warned of once, for its parted permutation.
+fn warned(text: &str) -> Outcome {
     let manifest =
         "[program.small]\nwesl = \"small.wesl\"\naxis.parted = { values = [false, true] }\n";
     let folder = tempfile::tempdir()?;

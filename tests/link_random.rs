@@ -19,10 +19,11 @@ mod stages;
 mod statements;
 mod types;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use judge::{Finding, Output, Verdict};
 use lamplight::bundle::Target;
@@ -71,20 +72,25 @@ fn random_programs() -> Result<(), Failed> {
     let often = number("LAMPLIGHT_LINK_RUN", RUN)?;
     let mut tally = Tally::default();
     let runner = if often > 0 { Some(Runner::open()?) } else { None };
-    let how = How { every, often, runner };
-    let mut next = seed;
+    let most = number("LAMPLIGHT_LINK_MOST", u64::MAX)?.try_into().unwrap_or(usize::MAX);
+    let how = How { every, most, often, runner };
+    let (mut next, started) = (seed, Instant::now());
+    let mut told = BTreeSet::new();
     while next < seed + programs {
         let end = (next + BATCH).min(seed + programs);
         batch(next..end, &how, &mut tally)?;
         next = end;
+        for (kind, found) in &tally.findings {
+            // What was found is kept even if the run does not come to its end.
+            if told.insert(kind.clone()) {
+                tell(kind, found, how.runner.as_ref())?;
+            }
+        }
         if programs > PROGRAMS {
-            println!("{tally}");
+            tally.progress(programs, started.elapsed());
         }
     }
     println!("{tally}");
-    for (kind, found) in &tally.findings {
-        told(kind, found, how.runner.as_ref())?;
-    }
     let refused: usize = tally.refused.values().sum();
     if refused * 100 > REFUSED * tally.programs {
         return Err(format!("the crate refuses {refused} programs: {:?}", tally.refused).into());
@@ -99,6 +105,8 @@ fn random_programs() -> Result<(), Failed> {
 struct How {
     /// The judges beside the crate see one program in so many.
     every: u64,
+    /// So many outputs of a program in each target.
+    most: usize,
     /// Outputs of one program in so many are run.
     often: u64,
     runner: Option<Runner>,
@@ -123,15 +131,29 @@ struct Tally {
 }
 
 struct Found {
-    count: usize,
+    /// Of every program with it; the finding is the first one's.
+    seeds: BTreeSet<u64>,
     seed: u64,
     finding: Finding,
 }
 
+/// Seeds of a finding that are told.
+const SEEDS: usize = 8;
+
 impl Tally {
     fn find(&mut self, seed: u64, finding: Finding) {
-        let first = || Found { count: 0, seed, finding: finding.clone() };
-        self.findings.entry(finding.kind.clone()).or_insert_with(first).count += 1;
+        let first = || Found { seeds: BTreeSet::new(), seed, finding: finding.clone() };
+        self.findings.entry(finding.kind.clone()).or_insert_with(first).seeds.insert(seed);
+    }
+
+    fn progress(&self, all: u64, since: Duration) {
+        let Self { programs, findings, .. } = self;
+        let found: usize = findings.values().map(|found| found.seeds.len()).sum();
+        let pace = *programs as f64 / since.as_secs_f64().max(0.001);
+        let kinds = findings.len();
+        println!(
+            "{programs} of {all} programs, {pace:.1} a second, {found} findings of {kinds} kinds"
+        );
     }
 }
 
@@ -146,8 +168,9 @@ impl std::fmt::Display for Tally {
             write!(f, "\n  {} not run: vertex stages alone", self.vertex_alone)?;
         }
         f.write_str("\n  findings:")?;
-        for (kind, Found { count, seed, .. }) in &self.findings {
-            write!(f, "\n  {count} x {kind} (seed {seed})")?;
+        for (kind, Found { seeds, .. }) in &self.findings {
+            let first: Vec<String> = seeds.iter().take(SEEDS).map(u64::to_string).collect();
+            write!(f, "\n  {} x {kind} (seeds {})", seeds.len(), first.join(", "))?;
         }
         if self.findings.is_empty() { f.write_str(" none") } else { Ok(()) }
     }
@@ -179,8 +202,9 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
                     runnables.extend(sound.runnable.map(|one| *one));
                 }
                 if seed % how.every == 0 {
-                    owners.extend(sound.outputs.iter().map(|_| seed));
-                    outputs.extend(sound.outputs);
+                    let some = few(sound.outputs, how.most);
+                    owners.extend(some.iter().map(|_| seed));
+                    outputs.extend(some);
                 }
             }
         }
@@ -198,14 +222,26 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
     Ok(())
 }
 
+/// The first so many outputs of each target. Their order is random.
+fn few(mut outputs: Vec<Output>, most: usize) -> Vec<Output> {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    outputs.retain(|output| {
+        let count = counts.entry(output.target.name()).or_default();
+        *count += 1;
+        *count <= most
+    });
+    outputs
+}
+
 fn refusal(output: &Output, words: &str) -> Finding {
     let text = match output.target == Target::SPIRV {
         false => String::from_utf8_lossy(&output.artifact.bytes).into_owned(),
         true => String::new(),
     };
     let line = words.lines().find(|line| line.to_lowercase().contains("error"));
-    let said: String =
-        line.unwrap_or_default().chars().filter(|letter| !letter.is_ascii_digit()).collect();
+    // Without the author's names, and without places.
+    let unnamed = line.unwrap_or_default().split('\'').step_by(2);
+    let said: String = unnamed.flat_map(str::chars).filter(|one| !one.is_ascii_digit()).collect();
     let kind = format!("{} is refused: {said}", output.target);
     Finding::new(kind, format!("{words}\n{text}"))
 }
@@ -219,8 +255,18 @@ fn first_words(words: &str) -> String {
 
 /// A panic is a finding too.
 fn judged(seed: u64) -> Result<Verdict, Finding> {
+    guarded(&program(seed), seed)
+}
+
+/// The program of a seed, or its text from a file, such as one that was made smaller by hand.
+fn program(seed: u64) -> Program {
     let program = Program::new(seed);
-    guarded(&program, seed)
+    match std::env::var_os("LAMPLIGHT_LINK_TEXT")
+        .and_then(|file| std::fs::read_to_string(file).ok())
+    {
+        Some(text) => Program { text, ..program },
+        None => program,
+    }
 }
 
 fn guarded(program: &Program, seed: u64) -> Result<Verdict, Finding> {
@@ -230,7 +276,7 @@ fn guarded(program: &Program, seed: u64) -> Result<Verdict, Finding> {
 }
 
 /// Writes the first program of a kind of finding, as small as it can be made.
-fn told(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<(), Failed> {
+fn tell(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<(), Failed> {
     let folder = findings();
     std::fs::create_dir_all(&folder)?;
     let program = Program::new(found.seed);

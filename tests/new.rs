@@ -228,10 +228,10 @@ fn examples() -> Outcome {
 fn mistakes() -> Outcome {
     let wrong = [
         ("functions", "brdf::diffuse::fresh", "there is no kind `functions`"),
-        ("function", "lambert", "is no path of a function"),
+        ("function", "lambert", "is not the path of a function"),
         ("function", "brdf::diffuse::Lambert", "must be small letters"),
         ("function", "brdf::diffuse::lambert", "already"),
-        ("axis-value", "forward.fog", "is no value of an axis"),
+        ("axis-value", "forward.fog", "is not a value of an axis"),
         ("axis-value", "forward::fog=linear", "has the value `linear` already"),
         ("axis-value", "forward::mist=linear", "has no `[program.forward.axis.mist]`"),
         ("axis-value", "forward::max_lights=many", "has no list of names"),

@@ -1,8 +1,8 @@
 //! Composition: Lamplight, `wesl` and `naga_oil` over the same roots, flags and modules.
 //!
-//! Each tool is used as its documentation says and told to check nothing twice: `wesl` without its
-//! own validation and source map, `naga_oil` with its modules added once and its inner validation
-//! off. The last step of the way to a module is naga's validator for all.
+//! Each tool is used as its documentation says, and checks nothing twice: `wesl` runs without its
+//! own validation and source map, and `naga_oil` gets its modules once and runs without its inner
+//! validation. For all of them the last step is naga's validator.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
@@ -27,7 +27,7 @@ use crate::library;
 const PERMUTATIONS: usize = 8;
 const JOBS: usize = ROOTS * PERMUTATIONS;
 
-/// Prints every figure; the last line is the two ratios.
+/// Prints every figure. The last line has the two ratios.
 pub fn run() -> Outcome {
     let lines = corpus::lines(Dialect::Wesl);
     println!(
@@ -66,10 +66,10 @@ pub fn run() -> Outcome {
     Ok(())
 }
 
-/// A peer that needs longer is measured over what it made until then.
+/// A peer that needs longer than this is measured over what it made until then.
 const LONGEST: Duration = Duration::from_secs(90);
 
-/// What was made, in how many jobs, and how long they took.
+/// What was made, in how many jobs, and how long that took.
 struct Timed<T> {
     value: T,
     elapsed: Duration,
@@ -112,7 +112,7 @@ fn packages(files: &BTreeMap<String, String>) -> Packages {
     }
 }
 
-/// The best of several: the first one touches memory that no engine would touch twice.
+/// The best of several runs, since the first one touches memory for the first time.
 fn loading(files: &BTreeMap<String, String>) -> Result<Duration, String> {
     let packages = packages(files);
     let mut best = Duration::MAX;
@@ -219,7 +219,7 @@ fn validator() -> naga::valid::Validator {
     )
 }
 
-/// Modules are added once; each permutation then makes a module and validates it.
+/// Modules are added once. Each permutation then makes a module and validates it.
 fn naga_oil_modules() -> Result<Timed<()>, Box<dyn Error>> {
     let mut composer = Composer::non_validating();
     let added = timed(|| {

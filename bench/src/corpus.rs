@@ -1,8 +1,9 @@
 //! A generated module tree of an engine's shape, in the dialects of each composer. The same
 //! number always gives the same text.
 //!
-//! Like Bevy's shaders: some 200 modules of 140 lines in layers, each importing from four or five
-//! others; eight directive lines in a hundred, imports among them; a root reaches a quarter of it.
+//! It resembles Bevy's shaders. There are some 200 modules of 140 lines in layers, each of which
+//! imports from four or five others. Eight lines in a hundred are directives, including imports. A
+//! root reaches a quarter of the modules.
 
 use std::fmt::Write as _;
 
@@ -15,7 +16,7 @@ pub const ROOTS: usize = 16;
 
 /// Modules import from layers below their own.
 const LAYERS: usize = 10;
-/// Parts of the engine: three of four imports stay in their own.
+/// Parts of the engine. Three of four imports stay within a part.
 const PARTS: usize = 4;
 /// Modules of one part in one layer.
 const UNITS: usize = 5;
@@ -99,7 +100,8 @@ pub fn lines(dialect: Dialect) -> usize {
     (0..MODULES).map(|index| module(index, dialect).lines().count()).sum()
 }
 
-/// A function of another module, by its name or, where a flag chooses between two, by another.
+/// A function of another module. Where a flag chooses between two functions, it has another name
+/// here.
 struct Import {
     module: usize,
     function: usize,
@@ -124,7 +126,7 @@ fn part(module: usize) -> usize {
     module / UNITS % PARTS
 }
 
-/// Modules of the layers just below, one of four from another part.
+/// Modules of the layers just below. One of four is from another part.
 fn imports(module: usize, random: &mut Random) -> Vec<Import> {
     let below = |random: &mut Random| {
         let layer = layer(module) - 1 - random.below(layer(module).min(2));
@@ -235,13 +237,14 @@ fn name(module: usize, function: usize) -> String {
     format!("respond_{}_{}", letters(module), letters(function))
 }
 
-/// Names without digits: naga_oil renames those that end in one.
+/// Names without digits, since naga_oil renames those that end in a digit.
 fn letters(number: usize) -> String {
     let digit = |value: usize| char::from(b'a' + value as u8);
     [digit(number / 26 % 26), digit(number % 26)].iter().collect()
 }
 
-/// A small linear congruential generator: only its sequence must stay the same.
+/// A small linear congruential generator. Its quality does not matter, only that its sequence never
+/// changes.
 struct Random(u64);
 
 impl Random {

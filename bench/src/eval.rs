@@ -1,4 +1,4 @@
-//! The CPU evaluator: calls of `blinn_phong`, as the library has it, a second on one core.
+//! The CPU evaluator: how many calls of the library's `blinn_phong` one core makes in a second.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -38,7 +38,7 @@ fn program() -> Result<Program, Box<dyn Error>> {
     Ok(Program::new(&validated.module, &validated.info)?)
 }
 
-/// Light moves across the highlight, so that no call repeats the last one.
+/// The light moves across the highlight, so that no call repeats the last one.
 fn rate<N: Number>(machine: &mut Machine<N>) -> Result<f64, Box<dyn Error>> {
     let function =
         machine.program().function(FUNCTION).ok_or("the library has no such function")?;

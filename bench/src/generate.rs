@@ -1,8 +1,8 @@
 //! Generation: the permutations of `forward`, all targets, beside a plain loop over naga.
 //!
-//! Both sides use one thread a core, the same permutations, the same composer and, in this
+//! Both sides use one thread for each core, the same permutations, the same composer and, in this
 //! process, the same allocator. The loop composes, parses, validates and writes each permutation
-//! for itself, as one would with naga alone. Neither writes to disk.
+//! separately, as one would with naga alone. Neither side writes to disk.
 
 use std::hint::black_box;
 use std::process::{Command, Stdio};
@@ -22,7 +22,7 @@ use rayon::prelude::*;
 
 use crate::Outcome;
 
-/// That of the `lamplight` command, for both sides.
+/// The allocator of the `lamplight` command, for both sides.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
@@ -30,10 +30,10 @@ const PROGRAM: &str = "forward";
 
 const LANGUAGES: [Language; 2] = [Language::Wesl, Language::Glsl];
 
-/// The most a run of ours and one of the loop are repeated; the best of each counts.
+/// The most repetitions of a run of ours and one of the loop. The best of each counts.
 const ROUNDS: usize = 3;
 
-/// Shaders given to a tool that starts once for each.
+/// How many shaders a tool gets that must be started once for each.
 const SAMPLE: usize = 40;
 
 /// Prints every figure; the last line is the rate and the ratio.
@@ -66,7 +66,7 @@ pub fn run() -> Outcome {
     packed(&manifest)?;
     crate::load::run()?;
     tools(program, &points)?;
-    // What the two took of the machine, which others may have used too.
+    // Processor time is shown too, since others may have used the machine.
     println!(
         "by processor time: {:.1}x plain naga loop",
         theirs.processors.as_secs_f64() / ours.processors.as_secs_f64()
@@ -77,7 +77,7 @@ pub fn run() -> Outcome {
     Ok(())
 }
 
-/// What a run took. Where other programs use the machine too, the processors' time says more.
+/// The time of a run. Where other programs use the machine too, processor time says more.
 #[derive(Clone, Copy)]
 struct Spent {
     wall: Duration,
@@ -117,7 +117,7 @@ fn spent(work: impl FnOnce() -> Result<(), String>) -> Result<Spent, String> {
     Ok(Spent { wall: start.elapsed(), processors: processors() - before })
 }
 
-/// Time that all threads of this process spent on processors: the kernel's ticks, a hundred a second.
+/// Processor time of all threads of this process. The kernel counts a hundred ticks a second.
 fn processors() -> Duration {
     let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields = text.rsplit_once(')').map_or("", |(_, rest)| rest).split_whitespace();
@@ -151,7 +151,8 @@ fn generated(manifest: &Manifest) -> Result<(), String> {
     Ok(())
 }
 
-/// The single file beside the raw outputs in it, each distinct one counted once.
+/// The size of the single file, compared with the raw outputs in it, each distinct one counted
+/// once.
 fn packed(manifest: &Manifest) -> Outcome {
     let request = Request { program: Some(PROGRAM.to_owned()), ..Request::default() };
     let generated =
@@ -169,8 +170,8 @@ fn packed(manifest: &Manifest) -> Outcome {
     Ok(())
 }
 
-/// Every permutation for itself: in WGSL one text with both entry points, in GLSL a text for each;
-/// one module a text, each entry point written for each target.
+/// Compiles every permutation separately. In WGSL one text has both entry points, in GLSL there is
+/// a text for each. Each text becomes one module, and each entry point is written for each target.
 fn plain(program: &Program, points: &[Assignment], language: Language) -> Result<(), String> {
     let graphs = graphs(program, language)?;
     let one = |point: &Assignment| {
@@ -238,7 +239,7 @@ fn permutation(graph: &Graph, program: &Program, point: &Assignment) -> Result<u
         .sum()
 }
 
-/// A compiler that takes one shader a start.
+/// A compiler that must be started for each shader.
 struct Tool {
     name: &'static str,
     /// What it does, so that figures are not compared with those of other work.
@@ -289,7 +290,7 @@ const TOOLS: &[Tool] = &[
     },
 ];
 
-/// The fragment shaders of some permutations through each tool that is installed.
+/// Compiles the fragment shaders of some permutations with each tool that is installed.
 fn tools(program: &Program, points: &[Assignment]) -> Outcome {
     let folder = std::env::temp_dir().join(format!("lamplight-bench-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;

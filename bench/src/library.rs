@@ -1,4 +1,5 @@
-//! The shader library's own programs, ours beside `wesl`, which knows conditions over booleans only.
+//! The shader library's own programs: ours compared with `wesl`, which only knows boolean
+//! conditions.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -14,7 +15,7 @@ use wesl::syntax::PathOrigin;
 
 use crate::Outcome;
 
-/// Modules that stand for themselves: the root of each composition, kept whole.
+/// Modules that are composed by themselves: the root of each composition, kept whole.
 const ROOTS: [&str; 6] = [
     "lighting/light",
     "lighting/classic",
@@ -27,7 +28,7 @@ const ROOTS: [&str; 6] = [
 const PROGRAMS: [&str; 1] = ["programs/depth"];
 const ROUNDS: usize = 20;
 
-/// Prints how often each composes the roots a second.
+/// Prints how often each tool composes the roots in a second.
 pub fn run() -> Outcome {
     let (ours, theirs) = (ours()?, theirs()?);
     let rate = |elapsed: Duration| {

@@ -18,7 +18,7 @@ const KEYS: usize = VALUES.pow(AXES.len() as u32);
 const UNITS: usize = 2_000;
 const FETCHES: usize = 2_000;
 const OPENINGS: usize = 101;
-/// Lookups timed together: a clock takes as long as one of them.
+/// How many lookups are timed together, since reading the clock takes as long as one lookup.
 const BATCH: usize = 500;
 
 /// Prints what opening, a lookup and a fetch take.
@@ -28,8 +28,8 @@ pub fn run() -> Outcome {
         std::env::temp_dir().join(format!("lamplight-bench-{}.lamplight", std::process::id()));
     write_file(&contents, &path)?;
     drop(contents);
-    // In an order that no cache of the processor foresees, and copied in it: what is timed is the
-    // bundle's memory, not the benchmark's.
+    // Keys are asked in an order that the processor's caches cannot predict. They are copied in
+    // that order too, so that the time is that of the bundle's memory and not of the benchmark's.
     let asked: Vec<String> = (0..KEYS).map(|index| keys[index * 7_919 % KEYS].clone()).collect();
     let open = median((0..OPENINGS).map(|_| timed(|| Bundle::open(&path).is_ok())))?;
     let bundle = Bundle::open(&path)?;
@@ -52,7 +52,8 @@ pub fn run() -> Outcome {
     Ok(std::fs::remove_file(&path)?)
 }
 
-/// The middle one: others use the machine too, and interrupt some. Fails where any of the work did.
+/// The median, since others use the machine too and interrupt some runs. Fails if any of the work
+/// failed.
 fn median(times: impl Iterator<Item = (bool, Duration)>) -> Result<Duration, String> {
     let times: Option<Vec<Duration>> = times.map(|(done, time)| done.then_some(time)).collect();
     let mut times = times.ok_or("a bundle or a key was not found")?;
@@ -96,7 +97,7 @@ fn contents() -> Result<(Contents, Vec<String>), Box<dyn std::error::Error>> {
     ))
 }
 
-/// As large as a shader of the library is: some 8 kB in each of two targets.
+/// About as large as a shader of the library: some 8 kB in each of two targets.
 fn unit(index: usize) -> Unit {
     let reflection = Reflection::of(Stage::Fragment);
     let native = Arc::new(Native { entry_name: "main".into(), ..Native::default() });

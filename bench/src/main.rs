@@ -1,4 +1,5 @@
-//! Lamplight beside its peers: each benchmark measures all of them in one run and prints ratios.
+//! Lamplight compared with its peers. Each benchmark measures all of them in one run and prints
+//! ratios.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 

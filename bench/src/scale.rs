@@ -1,4 +1,4 @@
-//! Memory: 100,000 permutations, no two alike, written as they are made.
+//! Memory: 100,000 permutations, no two alike, are written as they are made.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -61,7 +61,7 @@ fn generated(folder: &Path) -> Result<usize, Box<dyn std::error::Error>> {
     Ok(generated.summary.permutations())
 }
 
-/// The kernel's high-water mark, in bytes.
+/// The kernel's peak memory of this process, in bytes.
 fn peak() -> Result<f64, Box<dyn std::error::Error>> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let line = status

@@ -28,6 +28,11 @@ impl SourceMap {
         self.segments.push(segment);
     }
 
+    /// Whether nothing of the output has a place.
+    pub fn is_empty(&self) -> bool {
+        self.segments.is_empty()
+    }
+
     /// The author's span for a range of the output, if its first byte has an author.
     ///
     /// A range over several segments gives a span that ends where the author's text is no longer

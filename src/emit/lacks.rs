@@ -1,5 +1,4 @@
-//! Refuses what naga would write in GLSL although the language lacks it, or gives it another
-//! meaning.
+//! Refuses what naga would write although the language lacks it, or gives it another meaning.
 //!
 //! GLSL 3.30 and GLSL ES 3.00 lack some newer functions, whose names naga writes all the same. For
 //! `frexp` it writes a function of its own based on `log2`, which is wrong for negative numbers and
@@ -12,9 +11,11 @@ use naga::{
     MathFunction, Module, Span, Type, TypeInner, VectorSize,
 };
 
+use super::columns;
 use crate::bundle::Target;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::validate::Validated;
 
 /// Functions of WGSL, with what GLSL calls that which naga writes for them. The newest GLSL has
 /// them all.
@@ -45,20 +46,28 @@ const TWO_ROWS: &str =
 ///
 /// # Errors
 /// `emit-failed` for each.
-pub fn check(composed: &Composed, module: &Module, targets: &[Target]) -> Result<(), Diagnostics> {
-    let mut found = Diagnostics::new();
-    for (target, version) in VERSIONS {
-        if !targets.contains(target) {
-            continue;
+pub fn check(
+    composed: &Composed,
+    validated: &Validated,
+    targets: &[Target],
+) -> Result<(), Diagnostics> {
+    let (module, mut found) = (&validated.module, Diagnostics::new());
+    let mut refuse = |message: String, span: Span, label: &str| {
+        let place = span.to_range().and_then(|range| composed.map.lookup(range));
+        let error = Diagnostic::error(codes::EMIT_FAILED, message);
+        found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
+    };
+    for (target, version) in VERSIONS.iter().filter(|(target, _)| targets.contains(target)) {
+        for (what, span) in lacking(module, *version) {
+            refuse(told(*target, what), span, "it is written so");
         }
-        let functions = lacking(module, *version)
-            .map(|(what, span)| (told(*target, what), span, "it is written so"));
-        let blocks = two_rows(module)
-            .map(|span| (format!("target `{target}`: {TWO_ROWS}"), span, "it is in here"));
-        for (message, span, label) in functions.chain(blocks) {
-            let place = span.to_range().and_then(|range| composed.map.lookup(range));
-            let error = Diagnostic::error(codes::EMIT_FAILED, message);
-            found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
+        for span in two_rows(module) {
+            refuse(format!("target `{target}`: {TWO_ROWS}"), span, "it is in here");
+        }
+    }
+    if targets.contains(&Target::HLSL) {
+        for span in columns::taken_from_values(module, &validated.info) {
+            refuse(format!("target `hlsl`: {}", columns::TAKEN), span, "it is taken here");
         }
     }
     if found.is_empty() { Ok(()) } else { Err(found) }

@@ -5,6 +5,8 @@
 
 use std::collections::HashMap;
 
+use super::columns;
+
 /// The text with lists instead of calls, wherever a variable of the module is initialised.
 pub fn with_plain_constants(text: &str) -> String {
     if !text.contains(" = Construct") {
@@ -21,8 +23,18 @@ pub fn with_plain_constants(text: &str) -> String {
     text.split_inclusive('\n').map(line).collect()
 }
 
-/// For each structure, whether each of its members is padding.
-type Structs<'t> = HashMap<&'t str, Vec<bool>>;
+/// The members of each structure.
+type Structs<'t> = HashMap<&'t str, Vec<Member>>;
+
+/// What a member holds.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Member {
+    Value,
+    /// It is only there to fill a gap.
+    Gap,
+    /// An array of matrices of two rows, which are structures of columns.
+    Columns,
+}
 
 fn structs(text: &str) -> Structs<'_> {
     let mut structs = Structs::new();
@@ -31,10 +43,14 @@ fn structs(text: &str) -> Structs<'_> {
         if let Some((name, rest)) = part.split_once(" {\n")
             && let Some((members, _)) = rest.split_once("\n}")
         {
-            let is_gap = |line: &str| line.contains(" _pad") || line.contains(" _end_pad");
+            let member = |line: &str| match line.trim_start() {
+                line if line.contains(" _pad") || line.contains(" _end_pad") => Member::Gap,
+                line if line.starts_with(columns::STRUCTURE) => Member::Columns,
+                _ => Member::Value,
+            };
             // The columns of a matrix stand on one line.
             let members = members.split(';').filter(|member| !member.trim().is_empty());
-            structs.insert(name, members.map(is_gap).collect());
+            structs.insert(name, members.map(member).collect());
         }
     }
     structs
@@ -54,20 +70,43 @@ fn listed(value: &str, structs: &Structs<'_>) -> String {
 
 /// The values of all members, padding included. naga declares the columns of a matrix of two rows
 /// as members.
-fn filled(members: &[bool], arguments: &[&str], structs: &Structs<'_>) -> Option<Vec<String>> {
+fn filled(members: &[Member], arguments: &[&str], structs: &Structs<'_>) -> Option<Vec<String>> {
     let mut values = Vec::new();
+    let mut places = members.iter().filter(|member| **member != Member::Gap);
     for argument in arguments {
-        match call(argument) {
-            Some(("float2x2" | "float3x2" | "float4x2", columns)) => {
+        let member = *places.next()?;
+        match (member, columns_of(argument)) {
+            (Member::Columns, _) => values.push(listed_columns(argument)),
+            (_, Some(columns)) => {
+                places.nth(columns.len().checked_sub(2)?)?;
                 values.extend(columns.into_iter().map(str::to_owned));
             }
             _ => values.push(listed(argument, structs)),
         }
     }
     let mut values = values.into_iter();
-    let member = |is_gap: &bool| if *is_gap { Some("0".to_owned()) } else { values.next() };
-    let list = members.iter().map(member).collect::<Option<Vec<String>>>()?;
+    let one = |member: &Member| match member {
+        Member::Gap => Some("0".to_owned()),
+        _ => values.next(),
+    };
+    let list = members.iter().map(one).collect::<Option<Vec<String>>>()?;
     values.next().is_none().then_some(list)
+}
+
+/// The columns of a matrix of two rows.
+fn columns_of(value: &str) -> Option<Vec<&str>> {
+    let (word, columns) = call(value)?;
+    matches!(word, "float2x2" | "float3x2" | "float4x2").then_some(columns)
+}
+
+/// An array of matrices of two rows, as lists of columns.
+fn listed_columns(value: &str) -> String {
+    let list: Vec<String> = match (columns_of(value), call(value)) {
+        (Some(columns), _) => columns.into_iter().map(str::to_owned).collect(),
+        (None, Some((_, elements))) => elements.into_iter().map(listed_columns).collect(),
+        (None, None) => return value.to_owned(),
+    };
+    format!("{{ {} }}", list.join(", "))
 }
 
 /// Reads a value that is a call: the name of the function, and its arguments.

@@ -11,6 +11,7 @@
 //! - `msl`, `hlsl`, `wgsl`: the same conventions are native.
 
 pub mod clip;
+mod columns;
 pub(crate) mod glsl;
 mod header;
 mod isolate;
@@ -131,7 +132,7 @@ pub fn check(
     targets: &[Target],
 ) -> Result<(), Diagnostics> {
     specialise::check(composed, validated)?;
-    lacks::check(composed, &validated.module, targets)
+    lacks::check(composed, validated, targets)
 }
 
 /// Writes one entry point for one target. Overrides stay open: [`Native::choices`] says how each

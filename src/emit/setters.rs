@@ -1,21 +1,25 @@
-//! Repairs stores to matrices of two rows within structures. For these, naga's HLSL calls a
-//! function that takes the structure by value, so the store is lost. Here the structure becomes an
+//! Repairs stores to matrices of two rows within structures and arrays. For these, naga's HLSL
+//! calls functions that take what they change by value, so the store is lost. Here that becomes an
 //! `inout` parameter.
 
-/// How the names of these functions begin. No name of an author's begins so in HLSL.
-const START: &str = "void SetMat";
-/// The parameter with the structure.
-const OBJECT: &str = " obj, ";
+/// How these functions begin, as no name of an author's does in HLSL, and the parameter that they
+/// change.
+const SETTERS: [(&str, &str); 3] = [
+    ("void SetMat", " obj, "),
+    ("void __set_col_of_mat", " mat, "),
+    ("void __set_el_of_mat", " mat, "),
+];
 
-/// The text with structures passed by reference to the functions that change them.
+/// The text with what is changed passed by reference to the functions that change it.
 pub fn by_reference(text: &str) -> String {
-    if !text.contains(START) {
+    if !SETTERS.iter().any(|(start, _)| text.contains(start)) {
         return text.to_owned();
     }
     let mut changed = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
-        match line.split_once('(').filter(|(name, _)| name.starts_with(START)) {
-            Some((name, rest)) if rest.contains(OBJECT) => {
+        let setter = SETTERS.iter().find(|(start, _)| line.starts_with(start));
+        match setter.and_then(|(_, object)| Some((line.split_once('(')?, object))) {
+            Some(((name, rest), object)) if rest.contains(object) => {
                 changed.push_str(name);
                 changed.push_str("(inout ");
                 changed.push_str(rest);

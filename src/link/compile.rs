@@ -123,7 +123,12 @@ fn bounded(unit: &Unit) -> Result<(), Diagnostic> {
 }
 
 fn lint(text: &Text<'_>) -> Result<Diagnostics, Diagnostics> {
-    Ok(validate::lint(text.composed, &validate(text.composed)?))
+    // naga refuses some texts for their aliases, which the lean one does not have.
+    let (composed, validated) = match validate(text.composed) {
+        Ok(validated) => (text.composed, validated),
+        Err(_) => (text.lean, validate(text.lean)?),
+    };
+    Ok(validate::lint(composed, &validated))
 }
 
 /// Validates a text, reflects its entry point and writes it for some targets.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use super::package::Modules;
+use super::package::{Modules, Opened};
 use super::place::{self, Lines};
 use super::{Server, act};
 use crate::catalogue::Kind;
@@ -94,29 +94,10 @@ fn path_members(server: &mut Server, modules: &Modules, here: &str, before: &str
         return json!([]);
     };
     if *first == "constants" {
-        let programs = opened.manifest.iter().flat_map(|manifest| &manifest.programs);
-        let axes = programs.flat_map(|program| program.space.axes());
-        let is_number = |axis: &&crate::permute::Axis| {
-            !matches!(axis.values.first(), Some(Setting::Name(_)) | None)
-        };
-        let names: BTreeSet<&str> = axes.filter(is_number).map(|axis| axis.name.as_str()).collect();
-        return names.into_iter().map(|name| entry(name, CONSTANT, "constant")).collect();
+        return constants(&opened);
     }
-    let mut folder: Vec<&str> = rest.to_vec();
-    let above: Vec<&str> =
-        here.rsplit_once('.').map_or(here, |(stem, _)| stem).split('/').collect();
-    let (files, label): (&dyn Files, &str) = match *first {
-        "package" => (&*opened.packages.root.files, "package"),
-        "super" => {
-            let ups = 1 + rest.iter().take_while(|part| **part == "super").count();
-            let kept = above.len().saturating_sub(ups);
-            folder = above[..kept].iter().chain(&rest[ups - 1..]).copied().collect();
-            (&*opened.packages.root.files, "package")
-        }
-        name => match opened.packages.dependency(name) {
-            Some(package) => (&*package.files, name),
-            None => return json!([]),
-        },
+    let Some((files, label, folder)) = target(&opened, here, first, rest) else {
+        return json!([]);
     };
     let prefix = if folder.is_empty() { String::new() } else { folder.join("/") + "/" };
     let below = files.list(&["wesl", "wgsl"]).into_iter().filter_map(|file| {
@@ -139,6 +120,43 @@ fn path_members(server: &mut Server, modules: &Modules, here: &str, before: &str
         found.push(entry(&item.name, of_library(item.kind), item.summary()));
     }
     Value::Array(found)
+}
+
+/// The axes that `constants` has: those whose values are numbers or booleans.
+fn constants(opened: &Opened) -> Value {
+    let programs = opened.manifest.iter().flat_map(|manifest| &manifest.programs);
+    let axes = programs.flat_map(|program| program.space.axes());
+    let is_number = |axis: &&crate::permute::Axis| {
+        !matches!(axis.values.first(), Some(Setting::Name(_)) | None)
+    };
+    let names: BTreeSet<&str> = axes.filter(is_number).map(|axis| axis.name.as_str()).collect();
+    names.into_iter().map(|name| entry(name, CONSTANT, "constant")).collect()
+}
+
+/// The package that a path leads into: its files, its name, and the names of the path from its
+/// root. `None` if there is no such package.
+fn target<'p>(
+    opened: &'p Opened,
+    here: &'p str,
+    first: &'p str,
+    rest: &[&'p str],
+) -> Option<(&'p dyn Files, &'p str, Vec<&'p str>)> {
+    let root = &*opened.packages.root.files;
+    match first {
+        "package" => Some((root, "package", rest.to_vec())),
+        "super" => {
+            let stem = here.rsplit_once('.').map_or(here, |(stem, _)| stem);
+            let above: Vec<&str> = stem.split('/').collect();
+            let ups = 1 + rest.iter().take_while(|part| **part == "super").count();
+            let kept = above.len().saturating_sub(ups);
+            let folder = above[..kept].iter().chain(&rest[ups - 1..]).copied().collect();
+            Some((root, "package", folder))
+        }
+        name => {
+            let package = opened.packages.dependency(name)?;
+            Some((&*package.files, name, rest.to_vec()))
+        }
+    }
 }
 
 /// The names of the path before a place, those outside the braces of an import included.
@@ -211,22 +229,8 @@ fn names(
             found.push(value);
         }
     };
-    let node = modules.node(here).map(|node| &modules.graph.nodes[node as usize]);
-    if let Some(node) = node {
-        let at = written.start as u32;
-        let around = node.module.items.iter().find(|item| item.range.contains(&at));
-        for local in around.into_iter().flat_map(|item| &item.locals) {
-            let name = modules.graph.names.text(*local);
-            add(name, entry(name, VARIABLE, "local"));
-        }
-        for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {
-            let name = modules.graph.names.text(item.name);
-            add(name, entry(name, kind(item.kind), &node.label));
-        }
-        for import in &node.module.imports {
-            let name = modules.graph.names.text(import.alias);
-            add(name, entry(name, VARIABLE, "imported"));
-        }
+    for (name, value) in in_scope(modules, here, written.start as u32) {
+        add(name, value);
     }
     if !prefix.is_empty() {
         let lines = Lines::new(text);
@@ -249,6 +253,23 @@ fn names(
         add(name, entry(name, KEYWORD, "keyword"));
     }
     Value::Array(found)
+}
+
+/// Locals, items and imports that a byte of a module can name, the nearest first.
+fn in_scope<'m>(modules: &'m Modules, here: &str, at: u32) -> Vec<(&'m str, Value)> {
+    let Some(node) = modules.node(here).map(|node| &modules.graph.nodes[node as usize]) else {
+        return Vec::new();
+    };
+    let named = |name| modules.graph.names.text(name);
+    let around = node.module.items.iter().find(|item| item.range.contains(&at));
+    let locals = around.into_iter().flat_map(|item| &item.locals);
+    let locals = locals.map(|local| (named(*local), VARIABLE, "local"));
+    let items = node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE);
+    let items = items.map(|item| (named(item.name), kind(item.kind), &*node.label));
+    let imports = node.module.imports.iter();
+    let imports = imports.map(|import| (named(import.alias), VARIABLE, "imported"));
+    let all = locals.chain(items).chain(imports);
+    all.map(|(name, kind, detail)| (name, entry(name, kind, detail))).collect()
 }
 
 /// Items of other modules and of the library: path, name, kind.

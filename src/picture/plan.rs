@@ -77,7 +77,7 @@ impl Plan {
         })?;
         if let Some(constraint) = found.space.broken(&point).next() {
             let sentence = constraint.doc.as_ref().unwrap_or(&constraint.text);
-            let message = format!("`{text}` is no permutation of `{program}`: {sentence}");
+            let message = format!("`{text}` is not a permutation of `{program}`: {sentence}");
             return Err(vec![Diagnostic::error(codes::INVALID_PERMUTATION, message)]);
         }
         Self::of_point(programs, found, &point)

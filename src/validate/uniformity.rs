@@ -55,8 +55,14 @@ fn warning(
         codes::NON_UNIFORM_DERIVATIVE,
         format!("{what} in non-uniform control flow"),
     );
-    let warning =
-        warning.at(composed.map.lookup(range)?, "neighbouring fragments may not come here");
+    let place = composed.map.lookup(range);
+    // A lean text has no places at all.
+    if place.is_none() && !composed.map.is_empty() {
+        return None;
+    }
+    let warning = place.into_iter().fold(warning, |warning, span| {
+        warning.at(span, "neighbouring fragments may not come here")
+    });
     let cause = finding.cause.to_range().and_then(|range| composed.map.lookup(range));
     let warning = cause
         .into_iter()
@@ -78,7 +84,7 @@ struct Known {
     locals: Vec<bool>,
     result: bool,
     /// The condition because of which it is called in non-uniform control flow, if it is.
-    parted: Option<Span>,
+    non_uniform: Option<Span>,
     /// For each loop, by number: a condition because of which some fragments leave it before
     /// others.
     loops: BTreeMap<usize, Span>,
@@ -86,8 +92,8 @@ struct Known {
 
 struct Flow<'a> {
     module: &'a naga::Module,
-    /// The functions of the module, then its fragment entry points. Other entry points are left
-    /// out.
+    /// The functions of the module, then all its entry points. Of those, only the fragment entry
+    /// points are walked.
     functions: Vec<Known>,
     globals: Vec<bool>,
     found: BTreeMap<(usize, usize), Finding>,
@@ -101,7 +107,7 @@ impl<'a> Flow<'a> {
             arguments: vec![is_entry; function.arguments.len()],
             locals: vec![false; function.local_variables.len()],
             result: false,
-            parted: None,
+            non_uniform: None,
             loops: BTreeMap::new(),
         };
         let functions = module.functions.iter().map(|(_, function)| known(function, false));
@@ -147,8 +153,8 @@ impl<'a> Flow<'a> {
             left: None,
             loops: 0,
         };
-        let parted = walk.flow.functions[index].parted;
-        walk.block(&function.body, parted);
+        let non_uniform = walk.flow.functions[index].non_uniform;
+        walk.block(&function.body, non_uniform);
     }
 
     /// Whether each expression differs between fragments. Operands come before the expressions that
@@ -206,32 +212,32 @@ struct Walk<'w, 'a> {
 }
 
 impl<'a> Walk<'_, 'a> {
-    fn block(&mut self, block: &'a Block, parted: Option<Span>) {
+    fn block(&mut self, block: &'a Block, non_uniform: Option<Span>) {
         for statement in block.iter() {
-            let parted = parted.or(self.returned).or(self.left);
-            self.statement(statement, parted);
+            let non_uniform = non_uniform.or(self.returned).or(self.left);
+            self.statement(statement, non_uniform);
         }
     }
 
-    fn statement(&mut self, statement: &'a Statement, parted: Option<Span>) {
+    fn statement(&mut self, statement: &'a Statement, non_uniform: Option<Span>) {
         match statement {
             Statement::Emit(range) => {
-                if let Some(cause) = parted {
+                if let Some(cause) = non_uniform {
                     range.clone().for_each(|handle| self.emit(handle, cause));
                 }
             }
-            Statement::Block(block) => self.block(block, parted),
+            Statement::Block(block) => self.block(block, non_uniform),
             Statement::If { condition, accept, reject } => {
-                let parted = self.parted_by(*condition, parted);
-                self.block(accept, parted);
-                self.block(reject, parted);
+                let non_uniform = self.made_non_uniform_by(*condition, non_uniform);
+                self.block(accept, non_uniform);
+                self.block(reject, non_uniform);
             }
             Statement::Switch { selector, cases } => {
-                let parted = self.parted_by(*selector, parted);
+                let non_uniform = self.made_non_uniform_by(*selector, non_uniform);
                 // A `break` in a case only leaves the switch.
                 let outer = self.left;
                 for case in cases {
-                    self.block(&case.body, parted);
+                    self.block(&case.body, non_uniform);
                     self.left = outer;
                 }
             }
@@ -240,22 +246,24 @@ impl<'a> Walk<'_, 'a> {
                 let number = self.loops;
                 self.loops += 1;
                 let before = self.flow.functions[self.index].loops.get(&number).copied();
-                self.block(body, parted.or(before));
-                self.block(continuing, parted.or(before).or(self.left));
+                self.block(body, non_uniform.or(before));
+                self.block(continuing, non_uniform.or(before).or(self.left));
                 self.leave(number);
                 self.left = outer;
             }
-            Statement::Break | Statement::Continue => self.left = self.left.or(parted),
+            Statement::Break | Statement::Continue => self.left = self.left.or(non_uniform),
             Statement::Return { value } => {
-                self.returned = self.returned.or(parted);
+                self.returned = self.returned.or(non_uniform);
                 let varies =
-                    parted.is_some() || value.is_some_and(|value| self.varying[value.index()]);
+                    non_uniform.is_some() || value.is_some_and(|value| self.varying[value.index()]);
                 self.learn(varies, |flow, index| &mut flow.functions[index].result);
             }
             Statement::Store { pointer, value } => {
-                self.store(*pointer, parted.is_some() || self.varying[value.index()])
+                self.store(*pointer, non_uniform.is_some() || self.varying[value.index()])
             }
-            Statement::Call { function, arguments, .. } => self.call(*function, arguments, parted),
+            Statement::Call { function, arguments, .. } => {
+                self.call(*function, arguments, non_uniform)
+            }
             _ => {}
         }
     }
@@ -270,8 +278,12 @@ impl<'a> Walk<'_, 'a> {
         }
     }
 
-    fn parted_by(&self, condition: Handle<Expression>, parted: Option<Span>) -> Option<Span> {
-        parted.or_else(|| {
+    fn made_non_uniform_by(
+        &self,
+        condition: Handle<Expression>,
+        non_uniform: Option<Span>,
+    ) -> Option<Span> {
+        non_uniform.or_else(|| {
             self.varying[condition.index()].then(|| self.function.expressions.get_span(condition))
         })
     }
@@ -312,15 +324,15 @@ impl<'a> Walk<'_, 'a> {
         &mut self,
         callee: Handle<Function>,
         arguments: &[Handle<Expression>],
-        parted: Option<Span>,
+        non_uniform: Option<Span>,
     ) {
         for (position, argument) in arguments.iter().enumerate() {
             let varies = self.varying[argument.index()];
             self.learn(varies, |flow, _| &mut flow.functions[callee.index()].arguments[position]);
         }
-        let known = &mut self.flow.functions[callee.index()].parted;
-        if known.is_none() && parted.is_some() {
-            *known = parted;
+        let known = &mut self.flow.functions[callee.index()].non_uniform;
+        if known.is_none() && non_uniform.is_some() {
+            *known = non_uniform;
             self.flow.changed = true;
         }
     }

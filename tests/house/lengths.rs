@@ -22,8 +22,6 @@ const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("src/eval/lower/math.rs", "on_floats", ARMS),
     ("src/eval/machine/compute.rs", "compute", "a table: one arm for each instruction"),
     ("src/link/spirv/operands.rs", "layout", "a table: one arm for each layout of opcodes"),
-    ("src/lsp/complete.rs", "names", "one source of names after the other, the nearest first"),
-    ("src/lsp/complete.rs", "path_members", "one kind of path after the other"),
     ("src/validate/words/entry.rs", "entry", ARMS),
     ("src/validate/words/entry.rs", "varying", ARMS),
     ("src/validate/words/expression.rs", "expression", ARMS),
@@ -31,7 +29,6 @@ const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("src/validate/words/tokens.rs", "token", ARMS),
     ("src/validate/words/types.rs", "type_of", ARMS),
     ("tests/lsp.rs", "survives", "one conversation with a server, in its order"),
-    ("tests/render/shadows.rs", "cascades", "one picture, judged in three ways"),
 ];
 
 /// Files that may be longer: file, reason.

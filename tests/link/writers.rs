@@ -98,6 +98,65 @@ var<private> turns: Turns;
     }
 }
 
+/// Arrays of matrices of two rows are read, written and given as a whole, and a column is changed
+/// where it is: naga's own functions change a copy.
+pub fn kept_matrices() -> Outcome {
+    let text = "
+struct Pair { two: array<mat2x2f, 2> }
+struct Turns { scale: f32, all: array<mat3x2f, 4>, deep: array<Pair, 3> }
+const FIXED = array<Turns, 1>(Turns(
+    0.5,
+    array<mat3x2f, 4>(mat3x2f(), mat3x2f(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), mat3x2f(), mat3x2f()),
+    array<Pair, 3>(),
+));
+var<private> turns: Turns;
+fn changed(given: array<mat3x2f, 4>, i: u32) -> array<mat3x2f, 4> {
+    turns = Turns(1.0, given, turns.deep);
+    turns.all = given;
+    turns.all[i] = turns.all[i + 1u];
+    turns.all[1][i] = vec2f(2.0);
+    turns.all[i][2].y = 3.0;
+    turns.deep[2].two[i] = turns.deep[i].two[0];
+    return turns.all;
+}
+@fragment fn fs_main(@location(0) at: vec2f, @location(1) @interpolate(flat) i: u32) -> @location(0) vec4f {
+    let made = changed(turns.all, i);
+    var fixed = FIXED[0];
+    return vec4f(made[i] * at.xyx, fixed.all[i] * at.xyx) + turns.deep[i].two[i][0].xyxy;
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    let made = judged(text, "")?;
+    let whole = units(&made).into_values().filter_map(|unit| unit.targets.get("hlsl"));
+    let texts: Vec<String> =
+        whole.map(|artifact| String::from_utf8_lossy(&artifact.bytes).into_owned()).collect();
+    match texts.iter().any(|text| text.contains("(inout __mat3x2_f32 mat, ")) {
+        true => Ok(()),
+        false => Err(format!("a column is changed in a copy: {texts:?}").into()),
+    }
+}
+
+/// What HLSL has no words for is refused in its line, for that target alone.
+pub fn matrices_from_values() -> Outcome {
+    let text = "
+struct Turns { all: array<mat3x2f, 4> }
+fn made(at: vec2f) -> Turns { var turns: Turns; turns.all[1][0] = at; return turns; }
+@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
+    return vec4f(made(at).all[1] * at.xyx, at);
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    judged(text, r#"targets = ["spirv", "glsl450", "msl", "wgsl"]"#)?;
+    let Err(refused) = judged(text, r#"targets = ["hlsl"]"#) else {
+        return Err("HLSL has columns where a matrix is needed".into());
+    };
+    let words = refused.message().unwrap_or_default().to_owned();
+    match words.contains("one.wesl:5:") && words.contains("`var`") {
+        true => Ok(()),
+        false => Err(words.into()),
+    }
+}
+
 /// A function that GLSL 3.30 lacks is refused in its line, for those targets alone.
 pub fn lacking() -> Outcome {
     let text = "

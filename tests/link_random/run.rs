@@ -7,20 +7,21 @@
 //! it can work with. Vertex stages of the programs are not run: where their triangles would lie is
 //! as random as they are.
 
+mod driver;
 mod evaluated;
+mod metal;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
 use lamplight::bundle::{Kind, Language, Reflection, Stage, Target, Unit, Varying};
-use lamplight::compose::Composed;
+use lamplight::compose::{Composed, lean};
 use lamplight::diagnostic::{Diagnostic, codes};
 use lamplight::emit::reflect;
 use lamplight::execute::executors;
 use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh, State};
-use lamplight::execute::raster::Compiled;
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Pair, Session};
 use lamplight::picture::frame::{pack, probe};
@@ -31,6 +32,7 @@ use super::random::Random;
 use crate::frames::fixture;
 
 use evaluated::Evaluator;
+use metal::Metal;
 
 /// Pixels from left to right, and from top to bottom.
 const SIZE: [u32; 2] = [4, 4];
@@ -54,22 +56,30 @@ pub struct Ran {
     /// Numbers that the evaluator has no bound for, or of fragments with a comparison that was too
     /// close to call.
     pub open: usize,
+    /// Stages that the driver drew otherwise until ids of the same module had other numbers.
+    pub by_numbers: usize,
     /// What was not run, by the reason.
     pub lacks: BTreeMap<String, usize>,
 }
 
 impl std::fmt::Display for Ran {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { stages, numbers, open, lacks } = self;
+        let Self { stages, numbers, open, by_numbers, lacks } = self;
         write!(f, "{stages} stages run, {numbers} numbers, {open} open")?;
+        if *by_numbers > 0 {
+            write!(f, "; {by_numbers} drawn otherwise by the driver, by the numbers of ids alone")?;
+        }
         lacks.iter().try_for_each(|(reason, count)| write!(f, "; {count} not run: {reason}"))
     }
 }
 
 /// What runs the outputs.
 pub struct Runner {
-    sessions: Vec<(Target, &'static str, Box<dyn Session>)>,
+    sessions: Vec<Opened>,
 }
+
+/// What runs a target: the executor's name, and its session.
+type Opened = (Target, &'static str, Box<dyn Session>);
 
 /// A stage with everything that it is drawn with.
 struct Ready<'r> {
@@ -83,7 +93,11 @@ struct Ready<'r> {
     stages: BTreeMap<Target, Result<Stages, Diagnostic>>,
 }
 
+/// With the places of stages in a list.
+type Placed<T> = Vec<(usize, T)>;
+
 /// What is drawn in one target.
+#[derive(Clone)]
 struct Stages {
     feeder: Shipped,
     own: Shipped,
@@ -125,10 +139,10 @@ impl Runner {
         &self,
         runnables: &[Runnable],
         ran: &mut BTreeMap<&'static str, Ran>,
-    ) -> Result<Vec<(usize, Finding)>, String> {
-        let ready = runnables.iter().map(Ready::new).collect::<Result<Vec<_>, _>>()?;
+    ) -> Result<Placed<Finding>, String> {
+        let (ready, mut findings) = made_ready(runnables);
+        let (owners, ready): (Vec<usize>, Vec<Ready<'_>>) = ready.into_iter().unzip();
         let metal = Metal::new(&ready)?;
-        let mut findings = Vec::new();
         for (index, ready) in ready.iter().enumerate() {
             let mut frames = Vec::new();
             for (target, name, session) in &self.sessions {
@@ -150,22 +164,40 @@ impl Runner {
                     Err(error) => {
                         let first = error.message.lines().next().unwrap_or_default().to_owned();
                         let kind = format!("{target} does not run on {name}: {first}");
-                        findings.push((index, ready.finding(kind, *target, &error.message)));
+                        findings
+                            .push((owners[index], ready.finding(kind, *target, &error.message)));
                     }
                 }
             }
-            findings
-                .extend(ready.compare(&frames, ran).into_iter().map(|finding| (index, finding)));
+            for (target, finding) in ready.compare(&frames, ran) {
+                match driver::renumbered(&self.sessions, target, ready) {
+                    Some(name) => ran.entry(name).or_default().by_numbers += 1,
+                    None => findings.push((owners[index], finding)),
+                }
+            }
         }
         Ok(findings)
     }
+}
+
+/// The stages that can be run with their places, and why others cannot.
+fn made_ready(runnables: &[Runnable]) -> (Placed<Ready<'_>>, Placed<Finding>) {
+    let (mut ready, mut findings) = (Vec::new(), Vec::new());
+    for (index, runnable) in runnables.iter().enumerate() {
+        match Ready::new(runnable) {
+            Ok(one) => ready.push((index, one)),
+            Err(error) => findings.push((index, Finding::new("it cannot be run", error))),
+        }
+    }
+    (ready, findings)
 }
 
 impl<'r> Ready<'r> {
     fn new(runnable: &'r Runnable) -> Result<Self, String> {
         let Runnable { seed, composed, entry, unit, .. } = runnable;
         let told = |problems: Vec<Diagnostic>| format!("seed {seed}: {problems:?}");
-        let validated = validate(composed).map_err(told)?;
+        // As the crate does: naga refuses some texts for their aliases.
+        let validated = validate(&lean(composed)).map_err(told)?;
         let mut random = Random(seed ^ 0xfeed);
         // Of the whole text: an output leaves out what it does not read.
         let whole = reflect(&validated, entry).map_err(|problem| told(vec![problem]))?;
@@ -247,17 +279,24 @@ impl<'r> Ready<'r> {
     }
 
     /// What each target computes otherwise than the evaluator.
-    fn compare(&self, frames: &[Drawn], ran: &mut BTreeMap<&'static str, Ran>) -> Vec<Finding> {
+    fn compare(
+        &self,
+        frames: &[Drawn],
+        ran: &mut BTreeMap<&'static str, Ran>,
+    ) -> Vec<(Target, Finding)> {
         let mut evaluator = match Evaluator::new(self) {
             Ok(evaluator) => evaluator,
-            Err(error) => return vec![Finding::new(format!("evaluator: {error}"), error)],
+            Err(error) => {
+                let finding = Finding::new(format!("evaluator: {error}"), error);
+                return frames.first().map(|frame| (frame.target, finding)).into_iter().collect();
+            }
         };
         let mut findings = Vec::new();
         for frame in frames {
             let tally = ran.entry(frame.name).or_default();
             if let Err(error) = evaluator.frame(frame, tally) {
                 let kind = format!("{} computes something else on {}", frame.target, frame.name);
-                findings.push(self.finding(kind, frame.target, &error));
+                findings.push((frame.target, self.finding(kind, frame.target, &error)));
             }
         }
         findings
@@ -322,44 +361,6 @@ fn numbers(start: u64, path: &str) -> Vec<f64> {
         Random(random.next())
     });
     (0..16).map(|_| number(&mut random)).collect()
-}
-
-/// All stages of a batch in MSL, compiled at once.
-struct Metal {
-    compiled: Compiled,
-    /// Of each stage that has MSL, the index of its feeder; its own and the one that tells follow.
-    first: BTreeMap<usize, usize>,
-}
-
-impl Metal {
-    fn new(ready: &[Ready<'_>]) -> Result<Self, String> {
-        let (mut stages, mut first) = (Vec::new(), BTreeMap::new());
-        for (index, ready) in ready.iter().enumerate() {
-            if let Some(Ok(Stages { feeder, own, tells })) = ready.stages.get(&Target::MSL) {
-                first.insert(index, stages.len());
-                stages.extend([feeder, own].into_iter().chain(tells).cloned());
-            }
-        }
-        let compiled = Compiled::new(stages).map_err(|missing| missing.reason)?;
-        Ok(Self { compiled, first })
-    }
-
-    fn draw(&self, index: usize, ready: &Ready<'_>) -> Result<(Targets, Targets), Diagnostic> {
-        let first = self.first[&index];
-        let outputs = &ready.runnable.unit.reflection.outputs;
-        let count =
-            outputs.iter().filter_map(|output| output.location).max().map_or(0, |last| last + 1);
-        ready.drawing(|drawing| {
-            let draw = |fragment, targets| {
-                let drawing = Drawing { targets, ..*drawing };
-                let frames = self.compiled.draw(first, Some(fragment), &drawing);
-                frames.map(|mut frames| frames.remove(0).targets)
-            };
-            let told =
-                ready.tells.as_ref().map(|tells| draw(first + 2, tells.targets)).transpose()?;
-            Ok((draw(first + 1, count)?, told.unwrap_or_default()))
-        })
-    }
 }
 
 /// Whether a unit is of a fragment stage.

@@ -325,7 +325,6 @@ fn cascades(bench: &Bench<'_>) -> Result<(), String> {
     let numbers: Numbers<'_> = &[("light", "axis", &axis), ("light", "color", &[1.0; 3])];
     let plan = bench.plan(&format!("{DIRECTIONAL},shadow=hard"), "casters", numbers)?;
     let single = bench.prepared(&plan, SIZE)?;
-    let texel = |prepared| uniform(prepared, "caster", "texel").ok_or("no texel");
     let nearest = bench.cascaded(&plan, SIZE, 3)?;
     let slices: Vec<&Prepared> = std::iter::once(&nearest).chain(&nearest.farther).collect();
     let mut fragments = 0;
@@ -333,22 +332,7 @@ fn cascades(bench: &Bench<'_>) -> Result<(), String> {
         let margin = 3.0 * texel(slice)?;
         let seen = bench.fragments_of(slice, SIZE)?;
         fragments += seen.len();
-        let facing = seen.iter().filter(|fragment| fragment.normal.dot(towards) > 0.25);
-        let (mut counts, mut wrong) = ([0, 0], 0);
-        for fragment in facing {
-            let wanted = match casters.way(fragment, towards, margin) {
-                Way::Unclear => continue,
-                Way::Clear => 1,
-                Way::Blocked => 0,
-            };
-            counts[wanted] += 1;
-            wrong += usize::from((visibility(fragment, towards) - wanted as f64).abs() > 0.01);
-        }
-        if wrong > 0 || counts[1] < 100 {
-            return Err(format!(
-                "of {counts:?} dark and lit fragments of a slice {wrong} are wrong"
-            ));
-        }
+        judge_slice(&casters, &seen, towards, margin)?;
     }
     let (fine, coarse, whole) =
         (texel(&nearest)?, texel(&single)?, bench.fragments_of(&single, SIZE)?.len());
@@ -358,19 +342,54 @@ fn cascades(bench: &Bench<'_>) -> Result<(), String> {
             slices.len()
         ));
     }
-    let (parts, one) = (bench.photograph(&nearest, SIZE)?, bench.photograph(&single, SIZE)?);
-    let pixels = (0..SIZE * SIZE).map(|index| {
-        (parts.drawn(index % SIZE, index / SIZE), one.drawn(index % SIZE, index / SIZE))
-    });
+    compare_pictures(bench, &nearest, &single)
+}
+
+fn texel(prepared: &Prepared) -> Result<f64, &'static str> {
+    uniform(prepared, "caster", "texel").ok_or("no texel")
+}
+
+/// Fragments that face the light are lit exactly where the way to the light is clear.
+fn judge_slice(
+    casters: &Casters,
+    seen: &[Fragment],
+    towards: DVec3,
+    margin: f64,
+) -> Result<(), String> {
+    let (mut counts, mut wrong) = ([0, 0], 0);
+    for fragment in seen.iter().filter(|fragment| fragment.normal.dot(towards) > 0.25) {
+        let wanted = match casters.way(fragment, towards, margin) {
+            Way::Unclear => continue,
+            Way::Clear => 1,
+            Way::Blocked => 0,
+        };
+        counts[wanted] += 1;
+        wrong += usize::from((visibility(fragment, towards) - wanted as f64).abs() > 0.01);
+    }
+    if wrong > 0 || counts[1] < 100 {
+        return Err(format!("of {counts:?} dark and lit fragments of a slice {wrong} are wrong"));
+    }
+    Ok(())
+}
+
+/// The picture with several maps is that with one map, but for the borders of shadows, which are
+/// elsewhere within a texel.
+fn compare_pictures(
+    bench: &Bench<'_>,
+    nearest: &Prepared,
+    single: &Prepared,
+) -> Result<(), String> {
+    let (parts, one) = (bench.photograph(nearest, SIZE)?, bench.photograph(single, SIZE)?);
     let (mut drawn, mut apart) = (0, 0);
-    for (part, one) in pixels {
+    for index in 0..SIZE * SIZE {
+        let (x, y) = (index % SIZE, index / SIZE);
+        let (part, one) = (parts.drawn(x, y), one.drawn(x, y));
         drawn += usize::from(one.is_some());
         let is_alike = part
             .zip(one)
             .map_or(part.is_none() && one.is_none(), |(part, one)| part.distance(one) < 0.01);
         apart += usize::from(!is_alike);
     }
-    // The borders of shadows are elsewhere within a texel.
     if 25 * apart > drawn {
         Err(format!("{apart} of {drawn} pixels differ from those with one map"))
     } else {

@@ -1,4 +1,4 @@
-//! Benchmarks: a binary of their own, built for release.
+//! Runs benchmarks, which are a separate binary built for release.
 
 use crate::{Outcome, test};
 

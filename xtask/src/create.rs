@@ -1,4 +1,5 @@
-//! `cargo xtask new KIND NAME`: writes the files that a newcomer would have to find.
+//! `cargo xtask new KIND NAME`: writes the files that a task needs, so that nobody has to find
+//! them.
 
 use crate::generate::root;
 use crate::{Failure, Outcome, new};

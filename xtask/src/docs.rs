@@ -1,15 +1,15 @@
-//! The files that are made from other files: light-probe modules, the catalogue, the guide as a
-//! book.
+//! Writes the files that are made from other files: light-probe modules, the catalogue, the guide
+//! as a book.
 
 use std::process::Command;
 
 use crate::{Failure, Outcome, test};
 
-/// Writes them, or with `--check` fails if any is not up to date. `--costs` measures what functions
-/// and axes cost before.
+/// Writes them. With `--check` it only fails if any is not up to date. With `--costs` it first
+/// measures what functions and axes cost.
 ///
-/// The modules come first: the second run is of a binary that carries them. The book is only
-/// written: its pages are checked by the tests `guide::`.
+/// The modules are written first, since the second run uses a binary that contains them. The book
+/// is written and not compared, since the tests `guide::` check its pages.
 pub fn run(arguments: &[String]) -> Outcome {
     let (costs, check): (Vec<&str>, Vec<&str>) =
         arguments.iter().map(String::as_str).partition(|argument| *argument == "--costs");

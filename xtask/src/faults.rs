@@ -1,9 +1,9 @@
-//! `cargo xtask faults`: calls of the system that fail, runs that are killed at them, caches that
-//! answer wrongly, and clocks that jump.
+//! `cargo xtask faults`: tries system calls that fail, runs that are killed at such a call, caches
+//! that answer wrongly, and clocks that jump.
 //!
-//! A small bundle is generated over an older one, once for each call and each of its occurrences,
-//! with that occurrence failing or ending the run (`strace` injects it). Whatever happens, the
-//! folder holds a whole bundle afterwards: the older or the newer one. Panics are findings too.
+//! A small bundle is generated over an older one, once for each occurrence of each call. `strace`
+//! makes that occurrence fail or end the run. Whatever happens, the folder must hold a complete
+//! bundle afterwards, the older or the newer one. Panics are findings too.
 
 mod stores;
 
@@ -15,7 +15,7 @@ use std::process::{Command, Output, Stdio};
 use crate::generate::root;
 use crate::{Failure, Outcome};
 
-/// Calls that name a file, or that write to one.
+/// System calls that name a file, or that write to one.
 const CALLS: &[&str] = &[
     "openat",
     "write",
@@ -35,7 +35,7 @@ const CALLS: &[&str] = &[
     "ftruncate",
 ];
 
-/// What is done at a call: a name, and `strace`'s words for it.
+/// What happens at a call: a name, and the argument for `strace`.
 const FAULTS: &[(&str, &str)] = &[
     ("disk full", "error=ENOSPC"),
     ("input or output error", "error=EIO"),
@@ -47,13 +47,13 @@ const FAULTS: &[(&str, &str)] = &[
     ("killed", "signal=KILL"),
 ];
 
-/// Faults of one kind at one call: later occurrences are alike.
+/// The most faults of one kind at one call, since later occurrences are alike.
 const MOST: usize = 24;
 
 const MANIFEST: &str = "[program.small]\nwesl = \"small.wesl\"\ntargets = [\"wgsl\"]\n\
     [program.small.axis]\ncount = { values = [1, 2, 3] }\n";
 
-/// Injects every fault; a bundle that is not whole afterwards is exit code 3.
+/// Injects every fault. A bundle that is not complete afterwards gives exit code 3.
 pub fn run(arguments: &[String]) -> Outcome {
     let seed = seed(arguments)?;
     let package = Package::new()?;
@@ -95,9 +95,9 @@ fn seed(arguments: &[String]) -> Result<u64, Failure> {
     }
 }
 
-/// What came of a run with a fault.
+/// The result of a run with a fault.
 enum Injected {
-    /// It made fewer such calls.
+    /// The run made fewer such calls, so nothing was injected.
     No,
     Whole,
     Wrong(String),
@@ -145,7 +145,7 @@ impl Package {
         command
     }
 
-    /// Runs with a fault, and looks at the bundle.
+    /// Runs with a fault, and checks the bundle.
     fn injected(&self, call: &str, inject: &str, number: usize) -> Result<Injected, Failure> {
         self.change(number + 1)?;
         let trace = self.folder.join("trace");
@@ -161,7 +161,7 @@ impl Package {
         Ok(self.judged(&output).map_or(Injected::Whole, Injected::Wrong))
     }
 
-    /// What is wrong after a run.
+    /// What is wrong after a run, if anything is.
     fn judged(&self, output: &Output) -> Option<String> {
         let said = String::from_utf8_lossy(&output.stderr);
         if said.contains("panicked") || said.contains("internal error") {
@@ -175,7 +175,7 @@ impl Package {
     }
 }
 
-/// The program that was built beside this one, in the same profile.
+/// The program that was built together with this one, in the same profile.
 pub fn beside_this() -> Result<PathBuf, Failure> {
     let program = std::env::current_exe().map_err(environment)?.with_file_name("lamplight");
     match program.is_file() {

@@ -8,7 +8,7 @@ const USAGE: &str = "usage: cargo xtask frames [--permutations N] [--target T[,T
   --permutations N  how many of each language (all: 200 or more, with all pairs of values)
   --target T        of spirv, glsl450, glsl330, essl300, hlsl, wgsl and msl (all)";
 
-/// Runs the trials; a picture that is wrong is exit code 3.
+/// Runs the trials. A wrong picture gives exit code 3.
 pub fn run(arguments: &[String]) -> Outcome {
     let (mut permutations, mut targets) = ("100000".to_owned(), Vec::new());
     let mut rest = arguments.iter();
@@ -20,7 +20,7 @@ pub fn run(arguments: &[String]) -> Outcome {
             _ => return Err(Failure::usage(USAGE)),
         }
     }
-    // MSL has a trial of its own, which compiles many stages at a time and draws them all.
+    // MSL has a trial of its own, which compiles many stages at once and draws all of them.
     let msl = targets.is_empty() || targets.iter().any(|target| target == "msl");
     let is_other = |target: &String| target != "msl";
     let mut variables = vec![("LAMPLIGHT_FRAMES_PERMUTATIONS".to_owned(), permutations)];

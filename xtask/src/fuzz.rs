@@ -1,7 +1,8 @@
-//! `cargo xtask fuzz`: hostile inputs for everything that reads what others wrote.
+//! `cargo xtask fuzz`: tries hostile inputs on everything that reads files from others.
 //!
-//! A worker process mutates and judges; this one watches it, so that an abort or an endless loop
-//! is a finding too. Findings are made small and kept in `tests/regressions/KIND/`.
+//! A worker process mutates inputs and judges the answers. This process watches it, so that an
+//! abort or an endless loop is a finding too. Findings are made smaller and kept in
+//! `tests/regressions/KIND/`.
 
 mod commands;
 mod judge;
@@ -22,11 +23,11 @@ use kinds::{KINDS, Kind};
 use mutate::Random;
 
 const USAGE: &str = "usage: cargo xtask fuzz [--seconds N] [--seed N] [KIND]...\n       cargo xtask fuzz link [--programs N] [--seed N]";
-/// A worker that shows no sign of life for so long is in an endless loop.
+/// A worker that gives no sign of life for this long is in an endless loop.
 const PATIENCE: Duration = Duration::from_secs(20);
 /// The exit code of a worker that found something.
 const FOUND: i32 = 3;
-/// Inputs a finding is tried to be made smaller with.
+/// With how many smaller inputs a finding is tried.
 const SHRINKS: usize = 400;
 
 /// What was asked for.
@@ -37,7 +38,7 @@ struct Request {
     surfaces: Vec<&'static commands::Surface>,
 }
 
-/// Fuzzes every kind for its share of the time; a finding is exit code 3.
+/// Fuzzes every kind for its share of the time. A finding gives exit code 3.
 pub fn run(arguments: &[String]) -> Outcome {
     match arguments {
         [kind, rest @ ..] if kind == "link" => link::run(rest),
@@ -103,7 +104,7 @@ fn watch(request: &Request) -> Outcome {
     }
 }
 
-/// Runs workers until the time is over; each finding ends one.
+/// Runs workers until the time is over. Each finding ends a worker.
 fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, Failure> {
     let (started, mut told, mut round) = (Instant::now(), BTreeSet::new(), 0);
     while started.elapsed().as_secs() < seconds {
@@ -124,7 +125,7 @@ fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, Failure> {
     Ok(told.len())
 }
 
-/// Where a worker leaves the input it is about to judge.
+/// The file in which a worker leaves the input that it is about to judge.
 fn current(kind: &Kind) -> PathBuf {
     root().join("target/fuzz").join(kind.name)
 }
@@ -139,7 +140,7 @@ fn spawn(arguments: &[&str]) -> Result<Child, Failure> {
         .map_err(environment)
 }
 
-/// What is wrong, by how a worker ended; `sign` is a file that shows it is alive.
+/// What is wrong, from how a worker ended. `sign` is a file that changes while it is alive.
 fn outcome(mut worker: Child, sign: Option<&Path>) -> Option<String> {
     let started = Instant::now();
     loop {
@@ -166,7 +167,7 @@ fn outcome(mut worker: Child, sign: Option<&Path>) -> Option<String> {
     }
 }
 
-/// The worker: mutates and judges until the time is over or something is wrong.
+/// The worker: mutates inputs and judges the answers, until the time is over or something is wrong.
 fn work(kind: &Kind, seed: u64, seconds: u64) -> Outcome {
     let place = current(kind);
     fs::create_dir_all(place.parent().unwrap_or(Path::new("."))).map_err(environment)?;
@@ -194,7 +195,7 @@ fn judge_file(kind: &Kind, file: &Path) -> Outcome {
     judge::judge(kind, &input).map_or(Ok(()), |reason| Err(Failure::check(reason)))
 }
 
-/// Saves a finding as small as it can be made while the same is wrong with it.
+/// Saves a finding, made as small as possible while the same is wrong.
 fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> Outcome {
     println!("{}: {reason} ({} bytes)", kind.name, input.len());
     let small = shrunk(kind, input, reason)?;
@@ -208,7 +209,7 @@ fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> Outcome {
     fs::write(folder.join(name), small).map_err(environment)
 }
 
-/// Takes away ever smaller parts.
+/// Removes ever smaller parts of the input.
 fn shrunk(kind: &Kind, mut input: Vec<u8>, reason: &str) -> Result<Vec<u8>, Failure> {
     let file = current(kind).with_extension("small");
     let (mut size, mut at, mut tries) = (input.len() / 2, 0, 0);

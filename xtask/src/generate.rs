@@ -1,5 +1,6 @@
-//! `cargo xtask gen`: the library's bundle, as `lamplight gen` makes it, once all targets are judged.
-//! `--unjudged` leaves the judges out: they take ten times as long as everything else.
+//! `cargo xtask gen`: writes the library's bundle, as `lamplight gen` does, once the judges of all
+//! targets accept it. `--unjudged` skips the judges, which take ten times as long as everything
+//! else.
 
 use std::collections::BTreeSet;
 use std::io::{IsTerminal, Write, stderr};
@@ -31,8 +32,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new(".")).to_owned()
 }
 
-/// Generates, judges what is new, writes the bundle and prints the summary. An output that is
-/// refused leaves the older bundle as it was.
+/// Generates, judges what is new, writes the bundle and prints the summary. If an output is
+/// refused, the older bundle does not change.
 pub fn run(arguments: &[String]) -> Outcome {
     let is_judged = is_judged(arguments)?;
     let start = std::time::Instant::now();
@@ -78,7 +79,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     finish(&summary, &judged)
 }
 
-/// Whether the judges are asked.
+/// Whether the judges are to be asked.
 fn is_judged(arguments: &[String]) -> Result<bool, Failure> {
     match arguments {
         [] => Ok(true),
@@ -90,7 +91,7 @@ fn is_judged(arguments: &[String]) -> Result<bool, Failure> {
     }
 }
 
-/// What the judges say of the files, if they are asked.
+/// What the judges say about the files, if they are asked.
 fn judged(
     is_judged: bool,
     files: impl FnOnce() -> Result<BTreeSet<BlobFile>, bundle::Error>,
@@ -102,7 +103,7 @@ fn judged(
     }
 }
 
-/// Fails with the author's places of what the judges refused.
+/// Fails with the author's places for what the judges refused.
 fn refuse(
     sources: &mut SourceSet,
     packages: &Packages,

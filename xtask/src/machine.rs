@@ -5,7 +5,8 @@ use std::process::{Command, Stdio};
 
 use crate::{Failure, Outcome};
 
-/// A thing the tests need: the Debian package that brings it, and how to see that it is there.
+/// Something that the tests need: the Debian package that has it, and how to see whether it is
+/// there.
 struct Need {
     package: &'static str,
     what: &'static str,
@@ -52,7 +53,7 @@ const NEEDS: &[Need] = &[
     },
 ];
 
-/// Installs what is missing where that is allowed; says exactly what to install where it is not.
+/// Installs what is missing, if that is allowed. Otherwise prints exactly what to install.
 pub fn prepare() -> Outcome {
     let missing = missing();
     if missing.is_empty() {
@@ -72,7 +73,7 @@ pub fn prepare() -> Outcome {
     }
 }
 
-/// Package and purpose of what is not there.
+/// The package and the purpose of everything that is missing.
 fn missing() -> Vec<(&'static str, &'static str)> {
     let listed = NEEDS.iter().filter(|need| !(need.found)());
     listed.map(|need| (need.package, need.what)).collect()
@@ -112,7 +113,7 @@ pub fn install(packages: &[&str]) -> Outcome {
     }
 }
 
-/// What to put before `apt-get`: nothing for root, `sudo -n` where it asks no password.
+/// What to put before `apt-get`: nothing for root, `sudo -n` if it needs no password.
 fn privilege() -> Option<&'static [&'static str]> {
     if !program("apt-get") {
         return None;

@@ -1,8 +1,9 @@
-//! Mutants of the library: do its numeric cases notice a mistake?
+//! Puts mistakes into the library, to see whether its numeric cases notice them.
 
 use crate::{Outcome, test};
 
-/// Runs `lamplight mutate` over the library's sources; arguments (modules, `--coverage`) go on to it.
+/// Runs `lamplight mutate` over the library's sources. Arguments (modules, `--coverage`) are passed
+/// on.
 pub fn run(arguments: &[String]) -> Outcome {
     let all: Vec<&str> =
         ["run", "--quiet", "--package", "lamplight", "--", "mutate", "--root", "shaderlib"]

@@ -1,4 +1,4 @@
-//! `cargo xtask site`: the toolchain as WebAssembly, and the site that it runs in.
+//! `cargo xtask site`: builds the toolchain as WebAssembly, and the site around it.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -8,15 +8,16 @@ use crate::{Failure, Outcome, machine};
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// naga recurses along expressions: bytes of stack, of which the limits leave most unused.
+/// The size of the stack, since naga recurses along expressions. The limits leave most of it
+/// unused.
 const STACK: &str = "-C link-arg=-zstack-size=8388608";
 
 /// How much work goes into the size and speed of the WebAssembly.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Build {
-    /// As it is published.
+    /// As it is published: small and fast.
     Small,
-    /// As it is tested: the same code, less optimised, made in half the time.
+    /// As it is tested: the same code with less optimisation, built in half the time.
     Quick,
 }
 
@@ -50,7 +51,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     if only { Ok(()) } else { pages() }
 }
 
-/// The site in `target/site/`, around the npm package that is there.
+/// Builds the site in `target/site/`, around the npm package that was built before.
 pub fn pages() -> Outcome {
     let folder = Path::new(ROOT).join("site");
     if !machine::program("npm") {
@@ -65,7 +66,7 @@ pub fn pages() -> Outcome {
     npm(&["run", "build"])
 }
 
-/// The npm package `@lamplight/toolchain`, in `target/toolchain/`.
+/// Builds the npm package `@lamplight/toolchain` in `target/toolchain/`.
 pub fn toolchain(build: Build) -> Result<PathBuf, Failure> {
     let below = Path::new(ROOT).join("target/wasm");
     webassembly(build, &below)?;
@@ -84,7 +85,7 @@ pub fn toolchain(build: Build) -> Result<PathBuf, Failure> {
     Ok(package)
 }
 
-/// Compiles to WebAssembly with the target of rustup, or with the packages that Debian has for it.
+/// Compiles to WebAssembly, with the target of rustup or with Debian's packages for it.
 fn webassembly(build: Build, below: &Path) -> Outcome {
     let mut command = match has_target() || added_target() {
         true => cargo(),
@@ -146,10 +147,10 @@ fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
     Failure::environment(format!("cannot write `{}`: {error}", path.display()))
 }
 
-/// Largest compressed size of the toolchain, bytes.
+/// The largest size of the toolchain after compression, in bytes.
 const LARGEST: usize = 3 << 20;
 
-/// Says how large the toolchain is, as a server would send it.
+/// Prints how large the toolchain is, and how large as a server sends it.
 fn sizes(module: &Path, build: Build) -> Outcome {
     let script = "const { gzipSync, brotliCompressSync } = require('zlib'); \
         const bytes = require('fs').readFileSync(process.argv[1]); \

@@ -1,4 +1,4 @@
-//! The tables that techniques read, made by a crate of its own, built for release.
+//! Makes the tables that techniques read, with a separate crate that is built for release.
 
 use crate::{Outcome, test};
 

@@ -3,13 +3,13 @@
 use crate::{Failure, Outcome, machine, site};
 use std::process::Command;
 
-/// Prepares the machine, then runs every test; arguments go to the test binary.
+/// Prepares the machine, then runs every test. Arguments are passed to the test binary.
 pub fn run(arguments: &[String]) -> Outcome {
     machine::prepare()?;
-    // The trials `toolchain::` run it in Node, those of `site::` in a browser.
+    // Trials `toolchain::` run the package in Node, and trials `site::` in a browser.
     site::toolchain(site::Build::Quick)?;
     site::pages()?;
-    // With every feature: shared stores are tested against a server.
+    // With every feature, since shared stores are tested with a server.
     let test = |what: &[&str], rest| {
         cargo(&[&["test", "--package", "lamplight", "--features", "store"], what].concat(), rest)
     };

@@ -1,4 +1,4 @@
-//! `cargo xtask validate [BUNDLE]`: every output of a bundle before the judges of all targets.
+//! `cargo xtask validate [BUNDLE]`: lets the judges of all targets check every output of a bundle.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -9,10 +9,10 @@ use lamplight::judge::{Missing, Output, Refusal, Tint, missing, outputs, verdict
 
 use crate::{Failure, Outcome, generate, machine};
 
-/// Refusals that are told.
+/// How many refusals are printed.
 const TOLD: usize = 20;
 
-/// Judges a bundle directory, all of it, whatever passed before.
+/// Judges all of a bundle directory, whatever passed before.
 pub fn run(arguments: &[String]) -> Outcome {
     let bundle = arguments.first().map_or_else(generate::bundle, PathBuf::from);
     let files = blob_files(&bundle)
@@ -31,19 +31,19 @@ pub fn run(arguments: &[String]) -> Outcome {
     }
 }
 
-/// What the judges that are here say, and which are not.
+/// What the installed judges say, and which judges are missing.
 pub struct Judged {
     pub refusals: Vec<Refusal>,
     missing: Vec<Missing>,
 }
 
 impl Judged {
-    /// Where nobody was asked.
+    /// For a run in which no judge was asked.
     pub fn nothing() -> Self {
         Self { refusals: Vec::new(), missing: Vec::new() }
     }
 
-    /// Fails if a judge was not there.
+    /// Fails if a judge was missing.
     pub fn complete(&self) -> Outcome {
         if self.missing.is_empty() {
             return Ok(());
@@ -53,8 +53,8 @@ impl Judged {
     }
 }
 
-/// Judges the outputs of all targets whose judges are here, and says which are not. What the cache
-/// knows to pass is not judged again.
+/// Lets the installed judges check the outputs of their targets, and tells which judges are
+/// missing. Outputs that are known to pass are not judged again.
 pub fn judge(
     files: impl IntoIterator<Item = BlobFile>,
     cache: Option<&Cache>,
@@ -86,14 +86,14 @@ pub fn judge(
     Ok(Judged { refusals: verdict.refusals, missing: lacking })
 }
 
-/// Tint below `target/`, installed now if it is not there and npm is.
+/// Tint below `target/`. If it is missing and npm is there, it is installed now.
 fn tint() -> Tint {
     let tint = Tint::at(generate::root().join("target/lamplight-tint"));
     let is_missing = !missing(&[Target::WGSL], &tint).is_empty();
     if is_missing && machine::program("npm") && machine::program("node") {
         let [npm, arguments @ ..] = tint.install();
         eprintln!("installing Tint: {npm} {}", arguments.join(" "));
-        // Where it fails, what is missing is told.
+        // If this fails, Tint is reported as missing.
         let _ = Command::new(npm).args(arguments).stdout(std::io::stderr()).status();
     }
     tint

@@ -1,4 +1,4 @@
-//! Programs: their axes, and what may be chosen together.
+//! Programs: their axes, and which values can be chosen together.
 
 use std::collections::BTreeMap;
 
@@ -101,15 +101,15 @@ pub struct Point {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// The point with one axis at another value.
+/// The point that results if one axis gets another value.
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct Choice {
     pub axis: String,
     pub value: Value,
-    /// The key it leads to.
+    /// The key of that point.
     pub key: String,
-    /// Why it cannot be; empty where it can.
+    /// Why it cannot be chosen; empty if it can.
     pub reasons: Vec<String>,
 }
 
@@ -159,7 +159,7 @@ fn axis(axis: &Axis) -> AxisInfo {
     }
 }
 
-/// What a key means, and which values each axis may take next to the others.
+/// What a key means, and which values each axis can take together with the others.
 #[wasm_bindgen]
 pub fn point(request: Ts<PointRequest>) -> Answer<Point> {
     let request = request.to_rust()?;

@@ -1,4 +1,4 @@
-//! Diagnostics with places that editors take.
+//! Diagnostics with places in the form that editors need.
 
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::diagnostic::{self, Diagnostics, Severity};
@@ -15,14 +15,14 @@ pub struct Diagnostic {
     /// Short name, as `lamplight explain` takes it.
     pub code: String,
     pub message: String,
-    /// The first is where it is wrong.
+    /// The first label is the place of the mistake.
     pub labels: Vec<Label>,
     pub notes: Vec<String>,
     /// As the command line prints it, with excerpts.
     pub text: String,
 }
 
-/// A range of a file with a word on it.
+/// A range of a file, with a few words about it.
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct Label {
@@ -44,7 +44,7 @@ pub struct Position {
     pub offset: u32,
 }
 
-/// All of them, errors first as the command line has them.
+/// All diagnostics, errors first as on the command line.
 pub fn diagnostics(sources: &SourceSet, found: &Diagnostics) -> Vec<Diagnostic> {
     found.iter().map(|one| told(sources, one)).collect()
 }

@@ -1,8 +1,8 @@
 //! Lamplight's toolchain for browsers and Node: the same functions as the command line's, over
 //! files in memory.
 //!
-//! Each function takes and gives one value; the types of both are generated for TypeScript. What
-//! is wrong with the input comes back as diagnostics in the value, and never as an exception.
+//! Each function takes one value and returns one. The types of both are generated for TypeScript.
+//! Errors in the input are returned as diagnostics in the value, and never thrown as exceptions.
 
 mod choose;
 mod diagnostic;
@@ -15,7 +15,7 @@ mod shader;
 use tsify::{Ts, Tsify};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
-/// A value of the page's; the error is one of its form, and the caller's mistake.
+/// A value for the page. The error is about the form of an argument, which is the caller's mistake.
 type Answer<T> = Result<Ts<T>, JsError>;
 
 fn answer<T: Tsify + serde::Serialize>(value: &T) -> Answer<T> {

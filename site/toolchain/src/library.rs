@@ -1,4 +1,4 @@
-//! What the library has: its modules, functions and plots, and a search over them.
+//! The content of the library: its modules, functions and plots, and a search over them.
 
 use std::collections::BTreeMap;
 
@@ -94,7 +94,7 @@ pub fn library() -> Answer<LibraryInfo> {
     answer(&LibraryInfo { modules: modules.collect() })
 }
 
-/// The plots of a module; the library's own files have no errors.
+/// The plots of a module. The library's own files have no errors.
 fn plots(module: &str) -> plot::Plots {
     let mut sources = SourceSet::default();
     let package = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
@@ -157,7 +157,7 @@ pub fn file(path: &str) -> Option<String> {
     Embedded.read(path).ok().flatten()
 }
 
-/// A function as it is written, and who calls it.
+/// A function's text, and the files that use it.
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct Written {
@@ -185,12 +185,12 @@ pub fn written(path: &str) -> Answer<Written> {
     answer(&Written { wesl: text("wesl"), glsl: text("glsl"), used_by })
 }
 
-/// A text without its comments, which name what they only talk about.
+/// A text without its comments, since comments may name things that the code does not use.
 fn code(text: &str) -> String {
     text.lines().filter_map(|line| line.split("//").next()).collect::<Vec<_>>().join("\n")
 }
 
-/// The lines of a declaration at the start of a line, with its comment.
+/// The declaration that starts at the beginning of a line, with its comment.
 fn declaration(text: &str, name: &str) -> Option<String> {
     let lines: Vec<&str> = text.lines().collect();
     let declares = |line: &str| {
@@ -233,8 +233,8 @@ pub struct Hit {
     pub score: f64,
 }
 
-/// Items whose name, formula, documentation or source have all words: techniques and authors are
-/// named there.
+/// Items that have all words in their name, formula, documentation or source. Techniques and
+/// authors are named there.
 #[wasm_bindgen]
 pub fn search(query: &str) -> Answer<SearchResult> {
     let words: Vec<String> = query.split_whitespace().map(str::to_lowercase).collect();

@@ -30,9 +30,9 @@ pub struct EvalRequest {
     #[serde(default)]
     #[tsify(optional, type = "Record<string, string>")]
     pub files: Option<Files>,
-    /// WGSL: `lighting::spot::cone_exponent(0.9, 0.8, 4.0)`.
+    /// WGSL, such as `lighting::spot::cone_exponent(0.9, 0.8, 4.0)`.
     pub expression: String,
-    /// Whether the GLSL modules are called.
+    /// Whether the GLSL modules are called instead.
     #[serde(default)]
     #[tsify(optional)]
     pub glsl: bool,
@@ -42,7 +42,7 @@ pub struct EvalRequest {
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct EvalResult {
-    /// As `lamplight eval` prints it; absent where it has none.
+    /// The value as `lamplight eval` prints it; absent if there is none.
     pub value: Option<String>,
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -89,13 +89,13 @@ fn stopped() -> diagnostic::Diagnostic {
 pub struct CurveRequest {
     /// Path of the function: `lighting::spot::cone_exponent`.
     pub path: String,
-    /// WGSL of type f32 over `x` and the second parameter, as plots of the library have it.
+    /// WGSL of type f32 over `x` and the second parameter, in the form of the library's plots.
     pub value: String,
     /// Name of the second parameter.
     #[serde(default)]
     #[tsify(optional)]
     pub parameter: Option<String>,
-    /// Its value, one curve each.
+    /// Values of the second parameter, one for each curve.
     #[serde(default)]
     #[tsify(optional)]
     pub values: Vec<f64>,
@@ -125,11 +125,11 @@ pub struct Curve {
     pub single: Vec<f64>,
     /// In f64.
     pub double: Vec<f64>,
-    /// How far an implementation that keeps WGSL's bounds may be from that.
+    /// How far an implementation within WGSL's bounds may be from that.
     pub error: Vec<f64>,
 }
 
-/// A kernel that is ready, with the text it was made of: sliders ask for the same one again.
+/// A kernel that is ready, and the text it was made from, since sliders ask for the same one again.
 struct Kept {
     text: String,
     interpreter: Interpreter,
@@ -139,7 +139,7 @@ thread_local! {
     static KEPT: RefCell<Option<Kept>> = const { RefCell::new(None) };
 }
 
-/// Curves in f32, in f64, and how far they may be apart.
+/// Computes curves in f32 and in f64, and how far they may be apart.
 #[wasm_bindgen]
 pub fn curves(request: Ts<CurveRequest>) -> Answer<CurveResult> {
     let request = request.to_rust()?;
@@ -214,8 +214,8 @@ fn curve(kept: &Kept, inputs: &[f64], parameter: f64) -> Result<Curve, diagnosti
     Ok(made)
 }
 
-/// What a function should return by its published formula, in f64; absent where the library has
-/// no formula beside it. Arguments are flattened in the order of the parameters.
+/// What a function should return by its published formula, in f64. Absent if the library has no
+/// formula for it. Arguments are flattened in the order of the parameters.
 #[wasm_bindgen]
 pub fn reference(path: &str, arguments: Vec<f64>) -> Option<Vec<f64>> {
     let (module, function) = path.rsplit_once("::")?;

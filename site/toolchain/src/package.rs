@@ -44,7 +44,7 @@ impl Value {
     }
 }
 
-/// The package with what it may import: the library is there for every one.
+/// The package and what it may import. Every package may import the library.
 pub fn packages(files: Option<&Files>) -> Packages {
     match files {
         None => project::library(),
@@ -55,7 +55,7 @@ pub fn packages(files: Option<&Files>) -> Packages {
     }
 }
 
-/// A manifest: that of the library is read once.
+/// A manifest. That of the library is read only once.
 pub enum Held {
     Library(Rc<(SourceSet, Manifest)>),
     Own(Option<Manifest>),
@@ -101,7 +101,7 @@ fn library_manifest(sources: &mut SourceSet) -> Result<Held, Diagnostics> {
     })
 }
 
-/// The graph of a root file. Those of the library never change, and are read once.
+/// The graph of a root file. Those of the library never change, so they are read only once.
 pub fn graph(
     files: Option<&Files>,
     root: &str,

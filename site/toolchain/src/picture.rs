@@ -1,9 +1,9 @@
-//! Pictures, drawn by the page: the toolchain says what to draw, and is given what was drawn.
+//! Pictures that the page draws: the toolchain says what to draw, and gets back what was drawn.
 //!
-//! A picture has passes, and each needs what the one before it drew. Devices of a page answer
-//! later, so a picture is told from its beginning again after each answer, with the frames that are
-//! there; it ends where a frame is missing, with the drawing that gives it. The code between is
-//! that of `lamplight render`.
+//! A picture has passes, and each pass needs what the one before it drew. The devices of a page
+//! answer asynchronously. So after each answer the picture is computed again from its beginning,
+//! with the frames that are there. It stops at the first frame that is missing, and returns the
+//! drawing for it. The rest of the code is that of `lamplight render`.
 
 mod told;
 
@@ -32,7 +32,7 @@ use told::{
     SamplerInfo, Stage, Step, Studio, TextureInfo,
 };
 
-/// What stays the same over pictures.
+/// What is the same for all pictures.
 struct Kept {
     programs: Programs,
     presets: Vec<Preset>,
@@ -42,7 +42,7 @@ struct Kept {
 /// The picture that is being drawn.
 struct Current {
     request: PictureRequest,
-    /// What was drawn of it, in order, and what the last drawing has.
+    /// What was drawn so far, in order.
     given: Vec<Vec<Frame>>,
     wanted: Layout,
 }
@@ -84,7 +84,7 @@ pub fn studio() -> Answer<Studio> {
     })
 }
 
-/// Begins a picture; the one before it is forgotten.
+/// Begins a picture, and forgets the one before it.
 #[wasm_bindgen(js_name = pictureStart)]
 pub fn picture_start(request: Ts<PictureRequest>) -> Answer<Step> {
     let request = request.to_rust()?;
@@ -93,8 +93,8 @@ pub fn picture_start(request: Ts<PictureRequest>) -> Answer<Step> {
     answer(&step())
 }
 
-/// Goes on with what was drawn: of each view the words of all targets, then the next view; and the
-/// depths of each view where they were to be kept.
+/// Continues with what was drawn: for each view, the words of all its targets. Then the depths of
+/// each view, if they were to be kept.
 #[wasm_bindgen(js_name = pictureFrames)]
 pub fn picture_frames(words: Vec<u32>, depths: Vec<f32>) -> Answer<Step> {
     CURRENT.with_borrow_mut(|current| {
@@ -154,7 +154,7 @@ fn step() -> Step {
     }
 }
 
-/// From the beginning of the picture to the first frame that is missing, or to its end.
+/// Computes the picture from its beginning, up to the first frame that is missing or to its end.
 fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
     let request = &current.request;
     let target = Target::ALL.iter().copied().find(|target| target.name() == request.target);
@@ -231,7 +231,7 @@ fn shot(request: &PictureRequest) -> Result<Shot, Diagnostics> {
     })
 }
 
-/// Draws what was drawn before, and asks for the rest.
+/// A session that returns frames which were drawn before, and asks the page for the next ones.
 struct Page<'a> {
     given: &'a [Vec<Frame>],
     state: Mutex<Told>,

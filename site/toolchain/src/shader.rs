@@ -22,7 +22,7 @@ use crate::diagnostic::{Diagnostic, diagnostics};
 use crate::package::{Files, Value, graph, manifest, packages};
 use crate::{Answer, answer};
 
-/// A root file and what is chosen of it, as `lamplight compile` takes it.
+/// A root file and its settings, as for `lamplight compile`.
 #[derive(Deserialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct ShaderRequest {
@@ -36,7 +36,7 @@ pub struct ShaderRequest {
     #[serde(default)]
     #[tsify(optional, type = "Record<string, boolean | number | string>")]
     pub settings: BTreeMap<String, Value>,
-    /// Outputs; none for the composed text alone.
+    /// The targets; if there are none, only the text is composed.
     #[serde(default)]
     #[tsify(optional)]
     pub targets: Vec<String>,
@@ -48,25 +48,25 @@ pub struct ShaderRequest {
     #[serde(default)]
     #[tsify(optional)]
     pub entry: Option<String>,
-    /// Names as the WESL specification's underscore form has them.
+    /// Whether imported items have the underscore form of the WESL specification.
     #[serde(default)]
     #[tsify(optional)]
     pub underscore: bool,
-    /// Keep what no entry point reaches.
+    /// Whether items that no entry point reaches are kept.
     #[serde(default)]
     #[tsify(optional)]
     pub keep_all: bool,
 }
 
-/// What came of it.
+/// The result.
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct ShaderResult {
     /// Whether there is no error.
     pub ok: bool,
-    /// The composed text; absent where it could not be composed.
+    /// The composed text; absent if it could not be composed.
     pub text: Option<String>,
-    /// The key of the permutation, where the file belongs to a program.
+    /// The key of the permutation, if the file belongs to a program.
     pub key: Option<String>,
     pub entries: Vec<EntryPoint>,
     pub diagnostics: Vec<Diagnostic>,
@@ -79,7 +79,7 @@ pub struct EntryPoint {
     pub name: String,
     /// `vertex`, `fragment` or `compute`.
     pub stage: String,
-    /// What an engine must know, as bundles have it.
+    /// What an engine needs to know, as in a bundle.
     #[serde(serialize_with = "plain")]
     #[tsify(type = "Reflection")]
     pub reflection: Reflection,
@@ -91,7 +91,7 @@ pub struct EntryPoint {
 #[serde(rename_all = "camelCase")]
 pub struct Output {
     pub target: String,
-    /// Of text.
+    /// The text, unless the target is binary.
     pub text: Option<String>,
     /// As a file has it.
     #[serde(with = "bytes")]
@@ -226,13 +226,13 @@ fn shaders(
     })
 }
 
-/// Functions that were translated before, by targets and clip space. What is linked depends on the
-/// text alone, so that an edit costs what it changes.
+/// Linkers with functions that were translated before, by targets and clip space. An output depends
+/// on its text alone, so an edit costs only what it changes.
 #[derive(Default)]
 struct Linkers(Vec<(&'static [Target], Clip, Linker<'static>)>);
 
 impl Linkers {
-    /// Lists of targets are few: each stays for as long as the page does.
+    /// Lists of targets are few, so each is kept as long as the page.
     fn of(&mut self, targets: &[Target], clip: Clip) -> &Linker<'static> {
         let known = self.0.iter().position(|(known, space, _)| *known == targets && *space == clip);
         let index = known.unwrap_or_else(|| {
@@ -301,7 +301,7 @@ fn of_program(
     Ok(Chosen { settings, clip: program.clip, key, warnings })
 }
 
-/// By the ending, as the command line does.
+/// The language from the file's extension, as on the command line.
 pub fn language(path: &str) -> Language {
     lint::language(path).unwrap_or(Language::Wesl)
 }
@@ -349,7 +349,7 @@ fn entry(shader: &Shader, wanted: &[Target]) -> EntryPoint {
     }
 }
 
-/// A whole package, as `lamplight lint` looks at it.
+/// A whole package, as for `lamplight lint`.
 #[derive(Deserialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct LintRequest {

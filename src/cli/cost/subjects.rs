@@ -30,7 +30,7 @@ pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subje
         arguments.subjects.iter().partition(|name| is_file(name));
     let modules = catalogue::library();
     let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
-    let (paths, keys) = parted(arguments, &items, named)?;
+    let (paths, keys) = separated(arguments, &items, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
         functions(&items, &paths, language(arguments), &mut subjects)?;
     }
@@ -45,7 +45,7 @@ pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subje
 
 /// Separates paths of the library from keys. A key has a sign that only keys have, or it is a word
 /// that names an axis of the program and no path of the library.
-fn parted<'a>(
+fn separated<'a>(
     arguments: &Arguments,
     items: &[&Item],
     named: Vec<&'a String>,

@@ -14,7 +14,7 @@ use naga::back::hlsl::{
 
 use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
 use crate::emit::reflect::{inputs, kind};
-use crate::emit::{lists, rename};
+use crate::emit::{columns, lists, rename};
 use crate::emit::slots::{Numbering, assign, native};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judge, Source, clip, setters, zeros};
@@ -60,6 +60,9 @@ fn is_taken(name: &str) -> bool {
 }
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
+    if columns::taken_from_values(source.module, source.info).next().is_some() {
+        return Err(columns::TAKEN.to_owned());
+    }
     let options = options(source)?;
     let changed = rename::renamed(source.module, &is_taken);
     let module = changed.as_ref().unwrap_or(source.module);
@@ -75,7 +78,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         .ok_or("no entry point was written")?
         .map_err(|error| error.to_string())?;
     let text = setters::by_reference(&lists::with_plain_constants(&text.0));
-    let text = zeros::without_casts(&text);
+    let text = columns::without_casts(&zeros::without_casts(&text));
     Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &name, &options) })
 }
 

@@ -71,9 +71,10 @@ struct Reader<'a, 'b> {
 }
 
 impl Reader<'_, '_> {
-    /// `a::b::c`, `a::b as c` or `a::{...}`; nesting is bounded by the brackets'.
+    /// Reads `a::b::c`, `a::b as c` or `a::{...}`. This recursion is bounded, since the nesting of
+    /// brackets is.
     ///
-    /// `start` is where it starts, unless in a collection.
+    /// `start` is the path's first token, or `None` for a path in a collection.
     fn path(&mut self, mut path: Path, start: Option<usize>) -> Result<(), Diagnostic> {
         let own = start.unwrap_or(self.at);
         loop {

@@ -9,8 +9,8 @@ use crate::source::Span;
 
 /// The only word of the constraint language that is not a keyword of WGSL.
 ///
-/// WGSL's reserved words are allowed here, since an axis or a value never becomes a declaration
-/// under its bare name. The exception is `constants`, so axes may not have reserved names.
+/// Reserved words of WGSL are allowed for programs and values, since those never become
+/// declarations. An axis becomes one in `constants`, so axes may not have reserved names.
 const IN: &str = "in";
 
 /// Macros that GLSL compilers or the library define.

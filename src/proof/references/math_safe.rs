@@ -12,8 +12,8 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// A vector without a direction in f32 gives the fallback: where that begins, and whether a
-/// subnormal vector was flushed before, is up to the device.
+/// The normalised vector. A device may flush subnormal components to zero first, so that result is
+/// accepted too. If every component is zero or subnormal, the result is the fallback.
 fn safe_normalize(a: &mut Arguments<'_>) -> Expected {
     let (v, fallback) = (a.vec3(), a.vec3());
     let smallest = f64::from(f32::MIN_POSITIVE);

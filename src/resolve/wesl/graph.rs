@@ -108,7 +108,7 @@ pub struct Node {
     pub lints: Vec<Diagnostic>,
     /// What led here first; `None` for the root module.
     pub importer: Option<Importer>,
-    /// What its references mean.
+    /// Where its entries start in the tables over all modules.
     pub bases: Bases,
 }
 

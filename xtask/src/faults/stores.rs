@@ -1,5 +1,5 @@
-//! Caches that answer wrongly, and clocks that jump: the bundle is byte for byte what it is without
-//! a cache, whatever a record holds and whatever time files have.
+//! Caches that answer wrongly, and clocks that jump. The bundle must have the same bytes as without
+//! a cache, whatever a record contains and whatever time files have.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, FileTimes};
@@ -9,10 +9,10 @@ use std::time::{Duration, SystemTime};
 use super::{Package, environment};
 use crate::Failure;
 
-/// Rounds of each way to be wrong, over all records at once.
+/// Rounds of each kind of wrong record, each over all records.
 const ROUNDS: usize = 12;
 
-/// What a store gives in the place of a record.
+/// What a store returns instead of a record.
 type Wrong = fn(&[u8], &[u8], u64) -> Vec<u8>;
 
 const WRONG: &[(&str, Wrong)] = &[
@@ -23,10 +23,10 @@ const WRONG: &[(&str, Wrong)] = &[
     ("record of noise", |record, _, number| noise(record.len(), number)),
 ];
 
-/// Jumps of the clock, in days: past and future times of every file of the package.
+/// Jumps of the clock in days, into the past and the future, for every file of the package.
 const JUMPS: [i64; 6] = [-20_000, -366, -1, 1, 366, 20_000];
 
-/// Runs all; what went wrong.
+/// Runs all of them; returns what went wrong.
 pub fn run(
     package: &Package,
     seed: u64,
@@ -79,7 +79,7 @@ impl Package {
     }
 }
 
-/// Makes every record of the cache wrong; how many there are.
+/// Makes every record of the cache wrong; returns how many there are.
 fn spoil(package: &Package, wrong: Wrong, seed: u64) -> Result<usize, Failure> {
     let paths = files(&package.folder.join("cache"))?;
     let records: Vec<Vec<u8>> =
@@ -113,7 +113,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(found)
 }
 
-/// A place that depends on a number.
+/// A position in the record that depends on a number.
 fn at(record: &[u8], number: u64) -> usize {
     (number.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) as usize % record.len().max(1)
 }

@@ -1,5 +1,5 @@
-//! Surfaces that are fuzzed from outside: what a command does with a file, in a process of its own
-//! that may use little memory and time.
+//! Fuzzes commands from outside: what a command does with a file, in a separate process with little
+//! memory and time.
 
 use std::fs;
 use std::path::Path;
@@ -11,14 +11,14 @@ use crate::faults::beside_this;
 use crate::generate::root;
 use crate::{Failure, Outcome};
 
-/// A command over a file.
+/// A command that reads a file.
 pub struct Surface {
     pub name: &'static str,
     file: &'static str,
     arguments: &'static [&'static str],
-    /// Files beside it.
+    /// Files that must be beside it.
     beside: &'static [(&'static str, &'static str)],
-    /// Folder of the repository with valid files, and how they end.
+    /// A folder of the repository with valid files, and how their names end.
     corpus: (&'static str, &'static str),
     words: &'static str,
 }
@@ -68,14 +68,15 @@ pub const SURFACES: &[Surface] = &[
     },
 ];
 
-/// Address space of a command in KiB: 1 GiB, and the stacks that it reserves.
+/// The address space of a command in KiB: 1 GiB, and the stacks that it reserves.
 const MEMORY_KIB: u64 = 2 << 20;
-/// Seconds on a processor that a command may take; others may use the machine too.
+/// How many seconds of processor time a command may take. Others may use the machine too, so real
+/// time does not count.
 const MOST_SECONDS: u64 = 5;
-/// A command that waits for so long waits for ever.
+/// A command that has not ended after this real time never will.
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// Fuzzes a surface for its share of the time; the number of findings.
+/// Fuzzes a command for its share of the time; returns the number of findings.
 pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure> {
     let program = beside_this()?;
     let folder = root().join("target/fuzz/commands").join(surface.name);
@@ -100,7 +101,7 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure
     Ok(findings)
 }
 
-/// The files of a folder whose names end so, sorted; an empty one where there are none.
+/// The files of a folder with an ending, sorted; a single empty one where there are none.
 fn files(folder: &Path, ending: &str) -> Vec<Vec<u8>> {
     let mut files = Vec::new();
     mutate::collect(folder, ending, &mut files);

@@ -1,4 +1,4 @@
-//! One input in a process of its own, or many in one until something is wrong.
+//! Judges one input in a separate process, or many in one process until something is wrong.
 
 use std::panic;
 use std::sync::Mutex;
@@ -7,14 +7,14 @@ use std::{fs, io};
 
 use super::kinds::Kind;
 
-/// An answer must not take longer.
+/// An answer must not take longer than this.
 const LONGEST: Duration = Duration::from_secs(5);
-/// An answer must not take more memory.
+/// An answer must not take more memory than this.
 const MOST_KIB: u64 = 1 << 20;
 
 static PLACE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Panics are told by [`judge`] alone.
+/// Silences panics, which [`judge`] reports.
 pub fn quiet() {
     panic::set_hook(Box::new(|info| {
         let place = info.location().map(|place| format!("{}:{}", place.file(), place.line()));
@@ -41,7 +41,8 @@ pub fn judge(kind: &Kind, input: &[u8]) -> Option<String> {
     ((kind.run)(input) != answer).then(|| "has two answers".to_owned())
 }
 
-/// Whether it takes too long thrice, since the machine may be busy with something else.
+/// Whether it takes too long three times in a row, since the machine may be busy with something
+/// else.
 fn slow(kind: &Kind, input: &[u8]) -> bool {
     (0..3).all(|_| {
         let started = Instant::now();
@@ -50,7 +51,7 @@ fn slow(kind: &Kind, input: &[u8]) -> bool {
     })
 }
 
-/// The most memory since the last call; nothing where the system does not tell.
+/// The most memory used since the last call; 0 where the system does not tell.
 fn peak_kib() -> u64 {
     let peak = || -> io::Result<u64> {
         let status = fs::read_to_string("/proc/self/status")?;

@@ -1,27 +1,29 @@
-//! `cargo xtask fuzz link`: random programs, made, judged, run and compared by the trial
-//! `link::random` of the tests.
+//! `cargo xtask fuzz link`: random programs, which the trial `link::random` of the tests makes,
+//! judges, runs and compares.
 
 use crate::{Failure, Outcome, test};
 
 const USAGE: &str =
-    "usage: cargo xtask fuzz link [--programs N] [--seed N] [--every N] [--run N] [--shrink]
+    "usage: cargo xtask fuzz link [--programs N] [--seed N] [--every N] [--most N] [--run N] [--shrink]
 
   --programs N  how many (20000)
   --seed N      the seed of the first (1)
-  --every N     the judges beside the crate see one program in N (16)
+  --every N     the judges beside the crate see one program in N (1)
+  --most N      so many outputs of such a program, in each target (2)
   --run N       the outputs of one program in N are run, 0 for none (8)
   --shrink      make the first finding of each kind small";
 
-/// Runs the trial; findings are left in `target/fuzz/link/`, and are exit code 3.
+/// Runs the trial. Findings are left in `target/fuzz/link/` and give exit code 3.
 pub fn run(arguments: &[String]) -> Outcome {
-    let mut settings = vec![("PROGRAMS", "20000".to_owned()), ("JUDGED", "16".to_owned())];
-    settings.push(("RUN", "8".to_owned()));
+    let mut settings = vec![("PROGRAMS", "20000".to_owned()), ("JUDGED", "1".to_owned())];
+    settings.extend([("MOST", "2".to_owned()), ("RUN", "8".to_owned())]);
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         let name = match argument.as_str() {
             "--programs" => "PROGRAMS",
             "--seed" => "SEED",
             "--every" => "JUDGED",
+            "--most" => "MOST",
             "--run" => "RUN",
             "--shrink" => {
                 settings.push(("SHRINK", "1".to_owned()));

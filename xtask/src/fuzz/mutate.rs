@@ -1,14 +1,15 @@
-//! Inputs that are almost right: valid files with words lost, doubled, swapped and invented.
+//! Makes inputs that are almost right: valid files with words removed, doubled, swapped and
+//! invented.
 
 use std::fs;
 use std::path::Path;
 
 use super::kinds::Kind;
 
-/// Bytes of one input: more finds nothing new and takes longer.
+/// The most bytes of one input. Larger ones find nothing new and take longer.
 const MOST_BYTES: usize = 200_000;
 
-/// splitmix64: the same seed, the same inputs.
+/// The generator splitmix64: the same seed gives the same inputs.
 pub struct Random(pub u64);
 
 impl Random {
@@ -24,7 +25,7 @@ impl Random {
     }
 }
 
-/// The valid inputs of a kind, sorted by path; an empty one where there are none.
+/// The valid inputs of a kind, sorted by path; a single empty one where there are none.
 pub fn corpus(root: &Path, kind: &Kind) -> Vec<Vec<u8>> {
     let mut files = Vec::new();
     for (folder, ending) in kind.corpus {
@@ -39,7 +40,7 @@ pub fn corpus(root: &Path, kind: &Kind) -> Vec<Vec<u8>> {
     inputs
 }
 
-/// Adds the files of a folder whose names end so.
+/// Adds the files of a folder with an ending.
 pub fn collect(folder: &Path, ending: &str, found: &mut Vec<std::path::PathBuf>) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -51,7 +52,7 @@ pub fn collect(folder: &Path, ending: &str, found: &mut Vec<std::path::PathBuf>)
     }
 }
 
-/// Test cases of several files as one input each.
+/// Test cases that consist of several files, as one input each.
 fn cases(files: &[std::path::PathBuf]) -> Vec<Vec<u8>> {
     let main = |path: &&std::path::PathBuf| {
         path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("main."))
@@ -68,7 +69,7 @@ fn cases(files: &[std::path::PathBuf]) -> Vec<Vec<u8>> {
     files.iter().filter(main).filter_map(case).collect()
 }
 
-/// One valid input, mutated a few times.
+/// One valid input with a few mutations.
 pub fn mutated(random: &mut Random, corpus: &[Vec<u8>], words: &[&str]) -> Vec<u8> {
     let mut input = corpus[random.below(corpus.len())].clone();
     for _ in 0..1 + random.below(6) {
@@ -119,7 +120,7 @@ fn chunk(
         .concat()
 }
 
-/// A few words very often: nesting, long lists, long chains.
+/// Repeats a few words very often: deep nesting, long lists, long chains.
 fn many(random: &mut Random, pieces: &[Piece]) -> Vec<u8> {
     let times = [30, 300, 3000][random.below(3)];
     let range = range(random, pieces.len());
@@ -145,7 +146,7 @@ fn spliced(random: &mut Random, into: &[Piece], corpus: &[Vec<u8>]) -> Vec<u8> {
     [&into[..at], &other[part], &into[at..]].concat().concat()
 }
 
-/// A word of the input in place of another of its words.
+/// Replaces a word of the input by another of its words.
 fn borrowed(random: &mut Random, pieces: &[Piece]) -> Vec<u8> {
     let is_word = |piece: &&Piece| piece.first().is_some_and(|byte| byte.is_ascii_alphanumeric());
     let words: Vec<&Piece> = pieces.iter().filter(is_word).collect();

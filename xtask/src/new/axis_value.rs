@@ -14,7 +14,7 @@ fn make(repository: &Repository<'_>, text: &str) -> Result<Made, String> {
         Some((program, axis, value))
     });
     let (program, axis, value) =
-        parsed.ok_or_else(|| format!("`{text}` is no value of an axis: PROGRAM::AXIS=VALUE"))?;
+        parsed.ok_or_else(|| format!("`{text}` is not a value of an axis: PROGRAM::AXIS=VALUE"))?;
     [program, axis, value].iter().try_for_each(|name| check_name(name, '_'))?;
     let table = format!("[program.{program}.axis.{axis}]\n");
     let manifest = in_manifest(&repository.read(MANIFEST)?, &table, value)?;
@@ -54,7 +54,7 @@ fn in_manifest(text: &str, table: &str, value: &str) -> Result<String, String> {
     Ok(format!("{}, \"{value}\"{}", &text[..end], &text[end..]))
 }
 
-/// A line of its own: lines of the file are only ever appended.
+/// Appends a line of its own, since lines of the lock file never change.
 fn in_lock(text: &str, line: &str, value: &str) -> Result<String, String> {
     match text.lines().any(|known| known.starts_with(line)) {
         true => Ok(format!("{text}{line}+ {value}\n")),

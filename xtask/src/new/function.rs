@@ -8,7 +8,7 @@ fn make(repository: &Repository<'_>, path: &str) -> Result<Made, String> {
     let parts: Vec<&str> = path.split("::").collect();
     parts.iter().try_for_each(|part| check_name(part, '_'))?;
     let [folder, module, name] = parts[..] else {
-        return Err(format!("`{path}` is no path of a function: FOLDER::MODULE::NAME"));
+        return Err(format!("`{path}` is not the path of a function: FOLDER::MODULE::NAME"));
     };
     let stem = format!("shaderlib/{folder}/{module}");
     let reference = format!("src/proof/references/{folder}_{module}.rs");
@@ -63,7 +63,7 @@ fn wesl(old: Option<&str>, names: &Names<'_>) -> Result<String, String> {
     Ok(format!("{old}\n{COMMENT}fn {name}(x: f32) -> f32 {{\n    return x;\n}}\n"))
 }
 
-/// Where the names get their prefix, before the declarations and after them.
+/// Gives names their prefix. It stands before the declarations and after them.
 const PREFIX: &str = "#ifdef LAMPLIGHT_PREFIX\n#include \"../prefix.glsl\"\n#endif\n";
 
 fn glsl(old: Option<&str>, names: &Names<'_>) -> Result<String, String> {

@@ -1,7 +1,7 @@
 //! What `cargo xtask new` writes: one file of this folder for each kind of thing.
 //!
-//! The files are made to be completed. What they leave empty is demanded by a trial, which
-//! [`Made::next`] names.
+//! The files are incomplete on purpose. A trial fails until they are completed, and [`Made::next`]
+//! names it.
 
 mod axis_value;
 mod diagnostic;
@@ -32,16 +32,16 @@ pub const KINDS: &[Kind] = &[
     diagnostic::KIND,
 ];
 
-/// What to write, and what to do then.
+/// What to write, and what to do afterwards.
 #[derive(Debug, Default)]
 pub struct Made {
-    /// Paths below the repository's root, with their whole new texts.
+    /// Paths below the repository's root, each with the file's whole new text.
     pub files: Vec<(String, String)>,
-    /// Steps that complete the work, each with what demands it.
+    /// Steps that complete the work, each with the trial that demands it.
     pub next: Vec<String>,
 }
 
-/// The repository that is added to.
+/// The repository that is extended.
 pub struct Repository<'r> {
     /// Its folder.
     pub root: &'r Path,
@@ -53,12 +53,12 @@ impl Repository<'_> {
         std::fs::read_to_string(self.root.join(path)).ok()
     }
 
-    /// The text of a file that has to be there.
+    /// The text of a file that must exist.
     fn read(&self, path: &str) -> Result<String, String> {
         self.find(path).ok_or_else(|| format!("cannot read `{path}`"))
     }
 
-    /// Fails if the file is there.
+    /// Fails if the file exists.
     fn refuse_existing(&self, path: &str) -> Result<(), String> {
         match self.root.join(path).exists() {
             true => Err(format!("`{path}` exists already")),
@@ -77,7 +77,8 @@ pub fn make(root: &Path, kind: &str, name: &str) -> Result<Made, String> {
     (kind.make)(&Repository { root }, name)
 }
 
-/// Fails unless the name is letters, digits and one more character, and begins with a letter.
+/// Fails unless the name consists of lower-case letters, digits and `joint`, and begins with a
+/// letter.
 fn check_name(name: &str, joint: char) -> Result<(), String> {
     let is_part = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit();
     let begins = name.starts_with(|first: char| first.is_ascii_lowercase());

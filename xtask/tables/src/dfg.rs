@@ -11,7 +11,7 @@ use crate::quadrature::{Direction, dot, gauss_legendre, ggx_normal, mirrored, v_
 /// Steps in the polar angle of the facets; there are twice as many azimuths.
 const STEPS: usize = 128;
 
-/// Scale and offset of a cell.
+/// The scale and the offset of a cell.
 pub fn cell(at: Cell) -> Vec<f64> {
     albedo(at.nv(), at.alpha(), STEPS).to_vec()
 }
@@ -21,7 +21,8 @@ pub fn albedo(nv: f64, alpha: f64, steps: usize) -> [f64; 2] {
     let (v, azimuths) = (viewer(nv), 2 * steps);
     let mut sum = [0.0; 2];
     for (x, weight) in gauss_legendre(steps, 0.0, 1.0) {
-        // Half of a turn is enough: the integrand is symmetric. The square brings nodes to the tail.
+        // Half a turn is enough, since the integrand is symmetric. The square moves nodes to the
+        // tail.
         let u = x * (2.0 - x);
         let weight = weight * 2.0 * (1.0 - x) / azimuths as f64;
         for step in 0..azimuths {
@@ -33,7 +34,7 @@ pub fn albedo(nv: f64, alpha: f64, steps: usize) -> [f64; 2] {
     sum
 }
 
-/// What a facet that GGX distributes adds.
+/// What a facet from GGX's distribution adds.
 fn reflected(v: Direction, h: Direction, alpha: f64) -> [f64; 2] {
     let vh = dot(v, h);
     let l = mirrored(v, h);

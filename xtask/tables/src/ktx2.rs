@@ -1,4 +1,4 @@
-//! Tables as textures: KTX 2.0, 32-bit floats, one level.
+//! Writes tables as textures: KTX 2.0, 32-bit floats, one level.
 //!
 //! Khronos, "KTX File Format Specification 2.0", sections 3 and 4; "Khronos Data Format
 //! Specification 1.3", section 5, for the descriptor.
@@ -42,7 +42,7 @@ pub fn file(table: &Table, values: &[f32]) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// The basic descriptor: linear values, one texel of so many signed floats.
+/// The basic descriptor: linear values, and a texel of `channels` signed floats.
 fn descriptor(channels: u32) -> Vec<u32> {
     let size = 24 + 16 * channels;
     // Colour model RGB, primaries of BT.709, linear, alpha straight.
@@ -57,7 +57,7 @@ fn descriptor(channels: u32) -> Vec<u32> {
     words
 }
 
-/// What wrote it, and how its axes lie, sorted by name.
+/// Pairs of names and values, sorted by name: the writer, and the orientation of the axes.
 fn pairs(table: &Table) -> Vec<u8> {
     let mut bytes = Vec::new();
     let swizzle = if table.channels.len() == 1 { "r001" } else { "rg01" };

@@ -1,4 +1,5 @@
-//! Linearly transformed cosines: for each lobe of GGX the matrix that makes a cosine lobe into it.
+//! Linearly transformed cosines: for each lobe of GGX, the matrix that transforms a cosine lobe
+//! into it.
 //!
 //! Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed
 //! Cosines", 2016, section 3: the cubed difference is minimised by the method of Nelder and Mead,
@@ -21,7 +22,7 @@ const ENOUGH: f64 = 1e-5;
 /// The least scale along an axis.
 const LEAST_SCALE: f64 = 1e-7;
 
-/// A lobe's matrix: a frame whose z is the mean direction, times scales and a shear.
+/// The matrix of a lobe: a frame whose z is the mean direction, times scales and a shear.
 #[derive(Debug, Clone, Copy)]
 pub struct Lobe {
     mean: Direction,
@@ -63,7 +64,8 @@ impl Lobe {
         normalized([dot(rows[0], c), dot(rows[1], c), dot(rows[2], c)])
     }
 
-    /// The four numbers that `ltc_matrix` reads: of the inverse, whose middle entry is made 1.
+    /// The four numbers that `ltc_matrix` reads. They are from the inverse, scaled so that its
+    /// middle entry is 1.
     pub fn numbers(&self) -> [f64; 4] {
         let column = |l: Direction| {
             let found = self.original(l);
@@ -85,8 +87,8 @@ impl Lobe {
     }
 }
 
-/// The table, row by row of the viewer's cosine: one column of roughness starts from the one
-/// before it, from rough to smooth.
+/// The table, row by row of the viewer's cosine. The fit of each column of roughness starts from
+/// that of the column before, from rough to smooth.
 pub fn rows() -> Vec<Vec<f64>> {
     let mut cells = vec![Vec::new(); SIDE * SIDE];
     let mut first: Option<Lobe> = None;
@@ -113,7 +115,7 @@ fn fitted(at: Cell, before: Option<Lobe>, is_isotropic: bool) -> Lobe {
     let start = before.map_or([1.0, 1.0, 0.0], |lobe| lobe.shape);
     let lobe = |shape: [f64; 3]| {
         let [m11, m22, m13] = shape;
-        // Seen from above a lobe is round.
+        // Seen from above, a lobe is round.
         let shape = match is_isotropic {
             true => [m11.max(LEAST_SCALE), m11.max(LEAST_SCALE), 0.0],
             false => [m11.max(LEAST_SCALE), m22.max(LEAST_SCALE), m13],
@@ -133,7 +135,7 @@ fn mean_direction(v: Direction, alpha: f64) -> Direction {
     normalized([sum[0], 0.0, sum[2]])
 }
 
-/// Directions that GGX mirrors to the viewer, with what each adds to the albedo.
+/// Directions that GGX mirrors to the viewer, each with what it adds to the albedo.
 fn lobe_samples(v: Direction, alpha: f64) -> impl Iterator<Item = (Direction, f64)> {
     grid().filter_map(move |(u, azimuth)| {
         let h = ggx_normal(u, azimuth, alpha);
@@ -150,7 +152,7 @@ fn grid() -> impl Iterator<Item = (f64, f64)> {
         .map(move |index| (middle(index % SAMPLES), 2.0 * PI * middle(index / SAMPLES)))
 }
 
-/// The cubed difference of lobe and fit, over samples of both.
+/// The cubed difference between the lobe and its fit, over samples of both.
 fn difference(lobe: &Lobe, v: Direction, alpha: f64) -> f64 {
     let wrong = |l: Direction| {
         if l[2] <= 0.0 {
@@ -171,7 +173,7 @@ fn difference(lobe: &Lobe, v: Direction, alpha: f64) -> f64 {
     sum / (SAMPLES * SAMPLES) as f64
 }
 
-/// Where a function of three numbers is least, near a start.
+/// The minimum of a function of three numbers, near a start.
 fn least(start: [f64; 3], value: impl Fn([f64; 3]) -> f64) -> [f64; 3] {
     let mut corners: Vec<([f64; 3], f64)> = (0..4)
         .map(|corner| {
@@ -218,12 +220,12 @@ fn least(start: [f64; 3], value: impl Fn([f64; 3]) -> f64) -> [f64; 3] {
     corners.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(start, |corner| corner.0)
 }
 
-/// The share of a lobe's light that lies elsewhere in its fit: half of the integral of the absolute
-/// difference over the albedo, by a rule of its own.
+/// The share of a lobe's light that is elsewhere in its fit: half of the integral of the absolute
+/// difference, divided by the albedo. It uses a rule of its own.
 pub fn misplaced(numbers: [f64; 4], albedo: f64, at: Cell) -> f64 {
     let (alpha, v) = (at.alpha(), viewer(at.nv()));
     let fit = Lobe::of_numbers(numbers, albedo);
-    // Facets of GGX of twice the width: their tails reach all that the two lobes do.
+    // Facets of GGX with twice the width, whose tails reach everything that the two lobes reach.
     let wide = (2.0 * alpha).min(1.0);
     let steps = 96;
     let mut sum = 0.0;

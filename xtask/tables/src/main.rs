@@ -20,7 +20,7 @@ use std::process::ExitCode;
 /// Cells along each side.
 pub const SIDE: usize = 64;
 
-/// Smoother surfaces than this are mirrors for every table.
+/// For every table, surfaces smoother than this are mirrors.
 pub const LEAST_ALPHA: f64 = 1e-4;
 
 /// One table.
@@ -31,7 +31,7 @@ pub struct Table {
     /// What each channel is.
     pub channels: &'static [&'static str],
     make: fn() -> Vec<Vec<f64>>,
-    /// The worst error over all cells, in words, from the values as they are shipped.
+    /// Describes the worst error over all cells, computed from the values that are shipped.
     error: fn(&[f32]) -> String,
 }
 
@@ -75,7 +75,7 @@ const TABLES: &[Table] = &[
     },
 ];
 
-/// A cell: its column is of a roughness, its row of a viewer.
+/// A cell. Its column belongs to a roughness, its row to a viewer.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
     column: usize,
@@ -83,7 +83,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// In the order of the values.
+    /// Its index among the values.
     fn index(self) -> usize {
         self.row * SIDE + self.column
     }
@@ -99,7 +99,7 @@ impl Cell {
     }
 }
 
-/// Texel centres are read at the ends of both ranges.
+/// Texels are read at their centres, so both ranges end at the centres of the outermost texels.
 fn share(index: usize) -> f64 {
     index as f64 / (SIDE - 1) as f64
 }
@@ -108,7 +108,7 @@ fn cells(of: fn(Cell) -> Vec<f64>) -> Vec<Vec<f64>> {
     by_rows(&of)
 }
 
-/// Something of every cell, a part of the rows on each core.
+/// Computes something for every cell. Each core takes a part of the rows.
 fn by_rows<T: Send>(of: &(dyn Fn(Cell) -> T + Sync)) -> Vec<T> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let rows: Vec<usize> = (0..SIDE).collect();
@@ -131,7 +131,7 @@ fn worst(values: &[f32], finer: fn(Cell) -> Vec<f64>) -> String {
     format!("at most {most:.1e}, against a rule with more than twice as many nodes")
 }
 
-/// The share of light that the fits put elsewhere: the largest, and the mean.
+/// The share of light that the fits put in the wrong place: the largest, and the mean.
 fn misplaced(values: &[f32]) -> String {
     let share = |at: Cell| {
         let start = 4 * at.index();

@@ -1,4 +1,5 @@
-//! Blue noise: the order in which points fill a square that repeats, evenly at every number.
+//! Blue noise: an order in which points fill a square that repeats, such that they are spread
+//! evenly after any number of points.
 //!
 //! Ulichney, "The Void-and-Cluster Method for Dither Array Generation", 1993.
 
@@ -17,7 +18,7 @@ const CELLS: usize = SIDE * SIDE;
 struct Field {
     filled: Vec<bool>,
     crowd: Vec<f64>,
-    /// Of a filled cell on one at a distance, by rows and columns.
+    /// The weight of a filled cell for a cell at a distance, by rows and columns.
     weights: Vec<f64>,
 }
 
@@ -42,7 +43,7 @@ impl Field {
         }
     }
 
-    /// The filled cell with most around it; the first of equals.
+    /// The filled cell that is most crowded; of several, the first.
     fn cluster(&self) -> usize {
         let filled = (0..CELLS).filter(|cell| self.filled[*cell]);
         filled
@@ -53,7 +54,7 @@ impl Field {
             .unwrap_or(0)
     }
 
-    /// The empty cell with least around it; the first of equals.
+    /// The empty cell that is least crowded; of several, the first.
     fn void(&self) -> usize {
         let empty = (0..CELLS).filter(|cell| !self.filled[*cell]);
         empty
@@ -65,11 +66,12 @@ impl Field {
     }
 }
 
-/// The rank of every cell over the number of cells, at the middle of its step.
+/// The rank of every cell, divided by the number of cells. Each is at the middle of its step.
 pub fn rows() -> Vec<Vec<f64>> {
     let mut field = first();
     let mut ranks = vec![0; CELLS];
-    // Backwards from the first cells: the most crowded one goes first, and so has the highest rank.
+    // Backwards from the first cells: the most crowded cell is removed first, so it has the highest
+    // rank.
     let kept = field.filled.clone();
     for rank in (0..FIRST).rev() {
         let cell = field.cluster();
@@ -88,7 +90,7 @@ pub fn rows() -> Vec<Vec<f64>> {
     ranks.iter().map(|rank| vec![(*rank as f64 + 0.5) / CELLS as f64]).collect()
 }
 
-/// Some cells at random, moved from clusters to voids until none moves.
+/// Random cells, moved from clusters to voids until none moves any more.
 fn first() -> Field {
     let mut field = Field::new();
     let mut state = SEED;

@@ -34,7 +34,7 @@ pub struct PictureRequest {
     pub environment: Option<String>,
     pub width: u32,
     pub height: u32,
-    /// Places in each pixel that are averaged.
+    /// How many places of each pixel are averaged.
     pub samples: u32,
     /// Factor on all light, in powers of two.
     #[serde(default)]
@@ -44,7 +44,8 @@ pub struct PictureRequest {
     #[serde(default)]
     #[tsify(optional)]
     pub glsl: bool,
-    /// Numbers of uniforms by group and field, over those of the preset: `light.position`.
+    /// Numbers of uniforms by group and field, such as `light.position`. They replace those of the
+    /// preset.
     #[serde(default)]
     #[tsify(optional, type = "Record<string, Record<string, number[]>>")]
     pub numbers: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
@@ -52,7 +53,7 @@ pub struct PictureRequest {
     pub target: String,
 }
 
-/// What is to be done next.
+/// What to do next.
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct Step {
@@ -63,7 +64,7 @@ pub struct Step {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Colours as a screen has them.
+/// Colours in sRGB.
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct Pixels {
@@ -80,9 +81,9 @@ pub struct Pixels {
 #[serde(rename_all = "camelCase")]
 pub struct Drawing {
     pub vertex: Stage,
-    /// Without one, depth alone is drawn.
+    /// Without it, only depth is drawn.
     pub fragment: Option<Stage>,
-    /// Words of four 32-bit numbers each that the fragment stage gives, at its locations.
+    /// How many locations the fragment stage writes, each with four 32-bit numbers.
     pub targets: u32,
     pub meshes: Vec<Mesh>,
     pub views: Vec<Vec<Buffer>>,
@@ -97,7 +98,7 @@ pub struct Drawing {
     pub cull: String,
     /// Whether front faces wind clockwise.
     pub mirrored: bool,
-    /// Polygon offset: a share of the slope, and smallest steps.
+    /// Polygon offset: the factor of the slope, and the number of smallest steps.
     pub offset: [f32; 2],
 }
 
@@ -135,7 +136,7 @@ pub struct Mesh {
 #[serde(rename_all = "camelCase")]
 pub struct Attribute {
     pub location: u32,
-    /// As WebGPU calls it: `float32x3`.
+    /// WebGPU's name of the format, such as `float32x3`.
     pub format: String,
     pub offset: u32,
 }
@@ -151,7 +152,7 @@ pub struct Buffer {
     pub bytes: Vec<u8>,
 }
 
-/// A texture in f32: of depth one number a texel, of colour four.
+/// A texture in f32, with one number per texel for depth and four for colour.
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct TextureInfo {
@@ -181,10 +182,10 @@ pub struct Level {
 pub struct SamplerInfo {
     pub group: u32,
     pub binding: u32,
-    /// As WebGPU calls it: `less-equal`.
+    /// WebGPU's name of the comparison, such as `less-equal`.
     pub compare: Option<String>,
     pub linear: bool,
-    /// As WebGPU calls it: `clamp-to-edge`.
+    /// WebGPU's name of the address mode, such as `clamp-to-edge`.
     pub address: String,
 }
 

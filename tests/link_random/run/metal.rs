@@ -1,0 +1,48 @@
+//! The MSL of a batch.
+
+use std::collections::BTreeMap;
+
+use lamplight::bundle::Target;
+use lamplight::diagnostic::Diagnostic;
+use lamplight::execute::frame::Drawing;
+use lamplight::execute::raster::Compiled;
+
+use super::{Ready, Stages, Targets};
+
+/// All stages of a batch in MSL, compiled at once.
+pub struct Metal {
+    compiled: Compiled,
+    /// Of each stage that has MSL, the index of its feeder; its own and the one that tells follow.
+    first: BTreeMap<usize, usize>,
+}
+
+impl Metal {
+    pub fn new(ready: &[Ready<'_>]) -> Result<Self, String> {
+        let (mut stages, mut first) = (Vec::new(), BTreeMap::new());
+        for (index, ready) in ready.iter().enumerate() {
+            if let Some(Ok(Stages { feeder, own, tells })) = ready.stages.get(&Target::MSL) {
+                first.insert(index, stages.len());
+                stages.extend([feeder, own].into_iter().chain(tells).cloned());
+            }
+        }
+        let compiled = Compiled::new(stages).map_err(|missing| missing.reason)?;
+        Ok(Self { compiled, first })
+    }
+
+    pub fn draw(&self, index: usize, ready: &Ready<'_>) -> Result<(Targets, Targets), Diagnostic> {
+        let first = self.first[&index];
+        let outputs = &ready.runnable.unit.reflection.outputs;
+        let count =
+            outputs.iter().filter_map(|output| output.location).max().map_or(0, |last| last + 1);
+        ready.drawing(|drawing| {
+            let draw = |fragment, targets| {
+                let drawing = Drawing { targets, ..*drawing };
+                let frames = self.compiled.draw(first, Some(fragment), &drawing);
+                frames.map(|mut frames| frames.remove(0).targets)
+            };
+            let told =
+                ready.tells.as_ref().map(|tells| draw(first + 2, tells.targets)).transpose()?;
+            Ok((draw(first + 1, count)?, told.unwrap_or_default()))
+        })
+    }
+}
