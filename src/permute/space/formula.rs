@@ -208,11 +208,12 @@ impl Conditions {
                     };
                     if merged {
                         let support = &self.support;
-                        let (touched, rest) = std::mem::take(&mut others)
-                            .into_iter()
-                            .partition(|other: &Id| support[other.0 as usize] >> axis & 1 == 1);
-                        others = rest;
-                        pending.extend::<BTreeSet<Id>>(touched);
+                        let is_touched = |other: &Id| support[other.0 as usize] >> axis & 1 == 1;
+                        let touched: Vec<Id> = others.iter().copied().filter(is_touched).collect();
+                        if !touched.is_empty() {
+                            others.retain(|other| !is_touched(other));
+                            pending.extend(touched);
+                        }
                     }
                 }
             }
