@@ -8,7 +8,8 @@ use super::terminal::is_person;
 use crate::diagnostic::{Diagnostic, Severity, guide};
 
 /// What is added to a command's help: the title of its page, and examples. They work in a package
-/// that `lamplight init` has written, once `lamplight gen` has run there.
+/// that `lamplight init` has written, once `lamplight gen` has run there. That of `migrate` takes
+/// shaders of naga_oil in `old/`.
 struct Entry {
     command: &'static str,
     page: &'static str,
@@ -47,7 +48,7 @@ const ENTRIES: &[Entry] = &[
         ],
     ),
     entry("lint", PACKAGE, &["lamplight lint", "lamplight lint shaders/lamp.wesl"]),
-    entry("migrate", "From naga_oil", &[]),
+    entry("migrate", "From naga_oil", &["lamplight migrate --from naga_oil old -o new"]),
     entry(
         "gen",
         MANIFEST,

@@ -138,6 +138,8 @@ fn examples() -> Outcome {
     let package = Package::new(&[])?;
     package.run("init .")?.ends(0)?;
     package.run("gen --no-cache")?.ends(0)?;
+    std::fs::create_dir(package.path("old"))?;
+    std::fs::write(package.path("old/light.wgsl"), "#ifdef A\nconst A = 1;\n#endif\n")?;
     let help = package.run("--help")?.ends(0)?.out;
     let commands: Vec<&str> = help
         .lines()
