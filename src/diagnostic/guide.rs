@@ -33,6 +33,7 @@ pub const PAGES: &[Page] = &[
     Page { title: "Axes, constraints and the manifest", file: "manifest.md" },
     Page { title: "Conditions and constants", file: "conditions.md" },
     Page { title: "GLSL", file: "glsl.md" },
+    Page { title: "From naga_oil", file: "migrate.md" },
     Page { title: "Numeric cases", file: "cases.md" },
     Page { title: "The report of a check", file: "report.md" },
     Page { title: "Bundles", file: "bundles.md" },
