@@ -11,6 +11,7 @@ use super::lint::plural;
 use super::overwrite::Overwrite;
 use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostic, Severity, codes};
+use crate::limits::FILE_BYTES;
 use crate::migrate::{self, Migrated};
 use crate::output;
 use crate::project;
@@ -98,8 +99,9 @@ fn texts(migrated: &Migrated, out: &Path) -> (Vec<(String, String)>, bool) {
     let wesl = |path: &String| format!("{}.wesl", path.strip_suffix(".wgsl").unwrap_or(path));
     let mut texts: Vec<(String, String)> =
         migrated.files.iter().map(|(path, text)| (wesl(path), text.clone())).collect();
-    let is_ours = std::fs::read_to_string(out.join(WESL_TOML))
-        .is_ok_and(|text| text.starts_with(wesl_toml(&BTreeSet::new()).as_str()));
+    let own = wesl_toml(&BTreeSet::new());
+    let is_ours = crate::input::read(&out.join(WESL_TOML), FILE_BYTES as u64)
+        .is_ok_and(|text| text.starts_with(own.as_bytes()));
     let declares = is_ours || project::wesl_home(out).is_none();
     if declares {
         texts.push((WESL_TOML.to_owned(), wesl_toml(&migrated.features)));
