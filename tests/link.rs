@@ -32,7 +32,7 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 13] = [
+    let cases: [Case; 14] = [
         ("forward_alone_and_together", forward),
         ("traps_alone_and_together", traps),
         ("names_alone_and_together", names),
@@ -41,6 +41,7 @@ pub fn trials() -> Vec<Trial> {
         ("warnings_are_not_lost", warnings),
         ("warnings_beside_aliases", warnings_beside_aliases),
         ("an_entry_point_called_like_others", entry_points),
+        ("unused_functions_of_glsl", unused_functions),
         ("names_of_hlsl_and_glsl", kept_names),
         ("functions_that_old_glsl_lacks", lacking),
         ("arrays_of_matrices_of_two_rows", matrices_of_two_rows),
@@ -176,6 +177,32 @@ fn traps() -> Outcome {
 
 fn names() -> Outcome {
     alone_and_together("names", NAMES_MANIFEST, NAMES)
+}
+
+/// A GLSL function that nothing calls does not ship. Whether naga takes it must not decide about
+/// a permutation, neither alone nor as the first of all.
+fn unused_functions() -> Outcome {
+    const MANIFEST: &str = "[program.one]\nglsl = { fragment = \"one.frag.glsl\" }\n\
+        [program.one.axis]\nrows = { values = [false, true], default = true }\n";
+    // The local variable makes the function look as if it were used.
+    const TEXT: &str = "#version 450
+layout(location = 0) out vec4 color;
+#if ROWS
+void unused() {
+    float half_way = undeclared;
+}
+#endif
+void main() {
+    float unused = 0.5;
+    color = vec4(unused);
+}
+";
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("one.frag.glsl"), TEXT)?;
+    let (mut sources, packages, manifest) = package(folder.path(), "one", MANIFEST, "")?;
+    let together = agree(&mut sources, &packages, &manifest, 1)?;
+    assert_eq!(together.summary.programs[0].permutations, 2);
+    all_linked(&together)
 }
 
 fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {

@@ -11,7 +11,7 @@ use lamplight::compose::{Options, compose};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::diagnostic::{Diagnostics, Severity};
 use lamplight::execute::executors::eval::EXECUTOR;
-use lamplight::generate::Root;
+use lamplight::generate::{Root, entry_points};
 use lamplight::link::Linker;
 use lamplight::permute::{Program, Quoted, Setting, Settings, key};
 use lamplight::project::{self, library_manifest};
@@ -184,7 +184,7 @@ fn shader(
     let options = Options::default();
     let composed = compose(&graph, settings, &options).map_err(told)?;
     let root = Root { graph: &graph, settings, options: &options, clip: Default::default() };
-    let entries = root.entries(&composed).map_err(told)?;
+    let entries = entry_points(&composed).map_err(told)?;
     let shaders = root.compile_with(&entries, &asked.linker).map_err(told)?;
     let mut expect = |what: String, bytes: Vec<u8>| {
         asked.expected.push((format!("{name}, {what}"), bytes));
@@ -343,7 +343,7 @@ fn problems(sources: &mut SourceSet, packages: &Packages) -> Diagnostics {
             options: &options,
             clip: Default::default(),
         };
-        let entries = root.entries(&composed)?;
+        let entries = entry_points(&composed)?;
         root.compile(&entries, &[Target::WGSL])
     });
     made.map_or_else(|errors| graph.traced(errors), |_| Diagnostics::new())

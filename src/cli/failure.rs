@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 
 use super::guide;
-use crate::cli::terminal::{coloured, escaped, is_person, stderr};
+use crate::cli::terminal::{coloured, is_person, stderr};
 use crate::diagnostic::render::{Form, render};
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, escape_obeyed};
 use crate::source::SourceSet;
 
 /// Why a command did not succeed.
@@ -69,7 +69,7 @@ impl Failure {
                         writeln!(stderr(), "error: {message}")
                     }
                     DiagnosticForm::Coloured => {
-                        let message = escaped(&message);
+                        let message = escape_obeyed(&message);
                         writeln!(coloured(), "\x1b[1;31merror\x1b[0m: {message}")
                     }
                 };

@@ -81,6 +81,9 @@ fn in_a_child(stage: &str, job: &[u8]) -> Result<(), Exhausted> {
         .args(["rehearse", stage])
         // One thread, since each would reserve a large stack.
         .env("RAYON_NUM_THREADS", "1")
+        // The allocator must not reserve address space in advance: it would take so much that
+        // a job which fits was refused in one run of eight.
+        .env("MIMALLOC_ARENA_RESERVE", "0")
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())

@@ -9,7 +9,7 @@
 
 use std::io::{self, IsTerminal, Write};
 
-use crate::diagnostic::is_obeyed;
+use crate::diagnostic::{escape_obeyed, is_obeyed};
 
 /// Standard output, for text.
 pub fn stdout() -> Escaping<io::Stdout> {
@@ -24,14 +24,6 @@ pub fn stderr() -> Escaping<io::Stderr> {
 /// Standard error, for text with colours of our own.
 pub fn coloured() -> Escaping<io::Stderr> {
     Escaping { out: io::stderr(), has_colours: true, cut: Vec::new() }
-}
-
-/// Escapes text of somebody else, to be put into text of ours.
-pub fn escaped(text: &str) -> String {
-    let mut bytes = Vec::new();
-    // Writing to memory does not fail.
-    let _ = Escaping::new(&mut bytes).write_all(text.as_bytes());
-    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// Whether standard output is a terminal.
@@ -77,19 +69,16 @@ impl<W: Write> Escaping<W> {
     fn text(&mut self, text: &str) -> io::Result<()> {
         let mut rest = text;
         while let Some(at) = rest.find(is_obeyed) {
-            let (before, after) = rest.split_at(at);
+            let colour = if self.has_colours { colour(&rest[at..]) } else { 0 };
+            // A character that is obeyed has at least one byte, and so has an own colour.
+            let length = rest[at..].chars().next().map_or(0, char::len_utf8).max(colour);
+            let (before, found) = rest[..at + length].split_at(at);
             self.out.write_all(before.as_bytes())?;
-            let colour = if self.has_colours { colour(after) } else { 0 };
-            if colour > 0 {
-                self.out.write_all(&after.as_bytes()[..colour])?;
-                rest = &after[colour..];
-                continue;
+            match colour {
+                0 => self.out.write_all(escape_obeyed(found).as_bytes())?,
+                _ => self.out.write_all(found.as_bytes())?,
             }
-            let mut characters = after.chars();
-            if let Some(found) = characters.next() {
-                write!(self.out, "\\u{:04x}", u32::from(found))?;
-            }
-            rest = characters.as_str();
+            rest = &rest[at + length..];
         }
         self.out.write_all(rest.as_bytes())
     }

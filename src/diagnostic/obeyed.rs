@@ -10,3 +10,16 @@ pub fn is_obeyed(character: char) -> bool {
         other => other.is_control(),
     }
 }
+
+/// Text in which each character that a program would obey is written as `\u001b` and the like,
+/// which mean the same characters in JSON.
+pub fn escape_obeyed(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match is_obeyed(character) {
+            true => escaped += &format!("\\u{:04x}", u32::from(character)),
+            false => escaped.push(character),
+        }
+    }
+    escaped
+}

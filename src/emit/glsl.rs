@@ -110,6 +110,9 @@ fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Resul
 /// What stands between the name of a block's type and its group and binding.
 pub const BLOCK: &str = "_block_";
 
+/// The keywords that declare a block.
+const BLOCK_KEYWORDS: [&str; 2] = ["uniform", "buffer"];
+
 /// The name of a block's type, as the block's own name begins. naga ends names with an underscore,
 /// and browsers refuse two in a row in GLSL ES.
 pub fn before_block(ty: &str) -> &str {
@@ -127,7 +130,11 @@ fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo
             (numbered, place(source.module, *handle))
         {
             let own = format!("{}{BLOCK}{group}_{binding}{stage}", before_block(ty));
-            *text = text.replacen(&format!(" {name} {{"), &format!(" {own} {{"), 1);
+            // A structure of the author may have the name that naga gave the block.
+            for keyword in BLOCK_KEYWORDS {
+                let (old, new) = (format!("{keyword} {name} {{"), format!("{keyword} {own} {{"));
+                *text = text.replacen(&old, &new, 1);
+            }
             *name = own;
         }
     }

@@ -10,7 +10,6 @@ use crate::permute::manifest::File;
 use crate::permute::{Assignment, Program};
 use crate::resolve::{self, Graph, Packages};
 use crate::source::SourceSet;
-use crate::validate::{every, validate};
 
 /// One entry point of one language.
 pub struct Entry {
@@ -61,29 +60,18 @@ fn of_file(
     // Errors of the composer have their chain of imports already.
     let composed = compose::compose(&graph, &program.space.settings(point), &Options::default())
         .map_err(|errors| of_permutation(errors, program, point))?;
-    // The lean text is what will be compiled. If it is not valid, the author's text shows what is
-    // wrong.
-    let validated = validate(&compose::lean(&composed)).or_else(|_| every(&composed));
-    let points = validated.map_err(here)?.module.entry_points;
+    let points = shader::entry_points(&composed).map_err(here)?;
     if points.is_empty() {
         let message = format!("`{}` has no entry point", file.path);
         let error = Diagnostic::error(codes::NO_ENTRY_POINT, message).at(file.span, "named here");
         return Err(of_permutation(vec![error], program, point));
     }
-    for found in points {
-        let keep = shader::kept(&graph, &Options::default(), &found.name);
+    for (name, stage) in points {
+        let keep = shader::kept(&graph, &Options::default(), &name);
         let options = Options { keep, ..Options::default() };
-        let label = label(entries, language, &found);
+        let label = label(entries, language, &name, stage);
         let (program, graph) = (program.name.clone(), graph.clone());
-        entries.push(Entry {
-            program,
-            language,
-            name: found.name,
-            label,
-            stage: found.stage,
-            graph,
-            options,
-        });
+        entries.push(Entry { program, language, name, label, stage, graph, options });
     }
     Ok(())
 }
@@ -114,12 +102,12 @@ fn of_permutation(errors: Diagnostics, program: &Program, point: &Assignment) ->
     errors.into_iter().map(|error| error.note(note.as_str())).collect()
 }
 
-fn label(before: &[Entry], language: Language, point: &naga::EntryPoint) -> String {
-    let twin = before.iter().find(|entry| entry.language != language && entry.stage == point.stage);
+fn label(before: &[Entry], language: Language, name: &str, stage: naga::ShaderStage) -> String {
+    let twin = before.iter().find(|entry| entry.language != language && entry.stage == stage);
     match (language, twin) {
-        (Language::Wesl, _) => point.name.clone(),
+        (Language::Wesl, _) => name.to_owned(),
         (Language::Glsl, Some(twin)) => twin.label.clone(),
-        (Language::Glsl, None) => format!("{:?}", point.stage).to_lowercase(),
+        (Language::Glsl, None) => format!("{stage:?}").to_lowercase(),
     }
 }
 

@@ -19,7 +19,7 @@ mod summary;
 mod trace;
 
 pub use permutation::{Named, Permutation, permutation};
-pub use shader::{Root, Shader};
+pub use shader::{Root, Shader, entry_points};
 pub use shard::Shard;
 pub use sink::{Discard, Memory, Sink};
 pub use summary::{EntrySummary, Judged, ProgramSummary, Summary, WholeSummary};

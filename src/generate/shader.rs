@@ -7,7 +7,10 @@ use crate::diagnostic::Diagnostics;
 use crate::link::{self, Linker, Made};
 use crate::permute::Settings;
 use crate::resolve::Graph;
-use crate::validate::{every, on_large_stack, validate};
+use crate::validate::{every, naga_stage, on_large_stack, validate};
+
+/// The entry point of every GLSL text.
+const GLSL_ENTRY: &str = "main";
 
 /// An entry point in every target asked for.
 #[derive(Debug)]
@@ -33,22 +36,25 @@ pub struct Root<'a> {
     pub clip: Clip,
 }
 
-impl Root<'_> {
-    /// Name and stage of each entry point of the composed root.
-    ///
-    /// # Errors
-    /// What naga finds wrong with the text.
-    pub fn entries(
-        &self,
-        composed: &Composed,
-    ) -> Result<Vec<(String, naga::ShaderStage)>, Diagnostics> {
-        // The lean text is what will be compiled. If it is not valid, the author's text shows what
-        // is wrong.
-        let validated = validate(&lean(composed)).or_else(|_| every(composed))?;
-        let points = validated.module.entry_points.into_iter();
-        Ok(points.map(|point| (point.name, point.stage)).collect())
+/// Name and stage of each entry point of a composed root.
+///
+/// # Errors
+/// What naga finds wrong with the text.
+pub fn entry_points(composed: &Composed) -> Result<Vec<(String, naga::ShaderStage)>, Diagnostics> {
+    // A GLSL text has one entry point, whose stage is known. Its text is not validated here: it may
+    // have functions that no output needs, and what naga refuses about those is no error of
+    // another permutation either.
+    if let (Some(stage), Some(_)) = (composed.stage, composed.function(GLSL_ENTRY)) {
+        return Ok(vec![(GLSL_ENTRY.to_owned(), naga_stage(stage))]);
     }
+    // The lean text is what will be compiled. If it is not valid, the author's text shows what is
+    // wrong.
+    let validated = validate(&lean(composed)).or_else(|_| every(composed))?;
+    let points = validated.module.entry_points.into_iter();
+    Ok(points.map(|point| (point.name, point.stage)).collect())
+}
 
+impl Root<'_> {
     /// Compiles entry points, each from a text of its own, as `gen` does.
     ///
     /// # Errors

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::cut::Fragment;
+use super::cut::{Fragment, Reference};
 use super::names::{Chosen, Names, Renames};
 use super::reason::Reason;
 use super::words::words;
@@ -259,14 +259,28 @@ fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Rea
         let number = names.number(&name.to_lowercase())?;
         let usual = names.usual(number).to_owned();
         let base = usual.trim_end_matches('_').to_owned();
-        let mut numbered = (1..u32::MAX).map(|number| format!("{base}_{number}"));
-        let free = match taken.contains(&usual) {
-            false => usual,
-            true => numbered.find(|name| !taken.contains(name)).ok_or(Reason::Clash)?,
+        let around = around_small(&fragment, &name);
+        // naga puts numbers behind such a name, which may lead to the name of another local.
+        let is_free = |name: &String| {
+            around.iter().all(|(start, end)| !taken.contains(&format!("{start}{name}{end}")))
         };
+        let numbered = (1..u32::MAX).map(|number| format!("{base}_{number}"));
+        let mut candidates = std::iter::once(usual).chain(numbered);
+        let free = candidates.find(is_free).ok_or(Reason::Clash)?;
         fragment.settle(&name, &free);
     }
     Ok(fragment)
+}
+
+/// What stands before and behind a small reference in its identifiers.
+fn around_small(fragment: &Fragment, name: &str) -> BTreeSet<(String, String)> {
+    let is_it = |reference: &&Reference| reference.small && reference.name == name;
+    let around = |reference: &Reference| {
+        let place = word_around(&fragment.text, reference.at..reference.at);
+        let start = fragment.text[place.start..reference.at].to_owned();
+        (start, fragment.text[reference.at..place.end].to_owned())
+    };
+    fragment.references.iter().filter(is_it).map(around).collect()
 }
 
 #[cfg(test)]

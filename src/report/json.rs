@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::Origin;
+use crate::diagnostic::escape_obeyed;
 use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, Worst, language};
 
 /// The report as indented JSON.
@@ -16,7 +17,8 @@ pub fn text(report: &Report, origin: &Origin<'_>) -> String {
         "proofs": report.proofs.iter().map(|one| proof(one, origin)).collect::<Vec<_>>(),
         "untested": report.untested,
     });
-    format!("{value:#}\n")
+    // JSON itself escapes fewer characters than terminals and editors obey.
+    escape_obeyed(&format!("{value:#}\n"))
 }
 
 fn outcome(outcome: &Outcome, origin: &Origin<'_>) -> Value {

@@ -155,7 +155,8 @@ fn inputs_of_compute(composed: &Composed, name: &str) -> Diagnostic {
     }
 }
 
-fn naga_stage(stage: Stage) -> naga::ShaderStage {
+/// A stage as naga names it.
+pub(crate) fn naga_stage(stage: Stage) -> naga::ShaderStage {
     match stage {
         Stage::Vertex => naga::ShaderStage::Vertex,
         Stage::Fragment => naga::ShaderStage::Fragment,

@@ -19,6 +19,8 @@ const MORE: &[One] = &[
     ("refract(vec2f(0.6, -0.8), vec2f(0.0, 1.0), x).x", |_| 0.0, 0.1, 1.2),
     ("faceForward(vec2f(x, 1.0), vec2f(x, 2.0), vec2f(1.0, 0.0)).x", |_| 0.0, 0.1, 5.0),
     ("select(x, -x, x < 0.5)", |_| 0.0, -5.0, 5.0),
+    // Drivers compute `x + (b - x) * 1.0`, whose difference is rounded, so that this is not `b`.
+    ("mix(x, -1.8125, 1.0)", |_| 0.0, -5.0, 5.0),
     ("(mat2x2f(x, 1.0, 2.0, x) * vec2f(x, 3.0)).x", |_| 0.0, -5.0, 5.0),
     ("(vec2f(x, 3.0) * mat2x2f(x, 1.0, 2.0, x)).y", |_| 0.0, -5.0, 5.0),
     ("(mat2x2f(x, 1.0, 2.0, x) * mat2x2f(1.0, x, 0.5, 2.0))[1].x", |_| 0.0, -5.0, 5.0),

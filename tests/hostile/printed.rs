@@ -12,10 +12,20 @@ const EVIL: &str = "a\u{1b}[2J\u{9b}2J\u{202e}b";
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 3] =
-        [("arguments", arguments), ("messages", messages), ("composed", composed)];
+    let cases: [Case; 5] = [
+        ("arguments", arguments),
+        ("messages", messages),
+        ("composed", composed),
+        ("reports", reports),
+        ("rules_for_make", rules_for_make),
+    ];
     let trial = |(name, case): Case| Trial::test(format!("hostile::printed_{name}"), case);
     cases.into_iter().map(trial).collect()
+}
+
+/// Whether a terminal or a browser obeys a letter of these texts instead of showing it.
+fn is_obeyed(letter: char) -> bool {
+    letter != '\n' && letter.is_control() || letter == '\u{202e}'
 }
 
 /// Neither stream has anything that a terminal obeys.
@@ -26,8 +36,7 @@ fn harmless(arguments: &[&str], file: &str) -> Outcome {
         let output = run(&folder, &[arguments, &["--diagnostics", form]].concat())?;
         for stream in [output.stdout, output.stderr] {
             let text = String::from_utf8(stream)?;
-            let is_obeyed = |c: char| c != '\n' && c.is_control() || c == '\u{202e}';
-            if let Some(found) = text.chars().find(|c| is_obeyed(*c)) {
+            if let Some(found) = text.chars().find(|letter| is_obeyed(*letter)) {
                 return Err(format!("{arguments:?} as {form} prints {found:?}: {text}").into());
             }
         }
@@ -60,4 +69,50 @@ fn composed() -> Outcome {
     let output = run(&folder, &["compose", "m.wesl"])?;
     let text = String::from_utf8(output.stdout)?;
     if text.contains(EVIL) { Ok(()) } else { Err(text.into()) }
+}
+
+/// A page, JSON and JUnit of a failing case whose module, file and report folder have hostile names.
+fn reports() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let name = format!("<script>alert(1)<\u{8}script>\"'&--]]>{EVIL}");
+    let module = format!("/// {name}\nfn twice(x: f32) -> f32 {{ return x + x; }}\n");
+    fs::write(folder.path().join(format!("{name}.wesl")), module)?;
+    let case = "[[case]]\nfunction = \"twice\"\nformula = \"x\"\n[case.inputs]\nx = [1, 2]\n";
+    fs::write(folder.path().join(format!("{name}.toml")), case)?;
+    let report = format!("report {EVIL}");
+    let output = run(&folder, &["check", ".", "--report", &report])?;
+    if output.status.code() != Some(3) {
+        return Err(String::from_utf8_lossy(&output.stderr).into());
+    }
+    for form in ["index.html", "junit.xml", "report.json"] {
+        let text = fs::read_to_string(folder.path().join(&report).join(form))?;
+        if let Some(found) = text.chars().find(|letter| is_obeyed(*letter)) {
+            return Err(format!("{form} has {found:?}").into());
+        }
+        let is_markup = form != "report.json";
+        if is_markup && text.contains("<script>alert") {
+            return Err(format!("{form} has the name as a tag").into());
+        }
+        if !is_markup {
+            let json: serde_json::Value = serde_json::from_str(&text)?;
+            let module = json["outcomes"][0]["module"].as_str().unwrap_or_default();
+            assert_eq!(module, name, "{form} names another module");
+        }
+    }
+    Ok(())
+}
+
+/// A file name with a line end cannot add a rule to what make reads.
+fn rules_for_make() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let name = "a\nall: ; touch made\n.wesl";
+    let shader = "@fragment fn main() -> @location(0) vec4f { return vec4f(1.0); }\n";
+    fs::write(folder.path().join(name), shader)?;
+    let arguments = ["compile", name, "--target", "wgsl", "-o", "out", "--depfile", "rule.d"];
+    let output = run(&folder, &arguments)?;
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("has a line end, which a rule for make cannot hold"), "{said}");
+    assert!(!folder.path().join("rule.d").exists(), "the rule was written");
+    Ok(())
 }

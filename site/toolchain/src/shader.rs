@@ -7,7 +7,7 @@ use lamplight::bundle::{Clip, Language, Native, Reflection, Target};
 use lamplight::compose::{self, Composed, Keep, Mangle, Options};
 use lamplight::diagnostic::{self, Diagnostics, Severity, codes};
 use lamplight::emit::targets;
-use lamplight::generate::{Root, Shader};
+use lamplight::generate::{Root, Shader, entry_points};
 use lamplight::link::Linker;
 use lamplight::lint;
 use lamplight::permute::{Manifest, Program, Settings};
@@ -210,7 +210,7 @@ fn shaders(
     wanted: &[Target],
 ) -> Result<Vec<Shader>, Diagnostics> {
     let root = Root { graph, settings, options, clip };
-    let mut entries = root.entries(composed)?;
+    let mut entries = entry_points(composed)?;
     if let Some(wanted) = &request.entry {
         entries.retain(|(name, _)| name == wanted);
     }

@@ -19,8 +19,10 @@ pub fn write(
         .filter(|(_, source)| source.on_disk)
         .map(|(_, source)| source.path.as_str())
         .collect();
-    let outputs: Vec<String> = outputs.map(|path| escaped(&path.to_string_lossy())).collect();
-    let inputs: String = inputs.iter().map(|path| format!(" \\\n  {}", escaped(path))).collect();
+    let outputs: Vec<String> =
+        outputs.map(|path| escaped(&path.to_string_lossy())).collect::<Result<_, _>>()?;
+    let inputs: Vec<String> = inputs.iter().map(|path| escaped(path)).collect::<Result<_, _>>()?;
+    let inputs: String = inputs.iter().map(|path| format!(" \\\n  {path}")).collect();
     let rule = format!("{}:{inputs}\n", outputs.join(" "));
     // A file that is there may be replaced if it is a rule for the same outputs.
     let is_ours =
@@ -28,8 +30,14 @@ pub fn write(
     Ok(output::write_file(path, rule.as_bytes(), is_ours, replace)?)
 }
 
-/// A name in the syntax of make.
-fn escaped(path: &str) -> String {
+/// A name in the syntax of make. A line end in a name would begin a rule of its own, and make has no
+/// way to write one.
+fn escaped(path: &str) -> Result<String, Failure> {
+    if path.contains(['\n', '\r', '\0']) {
+        return Err(Failure::input(format!(
+            "the file name {path:?} has a line end, which a rule for make cannot hold"
+        )));
+    }
     let mut text = String::with_capacity(path.len());
     for letter in path.chars() {
         match letter {
@@ -38,5 +46,5 @@ fn escaped(path: &str) -> String {
             _ => text.push(letter),
         }
     }
-    text
+    Ok(text)
 }

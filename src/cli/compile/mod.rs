@@ -16,7 +16,7 @@ use super::input::{Context, Input, Ready};
 use super::overwrite::Overwrite;
 use crate::bundle::{Clip, Target};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::generate::{Root, Shader};
+use crate::generate::{Root, Shader, entry_points};
 use crate::source::SourceSet;
 use files::File;
 
@@ -103,7 +103,7 @@ fn compile(
     let Context { graph, settings, options, .. } = &context;
     let clip = arguments.clip.unwrap_or(context.clip);
     let root = Root { graph, settings, options, clip };
-    let shaders = root.entries(&composed).and_then(|entries| {
+    let shaders = entry_points(&composed).and_then(|entries| {
         let entries = chosen(arguments, file, entries)?;
         root.compile(&entries, targets)
     });

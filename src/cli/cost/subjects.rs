@@ -14,7 +14,7 @@ use crate::catalogue::{self, Item, Kind};
 use crate::cost::pipeline::Known;
 use crate::cost::{self, Subject, permutations};
 use crate::diagnostic::nearest;
-use crate::generate::{Memory, Request, Root, Tools, generate};
+use crate::generate::{Memory, Request, Root, Tools, entry_points, generate};
 use crate::permute::{Manifest, Quoted};
 use crate::proof::library::Library;
 use crate::resolve::Packages;
@@ -99,8 +99,7 @@ fn shaders(
         arguments.input.compose(file, SourceSet::default(), form)?;
     let Context { graph, settings, options, .. } = &context;
     let root = Root { graph, settings, options, clip: Clip::default() };
-    let shaders = root
-        .entries(&composed)
+    let shaders = entry_points(&composed)
         .and_then(|entries| root.compile(&entries, &[Target::SPIRV]))
         .map_err(|errors| Failure::Input(sources, context.explain(errors)))?;
     let known = shaders.iter().map(|shader| {

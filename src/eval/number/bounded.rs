@@ -55,6 +55,22 @@ impl Bounded {
         Self { value, error: if held { error } else { f64::INFINITY } }
     }
 
+    /// Widens the bound of `mix(a, b, c)` to that of `a + (b - a) * c`, which drivers compute too.
+    /// Where `c` is 1, that is not always `b`, since the difference is rounded.
+    fn or_as_lerp(self, a: Self, b: Self, c: Self, doubt: &mut bool) -> Self {
+        let (start, end, share) =
+            (Self::exact(a.value), Self::exact(b.value), Self::exact(c.value));
+        let span = Self::binary(Binary::Subtract, end, start, doubt);
+        let part = Self::binary(Binary::Multiply, span, share, doubt);
+        let rounded = Self::binary(Binary::Add, start, part, doubt);
+        let inherited = times(1.0 - c.value, a.error)
+            + times(c.value, b.error)
+            + times(span.value, c.error)
+            + times(c.error, a.error + b.error);
+        let error = inherited + rounded.error + (rounded.value - self.value).abs();
+        Self::new(self.value, self.error.max(error))
+    }
+
     fn exact(value: f64) -> Self {
         Self { value, error: 0.0 }
     }
@@ -289,7 +305,8 @@ impl Number for Bounded {
             Ternary::Mix => {
                 let rest = Self::binary(Binary::Subtract, one, c, doubt);
                 let first = Self::binary(Binary::Multiply, a, rest, doubt);
-                Self::binary(Binary::Add, first, Self::binary(Binary::Multiply, b, c, doubt), doubt)
+                let second = Self::binary(Binary::Multiply, b, c, doubt);
+                Self::binary(Binary::Add, first, second, doubt).or_as_lerp(a, b, c, doubt)
             }
             Ternary::SmoothStep => {
                 let numerator = Self::binary(Binary::Subtract, c, a, doubt);

@@ -1,4 +1,4 @@
-//! Caches that answer wrongly, and clocks that jump. The bundle must have the same bytes as without
+//! Caches that answer wrongly, and times of files that jump. The bundle must have the same bytes as without
 //! a cache, whatever a record contains and whatever time files have.
 
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ const WRONG: &[(&str, Wrong)] = &[
     ("record of noise", |record, _, number| noise(record.len(), number)),
 ];
 
-/// Jumps of the clock in days, into the past and the future, for every file of the package.
+/// How far the times of files jump, in days, into the past and the future, for every file of the package.
 const JUMPS: [i64; 6] = [-20_000, -366, -1, 1, 366, 20_000];
 
 /// Runs all of them; returns what went wrong.
@@ -48,10 +48,10 @@ pub fn run(
     for days in JUMPS {
         for path in files(&package.folder)? {
             shift(&path, days)?;
-            *counts.entry("clock that jumps").or_default() += 1;
+            *counts.entry("time of a file that jumps").or_default() += 1;
         }
         if package.made(false)? != expected {
-            findings.push(format!("clock that jumps by {days} days: another bundle"));
+            findings.push(format!("times of files that jump by {days} days: another bundle"));
         }
     }
     findings.iter().for_each(|finding| println!("{finding}"));
