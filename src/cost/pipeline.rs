@@ -61,7 +61,7 @@ impl Known {
     /// # Errors
     /// They are no words, or the entry point's name has a zero.
     pub fn new(entry: &str, bytes: &[u8], reflection: Reflection) -> Result<Self, String> {
-        if bytes.len() % 4 != 0 {
+        if !bytes.len().is_multiple_of(4) {
             return Err(format!("{} bytes of SPIR-V are not a whole number of words", bytes.len()));
         }
         let words = spirv::words(bytes);
