@@ -243,7 +243,10 @@ function drawMesh(
     for (const [place, number] of blocks) {
         const bytes = given.get(place);
         if (!bytes) throw new Error(`nothing is given for the binding ${place}`);
-        gl.bindBufferBase(gl.UNIFORM_BUFFER, number, buffer(gl.UNIFORM_BUFFER, bytes));
+        // std140 rounds the size of a block up, and WebGL draws nothing from a smaller buffer.
+        const whole = new Uint8Array(Math.ceil(bytes.length / 16) * 16);
+        whole.set(bytes);
+        gl.bindBufferBase(gl.UNIFORM_BUFFER, number, buffer(gl.UNIFORM_BUFFER, whole));
     }
     const array = gl.createVertexArray();
     owned.push(() => gl.deleteVertexArray(array));

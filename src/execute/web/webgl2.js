@@ -247,6 +247,18 @@ void main() {
     return made;
   }
 
+  // The buffer of a block. std140 rounds the size of a block up to 16 bytes, and WebGL draws nothing
+  // from a buffer that is smaller.
+  function block(text) {
+    const given = bytesOf(text);
+    const bytes = new Uint8Array(Math.ceil(given.length / 16) * 16);
+    bytes.set(given);
+    const made = gl.createBuffer();
+    gl.bindBuffer(gl.UNIFORM_BUFFER, made);
+    gl.bufferData(gl.UNIFORM_BUFFER, bytes, gl.STATIC_DRAW);
+    return made;
+  }
+
   function attributes({ stride, attributes, words }) {
     if (!attributes.length) return [];
     const vertices = buffer(gl.ARRAY_BUFFER, words);
@@ -264,7 +276,7 @@ void main() {
   function drawItem(mesh, blocks, buffers) {
     const used = new Map(blocks.map(({ place, number }) => [place, number]));
     const kept = [...used].map(([place, number]) => {
-      const made = buffer(gl.UNIFORM_BUFFER, buffers[place]);
+      const made = block(buffers[place]);
       gl.bindBufferBase(gl.UNIFORM_BUFFER, number, made);
       return made;
     });
