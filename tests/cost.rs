@@ -244,8 +244,7 @@ struct Out { @builtin(position) p: vec4f, @location(0) n: vec3f, @location(1) @i
         return Err(format!("found the stages {told:?}").into());
     }
     if alone[0].1 < 5 || counting[0].1 < 3 || with[1].1 < without[1].1 + 5 {
-        let what = format!("{alone:?}, {counting:?}, {without:?}; with the feature {with:?}");
-        return Err(format!("too few instructions: {what}").into());
+        return Err(format!("too few: {alone:?} {counting:?} {without:?} {with:?}").into());
     }
     Ok(())
 }
