@@ -34,7 +34,7 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 16] = [
+    let cases: [Case; 17] = [
         ("forward_alone_and_together", forward),
         ("traps_alone_and_together", traps),
         ("names_alone_and_together", names),
@@ -44,6 +44,7 @@ pub fn trials() -> Vec<Trial> {
         ("warnings_beside_aliases", warnings_beside_aliases),
         ("an_entry_point_called_like_others", entry_points),
         ("unused_functions_of_glsl", unused_functions),
+        ("constants_of_glsl_like_members", constants_like_members),
         ("names_of_hlsl_and_glsl", kept_names),
         ("blocks_beside_structures", blocks_beside_structures),
         ("variables_named_after_structures", variables_named_after_structures),
@@ -213,6 +214,45 @@ void main() {
     let (mut sources, packages, manifest) = package(folder.path(), "one", MANIFEST, "")?;
     let together = agree(&mut sources, &packages, &manifest, 1)?;
     assert_eq!(together.summary.programs[0].permutations, 2);
+    all_linked(&together)
+}
+
+/// A constant and a variable of GLSL may have the name of a block's member, whichever is declared
+/// first, and are not read from the block.
+fn constants_like_members() -> Outcome {
+    const MANIFEST: &str = "[program.one]\nglsl = { fragment = \"one.frag.glsl\" }\n\
+        targets = [\"wgsl\"]\n[program.one.axis]\nfirst = { values = [false, true] }\n";
+    const TEXT: &str = "#version 450
+#if FIRST
+const float bias = 0.25;
+const int rows = 2;
+#endif
+struct Light { float bias; };
+layout(set = 0, binding = 0) uniform Shadow {
+    vec4 tint;
+    float bias, strength[2];
+    vec4 rows;
+} shadow;
+#if !FIRST
+const float bias = 0.25;
+const int rows = 2;
+#endif
+float strength = 0.5;
+layout(location = 0) out vec4 color;
+float shaded(float x) { Light light = Light(bias); return x * light.bias + float(rows); }
+void main() { color = shadow.tint * shaded(bias) * strength; }
+";
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("one.frag.glsl"), TEXT)?;
+    let (mut sources, packages, manifest) = package(folder.path(), "one", MANIFEST, "")?;
+    let together = agree(&mut sources, &packages, &manifest, 1)?;
+    for ((_, key), unit) in units(&together) {
+        let text = String::from_utf8_lossy(&unit.targets["wgsl"].bytes);
+        let is_read = |member: &&str| text.contains(&format!("shadow.{member}"));
+        if let Some(member) = ["bias", "strength", "rows"].iter().find(is_read) {
+            return Err(format!("[{key}] reads the member `{member}`:\n{text}").into());
+        }
+    }
     all_linked(&together)
 }
 

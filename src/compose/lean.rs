@@ -5,11 +5,13 @@
 //! alone are compiled once, and an edited comment does not cause any compilation.
 //!
 //! Type aliases are replaced by what they stand for. naga makes a type of its own for an alias, so
-//! in Metal an array and its alias would be two types.
+//! in Metal an array and its alias would be two types. Variables of GLSL that are called as a member
+//! of a block get another name, since naga would take one for the other.
 
 use std::borrow::Cow;
 use std::ops::Range;
 
+use super::members::rename_like_members;
 use super::{Composed, Part, PartKind, SourceMap};
 use crate::bundle::Language;
 use crate::parse::wesl::blank::{block_comment, is_blank, line_comment};
@@ -46,7 +48,7 @@ pub fn lean(composed: &Composed) -> Composed {
             text.push('\n');
         }
     }
-    Composed {
+    rename_like_members(Composed {
         text,
         map: SourceMap::default(),
         parts,
@@ -54,7 +56,7 @@ pub fn lean(composed: &Composed) -> Composed {
         warnings: Vec::new(),
         decisions: Vec::new(),
         ..*composed
-    }
+    })
 }
 
 /// Writes parts without their comments and layout, each on a new line.

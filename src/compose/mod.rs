@@ -2,6 +2,7 @@
 
 pub mod glsl;
 pub mod lean;
+mod members;
 mod part;
 mod source_map;
 pub mod wesl;

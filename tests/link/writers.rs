@@ -190,14 +190,16 @@ pub fn lacking() -> Outcome {
     Ok(())
 }
 
-/// naga calls the block of a uniform that is no structure `type_block_1Fragment`, also where the
+/// naga calls the block of a uniform that is no structure `type_block_0Fragment`, also where the
 /// author has a structure of that name. The structure keeps its name, and blocks get their own.
 pub fn blocks_beside_structures() -> Outcome {
     let text = "
-struct type_block_1Fragment { half: vec4f }
+struct type_block_0Fragment { half: vec4f }
 @group(0) @binding(0) var<uniform> plain: vec4f;
-@group(0) @binding(1) var<uniform> own: type_block_1Fragment;
-@fragment fn fs_main() -> @location(0) vec4f { return plain + own.half; }
+@group(0) @binding(1) var<uniform> own: type_block_0Fragment;
+// A name like this one is not linked, so that naga writes the text as a whole.
+fn Zqbqz(x: vec4f) -> vec4f { return x; }
+@fragment fn fs_main() -> @location(0) vec4f { return Zqbqz(own.half) + plain; }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
     judged(text, "").map(|_| ())

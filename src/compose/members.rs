@@ -1,0 +1,110 @@
+//! Renames the variables and constants of a GLSL text that have the name of a block's member.
+//!
+//! The members of a block with an instance name are reached through that name alone, so a constant
+//! may be called as one of them. naga's front end declares such members as variables of the module
+//! all the same, and of two declarations with one name the later one wins. So a constant before the
+//! block would be read from the block.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Composed, Part, PartKind};
+use crate::bundle::Language;
+use crate::parse::words::{PieceKind, pieces, words};
+
+/// The text with such variables and constants renamed in every place. Members keep their names,
+/// since engines see them.
+pub fn rename_like_members(composed: Composed) -> Composed {
+    if composed.language != Language::Glsl {
+        return composed;
+    }
+    let names = new_names(&composed);
+    if names.is_empty() { composed } else { renamed(&composed, &names) }
+}
+
+/// The new name of each variable and constant that needs one.
+fn new_names(composed: &Composed) -> BTreeMap<String, String> {
+    let blocks = composed.parts.iter().filter(|part| is_block(composed, part));
+    let members: BTreeSet<&str> =
+        blocks.flat_map(|block| members(composed, block)).map(|member| member.text).collect();
+    let is_plain = |part: &&Part| {
+        matches!(part.kind, PartKind::Variable | PartKind::Constant) && !is_block(composed, part)
+    };
+    let names = composed.parts.iter().filter(is_plain).flat_map(|part| &part.names);
+    let alike: Vec<&String> = names.filter(|name| members.contains(name.as_str())).collect();
+    if alike.is_empty() {
+        return BTreeMap::new();
+    }
+    let mut taken: BTreeSet<Cow<'_, str>> =
+        words(&composed.text).map(|word| word.text.into()).collect();
+    let mut names = BTreeMap::new();
+    for name in alike {
+        let mut numbered = (1..u32::MAX).map(|number| format!("{name}_{number}"));
+        let free = numbered.find(|new| !taken.contains(new.as_str()));
+        if let Some(new) = free {
+            taken.insert(new.clone().into());
+            names.insert(name.clone(), new);
+        }
+    }
+    names
+}
+
+/// Whether a part is a block with an instance name: one that declares that name only.
+fn is_block(composed: &Composed, part: &Part) -> bool {
+    let text = &composed.text[part.range.clone()];
+    let first = text.find(['{', '=', ';']).map(|at| text.as_bytes()[at]);
+    let behind = text.rsplit_once('}').map_or("", |(_, behind)| behind);
+    part.kind == PartKind::Variable && first == Some(b'{') && words(behind).next().is_some()
+}
+
+/// The words between a block's braces. Types are among them, and no variable has their name.
+fn members<'c>(
+    composed: &'c Composed,
+    block: &Part,
+) -> impl Iterator<Item = crate::parse::words::Word<'c>> {
+    let text = &composed.text[block.range.clone()];
+    let open = text.find('{').map_or(text.len(), |at| at + 1);
+    let close = text.rfind('}').unwrap_or(text.len());
+    words(text.get(open..close).unwrap_or_default())
+}
+
+fn renamed(composed: &Composed, names: &BTreeMap<String, String>) -> Composed {
+    let mut text = String::with_capacity(composed.text.len());
+    let mut parts = Vec::with_capacity(composed.parts.len());
+    let mut end = 0;
+    for part in &composed.parts {
+        text.push_str(&composed.text[end..part.range.start]);
+        end = part.range.end;
+        let start = text.len();
+        let declares_members = part.kind == PartKind::Struct || is_block(composed, part);
+        append(&composed.text[part.range.clone()], names, declares_members, &mut text);
+        let new = |name: &String| names.get(name).unwrap_or(name).clone();
+        let own = part.names.iter().map(new).collect();
+        parts.push(Part { names: own, range: start..text.len(), ..part.clone() });
+    }
+    text.push_str(&composed.text[end..]);
+    Composed { text, parts, ..composed.clone() }
+}
+
+/// Appends a part. Names behind a point are members. So are those of a structure or block, except
+/// within brackets, where the length of an array stands. A qualifier of a layout is no name either,
+/// but what it is set to may be one.
+fn append(text: &str, names: &BTreeMap<String, String>, declares_members: bool, out: &mut String) {
+    let (mut before, mut brackets, mut in_layout) = (' ', 0_u32, false);
+    for piece in pieces(text) {
+        match piece.text {
+            "[" => brackets += 1,
+            "]" => brackets = brackets.saturating_sub(1),
+            "layout" => in_layout = true,
+            ")" => in_layout = false,
+            _ => {}
+        }
+        let is_member =
+            before == '.' || declares_members && brackets == 0 || in_layout && before != '=';
+        let new = names.get(piece.text).filter(|_| piece.kind == PieceKind::Word && !is_member);
+        out.push_str(new.map_or(piece.text, String::as_str));
+        if piece.kind != PieceKind::Blank {
+            before = piece.text.chars().next_back().unwrap_or(' ');
+        }
+    }
+}
