@@ -248,7 +248,7 @@ void main() { color = shadow.tint * shaded(bias) * strength; }
     let together = agree(&mut sources, &packages, &manifest, 1)?;
     for ((_, key), unit) in units(&together) {
         let text = String::from_utf8_lossy(&unit.targets["wgsl"].bytes);
-        let is_read = |member: &&str| text.contains(&format!("shadow.{member}"));
+        let is_read = |member: &&&str| text.contains(&format!("shadow.{member}"));
         if let Some(member) = ["bias", "strength", "rows"].iter().find(is_read) {
             return Err(format!("[{key}] reads the member `{member}`:\n{text}").into());
         }
