@@ -294,7 +294,7 @@ fn budget() -> Outcome {
 /// every value of every axis is one of the library's manifest.
 fn record_is_current() -> Outcome {
     let mut sources = SourceSet::default();
-    let library = cost::library(&mut sources);
+    let library = cost::library_costs(&mut sources);
     let recorded = library.map_err(|problems| format!("{problems:?}"))?;
     let (_, manifest) =
         project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;

@@ -120,7 +120,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
 
 fn main() -> ExitCode {
     // While there is one thread; where it is missing, the trials that need it say so.
-    lamplight::execute::executors::prepare(lamplight::execute::executors::ALL);
+    lamplight::execute::executors::prepare_process(lamplight::execute::executors::ALL);
     let trials = KINDS.iter().flat_map(|kind| kind()).collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }

@@ -189,7 +189,7 @@ impl Driver {
         if let Some(known) = self.telling.get(&inputs) {
             return Ok(known.clone());
         }
-        let told = probe::told(&stage.validated.module, stage.entry)
+        let told = probe::told_inputs(&stage.validated.module, stage.entry)
             .ok_or_else(|| lost("the fragment stage is not one".to_owned()))?;
         let point = EntryPoint { module: &told.module, entry: probe::TELLS };
         let made = Shipped::of(point, self.target)?;

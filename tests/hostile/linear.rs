@@ -51,9 +51,9 @@ fn is_linear(case: &Case) -> Outcome {
 
 /// What composing or reading the first file takes, whether it succeeds or not.
 fn steps(files: &Files) -> u64 {
-    let before = limits::taken();
+    let before = limits::steps_taken();
     let _ = outcome(files);
-    limits::taken() - before
+    limits::steps_taken() - before
 }
 
 fn outcome(files: &Files) -> Result<(), Diagnostics> {

@@ -80,7 +80,7 @@ impl Body<'_, '_> {
             Expression::ImageSample { .. }
             | Expression::ImageLoad { .. }
             | Expression::ImageQuery { .. } => self.image(handle),
-            ref other => Err(Error::unsupported(name(other))),
+            ref other => Err(Error::unsupported(expression_name(other))),
         }
     }
 
@@ -229,7 +229,7 @@ impl Body<'_, '_> {
     }
 }
 
-fn name(expression: &Expression) -> String {
+fn expression_name(expression: &Expression) -> String {
     let text = format!("{expression:?}");
     format!("the operation `{}`", text.split([' ', '(', '{']).next().unwrap_or("?"))
 }
