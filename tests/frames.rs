@@ -368,8 +368,7 @@ fn mesh(vertex: &Reflection) -> Mesh {
 fn agrees(renderer: &dyn Session, scene: &Scene) -> Result<Tally, String> {
     let Scene { vertex, fragment, drawn: [drawn_vertex, drawn_fragment], mesh, buffers, .. } =
         scene;
-    let watched =
-        probe::watched_inputs(&drawn_fragment.module, fragment.entry).ok_or("no colour")?;
+    let watched = probe::watch_entry(&drawn_fragment.module, fragment.entry).ok_or("no colour")?;
     let drawing = Drawing {
         vertex: EntryPoint { module: &drawn_vertex.module, entry: vertex.entry },
         fragment: Some(EntryPoint { module: &watched.module, entry: fragment.entry }),

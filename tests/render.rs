@@ -208,7 +208,7 @@ pub fn watched(
     size: [u32; 2],
 ) -> Result<Vec<Vec<u32>>, String> {
     let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
-    let watched = watch::watched_inputs(&stage.validated.module, stage.entry).ok_or("no colour")?;
+    let watched = watch::watch_entry(&stage.validated.module, stage.entry).ok_or("no colour")?;
     let views = [prepared.eye_view([0.0; 2], size).map_err(|problem| problem.message)?];
     let fragment = EntryPoint { module: &watched.module, entry: stage.entry };
     let frames =

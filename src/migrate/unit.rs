@@ -56,7 +56,7 @@ pub fn read_elements<'a>(
     text: &'a str,
     nodes: &'a [Node],
 ) -> Result<Vec<Element<'a>>, (usize, bool)> {
-    let steps = STEPS_AT_LEAST + STEPS * count_tokens(nodes);
+    let steps = STEPS_AT_LEAST + STEPS * count_nodes(nodes);
     let reader = Reader { text, steps: Cell::new(steps) };
     let facts = Facts::default();
     let row = reader.row(nodes, &facts);
@@ -70,14 +70,12 @@ pub fn read_elements<'a>(
     }
 }
 
-fn count_tokens(nodes: &[Node]) -> usize {
-    let one = |node: &Node| match node {
-        Node::Choice(choice) => {
-            choice.branches.iter().map(|branch| count_tokens(&branch.nodes)).sum()
-        }
+fn count_nodes(nodes: &[Node]) -> usize {
+    let of = |node: &Node| match node {
+        Node::Choice(one) => one.branches.iter().map(|branch| count_nodes(&branch.nodes)).sum(),
         _ => 1,
     };
-    nodes.iter().map(one).sum()
+    nodes.iter().map(of).sum()
 }
 
 fn node_start(node: &Node) -> usize {

@@ -18,7 +18,7 @@ pub struct Watched {
 
 /// The module with a fragment entry point that also returns its inputs. `None` without such an
 /// entry point, or if that does not return four numbers at location 0.
-pub fn watched_inputs(module: &Module, entry: &str) -> Option<Watched> {
+pub fn watch_entry(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
     let mut body = Body::new(&mut module, index);
@@ -49,7 +49,7 @@ pub fn told_inputs(module: &Module, entry: &str) -> Option<Watched> {
 }
 
 /// The module with a fragment entry point that returns the bits of its colour as four words.
-/// `None` as for [`watched_inputs`].
+/// `None` as for [`watch_entry`].
 pub fn bits_module(module: &Module, entry: &str) -> Option<Module> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
