@@ -73,15 +73,8 @@ pub fn run_variants(
         }
         if arguments.compose || arguments.compile {
             let bar = Bar::new();
-            let composed = add_composed(
-                &arguments,
-                &mut sources,
-                &packages,
-                &manifest,
-                program,
-                &mut report,
-                &bar,
-            );
+            let composed =
+                compose(&arguments, &mut sources, &packages, &manifest, program, &mut report, &bar);
             bar.clear();
             composed.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
         }
@@ -140,7 +133,7 @@ pub fn open_manifest(
 }
 
 /// Adds what only composing and compiling can tell.
-fn add_composed(
+fn compose(
     arguments: &Arguments,
     sources: &mut SourceSet,
     packages: &Packages,

@@ -137,11 +137,8 @@ pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
             TOP + side - (row + 1) as f64 * cell
         );
     }
-    let title = format!(
-        "{} across, {} up: share of allowed",
-        escape_markup(&x.name),
-        escape_markup(&y.name)
-    );
+    let names = [x, y].map(|axis| escape_markup(&axis.name));
+    let title = format!("{} across, {} up: share of allowed", names[0], names[1]);
     let mut svg =
         format!("<svg viewBox=\"0 0 {width} {HEIGHT}\" class=\"plot map\"><title>{title}</title>");
     for (level, path) in paths.iter().enumerate().filter(|(_, path)| !path.is_empty()) {
@@ -151,8 +148,7 @@ pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
     let _ = write!(
         svg,
         "<text x=\"{LEFT}\" y=\"10\" class=\"name\">{} × {}</text>",
-        escape_markup(&x.name),
-        escape_markup(&y.name)
+        names[0], names[1]
     );
     for (value, y) in [(y.scale.high, TOP + 4.0), (y.scale.low, floor)] {
         let _ = write!(

@@ -24,18 +24,13 @@ pub(super) fn geometry<N: Number>(
                     .fold(0, u32::wrapping_add),
             )
         }
-        Geometry::Cross => {
-            store_vector(m, to, 3, cross(&load_vector(m, a, 3), &load_vector(m, b, 3), doubt))
-        }
+        Geometry::Cross => put(m, to, 3, cross(&load(m, a, 3), &load(m, b, 3), doubt)),
         Geometry::Distance => {
-            m[to] = length(
-                &zip_vectors(Binary::Subtract, &load_vector(m, a, n), &load_vector(m, b, n), doubt)
-                    [..n],
-                doubt,
-            )
+            m[to] =
+                length(&zip(Binary::Subtract, &load(m, a, n), &load(m, b, n), doubt)[..n], doubt)
         }
         Geometry::Length => m[to] = length(&m[a..a + n], doubt),
-        Geometry::Normalize => store_vector(m, to, n, normalize(&load_vector(m, a, n), n, doubt)),
+        Geometry::Normalize => put(m, to, n, normalize(&load(m, a, n), n, doubt)),
         Geometry::FaceForward => {
             let front = N::compare(
                 Compare::Less,
@@ -43,23 +38,11 @@ pub(super) fn geometry<N: Number>(
                 N::from_f64(0.0),
                 doubt,
             );
-            let e1 = load_vector(m, a, n);
-            store_vector(
-                m,
-                to,
-                n,
-                if front { e1 } else { e1.map(|x| N::unary(Unary::Negate, x, doubt)) },
-            );
+            let e1 = load(m, a, n);
+            put(m, to, n, if front { e1 } else { e1.map(|x| N::unary(Unary::Negate, x, doubt)) });
         }
-        Geometry::Reflect => {
-            store_vector(m, to, n, reflect(&load_vector(m, a, n), &load_vector(m, b, n), n, doubt))
-        }
-        Geometry::Refract => store_vector(
-            m,
-            to,
-            n,
-            refract(&load_vector(m, a, n), &load_vector(m, b, n), m[c], n, doubt),
-        ),
+        Geometry::Reflect => put(m, to, n, reflect(&load(m, a, n), &load(m, b, n), n, doubt)),
+        Geometry::Refract => put(m, to, n, refract(&load(m, a, n), &load(m, b, n), m[c], n, doubt)),
         Geometry::Determinant => m[to] = determinant(&m[a..a + n * n], n, doubt),
         Geometry::Inverse => inverse(m, n, to, a, doubt),
         Geometry::Modf => (0..n).for_each(|i| {
@@ -71,27 +54,25 @@ pub(super) fn geometry<N: Number>(
             let (fraction, exponent) = frexp(m[a + i]);
             (m[to + i], m[to + n + i]) = (fraction, N::from_word(exponent as u32));
         }),
-        Geometry::Ldexp => {
-            (0..n).for_each(|i| m[to + i] = scale_exponent(m[a + i], m[b + i].word() as i32))
-        }
+        Geometry::Ldexp => (0..n).for_each(|i| m[to + i] = ldexp(m[a + i], m[b + i].word() as i32)),
     }
 }
 
-fn load_vector<N: Number>(m: &[N], from: usize, n: usize) -> Vector<N> {
+fn load<N: Number>(m: &[N], from: usize, n: usize) -> Vector<N> {
     let mut vector = [N::default(); 4];
     vector[..n].copy_from_slice(&m[from..from + n]);
     vector
 }
 
-fn store_vector<N: Number>(m: &mut [N], to: usize, n: usize, vector: Vector<N>) {
+fn put<N: Number>(m: &mut [N], to: usize, n: usize, vector: Vector<N>) {
     m[to..to + n].copy_from_slice(&vector[..n]);
 }
 
-fn zip_vectors<N: Number>(op: Binary, a: &Vector<N>, b: &Vector<N>, doubt: &mut bool) -> Vector<N> {
+fn zip<N: Number>(op: Binary, a: &Vector<N>, b: &Vector<N>, doubt: &mut bool) -> Vector<N> {
     std::array::from_fn(|i| N::binary(op, a[i], b[i], doubt))
 }
 
-fn scale_vector<N: Number>(vector: &Vector<N>, factor: N, doubt: &mut bool) -> Vector<N> {
+fn times<N: Number>(vector: &Vector<N>, factor: N, doubt: &mut bool) -> Vector<N> {
     vector.map(|x| N::binary(Binary::Multiply, x, factor, doubt))
 }
 
@@ -121,7 +102,7 @@ fn normalize<N: Number>(vector: &Vector<N>, n: usize, doubt: &mut bool) -> Vecto
 /// `e1 - 2 dot(e2, e1) e2`.
 fn reflect<N: Number>(e1: &Vector<N>, e2: &Vector<N>, n: usize, doubt: &mut bool) -> Vector<N> {
     let twice = N::binary(Binary::Multiply, N::from_f64(2.0), N::dot(&e2[..n], &e1[..n]), doubt);
-    zip_vectors(Binary::Subtract, e1, &scale_vector(e2, twice, doubt), doubt)
+    zip(Binary::Subtract, e1, &times(e2, twice, doubt), doubt)
 }
 
 /// `k = 1 - r^2 (1 - dot(e2, e1)^2)`; 0 if k < 0, else `r e1 - (r dot(e2, e1) + sqrt(k)) e2`.
@@ -144,12 +125,7 @@ fn refract<N: Number>(
     }
     let root = N::unary(Unary::Sqrt, k, doubt);
     let along = N::binary(Binary::Add, projected, root, doubt);
-    zip_vectors(
-        Binary::Subtract,
-        &scale_vector(e1, ratio, doubt),
-        &scale_vector(e2, along, doubt),
-        doubt,
-    )
+    zip(Binary::Subtract, &times(e1, ratio, doubt), &times(e2, along, doubt), doubt)
 }
 
 fn apply_square<N: Number>(x: N) -> N {
@@ -205,11 +181,11 @@ fn frexp<N: Number>(x: N) -> (N, i32) {
     let raised = value.abs() < f64::MIN_POSITIVE;
     let bits = (if raised { value * 64f64.exp2() } else { value }).to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i32 - 1022 - if raised { 64 } else { 0 };
-    (scale_exponent(x, -exponent), exponent)
+    (ldexp(x, -exponent), exponent)
 }
 
 /// `x * 2^exponent`, in two steps so that neither factor overflows.
-fn scale_exponent<N: Number>(x: N, exponent: i32) -> N {
+fn ldexp<N: Number>(x: N, exponent: i32) -> N {
     let exponent = exponent.clamp(-2100, 2100);
     let (first, second) = (exponent / 2, exponent - exponent / 2);
     let factor = |x: f64| x * f64::from(first).exp2() * f64::from(second).exp2();

@@ -31,7 +31,7 @@ pub(super) fn run_quad<N: Number>(
     let coordinates: [Option<[f64; 3]>; 4] = std::array::from_fn(|lane| {
         group
             .contains(&lane)
-            .then(|| slot_values(&lanes[lane].memory, access.coordinate, access.dimensions))
+            .then(|| values_at(&lanes[lane].memory, access.coordinate, access.dimensions))
     });
     for &lane in group {
         let gradient = [Axis::X, Axis::Y].map(|axis| {
@@ -150,7 +150,7 @@ fn sample_texture<N: Number>(
     let sampler = bound_sampler(env, m[slot as usize].word())?;
     let sampler =
         if clamp_to_edge { Sampler { address: Default::default(), ..*sampler } } else { *sampler };
-    let coordinate = slot_values(m, access.coordinate, access.dimensions);
+    let coordinate = values_at(m, access.coordinate, access.dimensions);
     let footprint = Footprint {
         texture,
         sampler: &sampler,
@@ -165,9 +165,7 @@ fn sample_texture<N: Number>(
         gathered_component(&footprint, usize::from(component), &mut doubt)
     } else {
         let slopes = match level {
-            Level::Gradient(x, y) => {
-                Some([x, y].map(|slot| slot_values(m, slot, access.dimensions)))
-            }
+            Level::Gradient(x, y) => Some([x, y].map(|slot| values_at(m, slot, access.dimensions))),
             _ => gradient,
         };
         let level = match level {
@@ -175,9 +173,9 @@ fn sample_texture<N: Number>(
             _ if clamp_to_edge => 0.0,
             Level::Exact(slot) => m[slot as usize].value(),
             Level::Bias(slot) => {
-                level_of_detail(texture, coordinate, slopes) + m[slot as usize].value()
+                detail_level(texture, coordinate, slopes) + m[slot as usize].value()
             }
-            Level::Auto | Level::Gradient(..) => level_of_detail(texture, coordinate, slopes),
+            Level::Auto | Level::Gradient(..) => detail_level(texture, coordinate, slopes),
         };
         between_levels(&footprint, level, &mut doubt)
     };
@@ -217,7 +215,7 @@ fn texel_offset<N: Number>(access: &Access, m: &[N], offset: Option<u32>) -> [i6
 }
 
 /// The level of detail: log2 of the longer step in texels; 0 without neighbours.
-fn level_of_detail(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> f64 {
+fn detail_level(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> f64 {
     let Some(slopes) = slopes else { return 0.0 };
     let first = &texture.levels[0];
     let depth = if texture.shape == Shape::D3 { first.layers } else { 0 };
@@ -273,7 +271,7 @@ fn between_levels<N: Number>(
     })
 }
 
-fn slot_values<N: Number>(m: &[N], slot: u32, dimensions: u8) -> [f64; 3] {
+fn values_at<N: Number>(m: &[N], slot: u32, dimensions: u8) -> [f64; 3] {
     std::array::from_fn(|i| {
         if i < usize::from(dimensions) { m[slot as usize + i].value() } else { 0.0 }
     })
