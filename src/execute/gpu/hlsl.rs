@@ -12,6 +12,9 @@ use crate::emit::spirv::{self, HEADER_WORDS, Instruction, instructions, op, stri
 use crate::parse::words::words;
 use crate::tools::{GLSLANG, SPIRV_OPT};
 
+/// Of the extension by which glslangValidator keeps semantics.
+const OP_DECORATE_STRING: u16 = 5632;
+const OP_MEMBER_DECORATE_STRING: u16 = 5633;
 const LOCATION: u32 = 30;
 const BINDING: u32 = 33;
 const DESCRIPTOR_SET: u32 = 34;
@@ -94,7 +97,7 @@ fn bind_words(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, St
     let mut out = header.to_vec();
     for Instruction { op, words } in instructions(words) {
         match (op, words) {
-            (op::DECORATE_STRING | op::MEMBER_DECORATE_STRING, _) => {}
+            (OP_DECORATE_STRING | OP_MEMBER_DECORATE_STRING, _) => {}
             (op::EXTENSION, [_, name @ ..]) if string(name).starts_with("SPV_GOOGLE") => {}
             (op::DECORATE, [head, id, decoration, value]) => {
                 let value = match (*decoration, places.get(id), locations.get(id)) {
@@ -134,7 +137,7 @@ fn heap_places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
 fn semantic_locations(words: &[u32]) -> Result<BTreeMap<u32, u32>, String> {
     let mut locations = BTreeMap::new();
     for Instruction { op, words } in instructions(words) {
-        if let (op::DECORATE_STRING, [_, id, USER_SEMANTIC, name @ ..]) = (op, words)
+        if let (OP_DECORATE_STRING, [_, id, USER_SEMANTIC, name @ ..]) = (op, words)
             && let Some(number) = string(name).strip_prefix("LOC")
         {
             let number = number.parse().map_err(|_| format!("the semantic LOC{number}"))?;
