@@ -1,5 +1,5 @@
-//! The browser that trials and executors drive: what pages compute, say and show, and what is told
-//! where a page hangs or crashes, or where there is no browser.
+//! The browser that trials and executors drive. A page can be evaluated, its errors read, and a
+//! picture taken of it. A page that hangs or crashes, and a missing browser, each give an error.
 
 mod executors;
 
@@ -26,7 +26,7 @@ pub fn trials() -> Vec<Trial> {
     own.chain(executors::trials()).collect()
 }
 
-/// Long enough for what is at hand, and short enough for what never comes.
+/// Long enough for a page to answer, and short enough to wait for an answer that never comes.
 const SHORT: Duration = Duration::from_millis(500);
 
 fn served(files: &[(&str, &str)]) -> std::io::Result<Server> {
@@ -34,7 +34,8 @@ fn served(files: &[(&str, &str)]) -> std::io::Result<Server> {
     Server::start(Files::Memory(files.iter().map(own).collect::<BTreeMap<_, _>>()))
 }
 
-/// A page computes, has WebGPU and WebGL2, and is seen as wide as asked for.
+/// A page evaluates scripts, has WebGPU and WebGL2, and its picture has the width that was asked
+/// for. Without this, executors and trials of the site could not use the browser at all.
 fn pages() -> Outcome {
     let server = served(&[(
         "index.html",
@@ -52,14 +53,16 @@ fn pages() -> Outcome {
     for width in [360, 800] {
         let shot = page.screenshot(Screenshot { width, height: 300, whole: false })?;
         let picture = image::load_from_memory(&shot)?.into_rgb8();
-        assert_eq!(picture.dimensions(), (width, 300));
-        assert!(picture.pixels().all(|pixel| pixel.0 == [255, 0, 0]));
+        assert_eq!(picture.dimensions(), (width, 300), "size of the screenshot");
+        let other = picture.pixels().find(|pixel| pixel.0 != [255, 0, 0]);
+        assert_eq!(other, None, "the page is red, but at width {width} a pixel is not");
     }
     assert_eq!(page.errors(), &[] as &[String]);
     Ok(())
 }
 
-/// Whatever a page complains of is known to who drives it.
+/// The caller can read every error of a page: of the console, of exceptions that nobody caught, and
+/// of files that could not be loaded. If one were lost, a broken page could pass its trial.
 fn errors_are_read() -> Outcome {
     let server = served(&[(
         "index.html",
@@ -70,15 +73,17 @@ fn errors_are_read() -> Outcome {
     page.loaded(PATIENCE)?;
     let errors = page.errors().join("\n");
     for expected in ["one 2", "Error: three", "nowhere.js"] {
-        assert!(errors.contains(expected), "no `{expected}` in {errors}");
+        assert!(errors.contains(expected), "expected `{expected}` among the errors:\n{errors}");
     }
     match page.evaluate("missing.something", PATIENCE) {
         Err(Problem::Threw(words)) if words.contains("missing is not defined") => Ok(()),
-        other => Err(format!("{other:?}").into()),
+        other => {
+            Err(format!("`missing.something`: expected its exception, found {other:?}").into())
+        }
     }
 }
 
-/// Everything below a folder is there, and nothing above it.
+/// A page can load every file below the served folder, and no file outside of it.
 fn folders_are_served() -> Outcome {
     let folder = tempfile::tempdir()?;
     std::fs::write(folder.path().join("secret.txt"), "secret")?;
@@ -91,31 +96,31 @@ fn folders_are_served() -> Outcome {
     for path in ["nothing.html", "..%2fsecret.txt", "a%20b/..%2f..%2fsecret.txt"] {
         let status =
             page.evaluate(&format!("fetch('/{path}').then((it) => it.status)"), PATIENCE)?;
-        assert_eq!(status, serde_json::json!(404), "{path}");
+        assert_eq!(status, serde_json::json!(404), "status of `{path}`");
     }
     Ok(())
 }
 
-/// A page that never answers is given up in time, and others go on.
+/// A page that never answers is given up after the time limit, and other pages still work.
 fn a_page_hangs() -> Outcome {
     let browser = Browser::shared()?;
     let (page, other) = (browser.open("about:blank")?, browser.open("about:blank")?);
     let started = Instant::now();
     match page.evaluate("for (;;) {}", SHORT) {
         Err(Problem::Late { after: SHORT, .. }) => {}
-        found => return Err(format!("{found:?}").into()),
+        found => return Err(format!("endless loop: expected `Late`, found {found:?}").into()),
     }
     match page.until("false", SHORT) {
         Err(Problem::Late { .. }) => {}
-        found => return Err(format!("{found:?}").into()),
+        found => return Err(format!("until `false`: expected `Late`, found {found:?}").into()),
     }
     drop(page);
-    assert!(started.elapsed() < 10 * SHORT, "{:?}", started.elapsed());
+    assert!(started.elapsed() < 10 * SHORT, "giving up took {:?}", started.elapsed());
     assert_eq!(other.evaluate("1", PATIENCE)?, serde_json::json!(1));
     Ok(())
 }
 
-/// A page whose process ends is told apart from one that is slow, and others go on.
+/// A page whose process ended gives another error than a slow page, and other pages still work.
 fn a_page_crashes() -> Outcome {
     let browser = Browser::shared()?;
     let (page, other) = (browser.open("about:blank")?, browser.open("about:blank")?);
@@ -125,14 +130,17 @@ fn a_page_crashes() -> Outcome {
     Ok(())
 }
 
-/// What is no browser is told, whether it is absent or something else.
+/// The error names the program that was expected to be a browser, whether the program is missing or
+/// is not a browser (`false` ends at once).
 fn missing() -> Outcome {
     match Browser::start_as("no-such-browser") {
         Err(Problem::Missing(words)) if words.contains("`no-such-browser` is not installed") => {}
-        found => return Err(format!("{found:?}").into()),
+        found => {
+            return Err(format!("expected `is not installed`, found {:?}", found.err()).into());
+        }
     }
     match Browser::start_as("false") {
         Err(Problem::Missing(words)) if words.contains("`false` does not start") => Ok(()),
-        found => Err(format!("{found:?}").into()),
+        found => Err(format!("expected `does not start`, found {:?}", found.err()).into()),
     }
 }

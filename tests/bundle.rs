@@ -1,4 +1,4 @@
-//! Bundles written, loaded, damaged, merged and timed.
+//! Bundles: written, loaded, compared, merged, damaged and timed.
 
 mod damage;
 mod large;
@@ -74,7 +74,8 @@ fn unit(text: &str, targets: &[Target]) -> Unit {
     Unit { reflection: Arc::new(reflection), targets: targets.iter().map(artifact).collect() }
 }
 
-/// Every permutation but those of `taps=16`; `two_sided` does not reach the shader.
+/// Every permutation except those with `taps=16`. The axis `two_sided` does not change the text, so
+/// permutations that differ only in it share a unit.
 fn small() -> Contents {
     let mut entry = EntryContents::default();
     for (shadow, two_sided, lights, taps) in product() {
@@ -120,6 +121,8 @@ fn check(holds: bool, what: &str) -> Outcome {
     if holds { Ok(()) } else { Err(what.into()) }
 }
 
+/// A folder, a file and bytes in memory each give back what was written, and packing is a function
+/// of the contents alone.
 fn round_trips() -> Outcome {
     let contents = small();
     let folder = tempfile::tempdir()?;
@@ -144,6 +147,7 @@ fn round_trips() -> Outcome {
     )
 }
 
+/// A key may name axes in any order, leave out defaults, or spell them out.
 fn keys_in_any_order() -> Outcome {
     let bundle = Bundle::from_bytes(pack(&small())?)?;
     let shader = bundle.program("forward")?.shader("fs_main")?;
@@ -153,15 +157,18 @@ fn keys_in_any_order() -> Outcome {
         "two_sided=true, shadow=hard",
         "max_lights=4,shadow=hard,taps=9,two_sided=true",
     ] {
-        check(shader.find(key)? == expected, key)?;
+        let what = format!("`{key}` is not found as `shadow=hard,two_sided` is");
+        check(shader.find(key)? == expected, &what)?;
     }
     check(
         shader.find("shadow=hard")? == expected,
-        "permutations that share a unit have its number",
+        "permutations that share a unit should have the same number",
     )?;
-    check(shader.get("", Target::SPIRV).is_ok(), "the defaults are the empty key")
+    check(shader.get("", Target::SPIRV).is_ok(), "the empty key should find the defaults")
 }
 
+/// A permutation that the bundle does not have gives an error with the canonical key and the
+/// nearest key that the bundle has.
 fn misses() -> Outcome {
     let folder = tempfile::tempdir()?;
     write_directory(&small(), folder.path())?;
@@ -179,13 +186,14 @@ fn misses() -> Outcome {
     Ok(())
 }
 
-/// Canonical, each once, missing ones too, from many threads; lists merge in their file.
+/// A recorded list has canonical keys, each once, also those that the bundle does not have. Several
+/// threads may ask at once. A list that is saved is merged with the one in the file.
 fn recording() -> Outcome {
     let mut bundle = Bundle::from_bytes(pack(&small())?)?;
     check(
         bundle.program("forward")?.shader("fs_main")?.find("shadow=hard").is_ok()
             && bundle.usage().keys.is_empty(),
-        "nobody asked for a list",
+        "keys were recorded before `record` was called",
     )?;
     bundle.record();
     let shader = bundle.program("forward")?.shader("fs_main")?;
@@ -211,10 +219,11 @@ fn recording() -> Outcome {
     std::fs::write(&path, "word\n")?;
     check(
         bundle.usage().save(&path).is_err() && std::fs::read_to_string(&path)? == "word\n",
-        "what is no list was overwritten",
+        "a file that is not a usage list was overwritten",
     )
 }
 
+/// Unknown programs, entry points, targets, axes and values are refused with the names that exist.
 fn unknown_names() -> Outcome {
     let bundle = Bundle::from_bytes(pack(&small())?)?;
     let program = bundle.program("forward")?;
@@ -244,10 +253,12 @@ fn unknown_names() -> Outcome {
     ];
     errors.into_iter().try_for_each(|(error, expected)| {
         let error = error.map(|error| error.to_string()).unwrap_or_default();
-        check(error == expected, &error)
+        check(error == expected, &format!("expected `{expected}`, found `{error}`"))
     })
 }
 
+/// Writing over a bundle keeps files of users, removes old blobs one run later, and gives the same
+/// folder for the same contents.
 fn rewriting() -> Outcome {
     let folder = tempfile::tempdir()?;
     let blobs = folder.path().join("blobs");
@@ -260,18 +271,18 @@ fn rewriting() -> Outcome {
     };
     write_directory(&small(), folder.path())?;
     let first = (names()?, std::fs::read(folder.path().join("manifest.json"))?);
-    // What a user puts there stays.
+    // A file that the writer did not write stays.
     std::fs::write(blobs.join("0000000000000000.txt"), "a user's")?;
     let fewer = fewer();
     let reader = Bundle::open(folder.path())?;
     write_directory(&fewer, folder.path())?;
     Bundle::open(folder.path())?.verify()?;
-    // A program that has the older bundle open goes on reading it until the run after.
+    // A program that has the older bundle open can read it until the run after next.
     reader.verify()?;
     write_directory(&fewer, folder.path())?;
-    check(reader.verify().is_err(), "blobs of the bundle before are kept for ever")?;
-    check(names()?.len() < first.0.len(), "stale blobs were left")?;
-    check(blobs.join("0000000000000000.txt").exists(), "a user's file is gone")?;
+    check(reader.verify().is_err(), "blobs of the older bundle were kept for a second run")?;
+    check(names()?.len() < first.0.len(), "blobs that nothing uses were left")?;
+    check(blobs.join("0000000000000000.txt").exists(), "a user's file was deleted")?;
     std::fs::remove_file(blobs.join("0000000000000000.txt"))?;
     write_directory(&small(), folder.path())?;
     check(
@@ -280,7 +291,7 @@ fn rewriting() -> Outcome {
     )
 }
 
-/// Without the permutations of hard shadows.
+/// The same contents without the permutations with hard shadows.
 fn fewer() -> Contents {
     let mut fewer = small();
     fewer
@@ -296,6 +307,7 @@ fn fewer() -> Contents {
     fewer
 }
 
+/// `diff` names exactly the permutations that were removed or changed, and in which target.
 fn differences() -> Outcome {
     let (old, mut new) = (small(), small());
     check(diff(&old, &new).is_empty(), "a bundle differs from itself")?;
@@ -315,9 +327,13 @@ fn differences() -> Outcome {
         .iter()
         .map(|change| format!("{} {} {:?}", change.kind, change.key, change.parts))
         .collect();
-    check(told == ["removed default []", "changed shadow=hard [\"wgsl\"]"], &format!("{told:?}"))
+    check(
+        told == ["removed default []", "changed shadow=hard [\"wgsl\"]"],
+        &format!("`default` was removed and `shadow=hard` changed in wgsl, `diff` tells {told:?}"),
+    )
 }
 
+/// Two shards merge to the whole, and bundles with other axes are not merged.
 fn merging() -> Outcome {
     let mut shards = [Contents::default(), Contents::default()];
     for (index, shard) in shards.iter_mut().enumerate() {
@@ -339,8 +355,11 @@ fn merging() -> Outcome {
     }
     let [mut merged, other] = shards;
     merged.merge(other)?;
-    check(merged == small(), "two halves are not the whole")?;
+    check(merged == small(), "two merged halves differ from the whole")?;
     let mut other = small();
     other.programs.values_mut().for_each(|program| program.axes.clear());
-    check(matches!(merged.merge(other), Err(Error::Conflict(_))), "other axes were merged")
+    check(
+        matches!(merged.merge(other), Err(Error::Conflict(_))),
+        "merging a bundle with other axes should be a conflict",
+    )
 }

@@ -1,4 +1,5 @@
-//! What is made from the library's files is up to date, and the presets and light probes are sound.
+//! The pages and modules that are generated from the library's files are up to date, and the
+//! presets and light probes are valid.
 
 use std::collections::BTreeMap;
 
@@ -29,6 +30,7 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
+/// `docs/catalogue` has exactly the pages that `cargo xtask docs` would write now.
 fn pages_are_up_to_date() -> Result<(), Failed> {
     same_on_disk("docs/catalogue", &made(pages())?)?;
     let found = on_disk("docs/catalogue");
@@ -66,7 +68,7 @@ fn on_disk(folder: &str) -> Vec<String> {
             .flatten()
         {
             let path = format!("{below}{}", entry.file_name().to_string_lossy());
-            // The list of what the command wrote there is its own, and not committed.
+            // The command keeps a list of the files that it wrote. This list is not committed.
             if path.ends_with(".lamplight-outputs") {
                 continue;
             }
@@ -77,7 +79,10 @@ fn on_disk(folder: &str) -> Vec<String> {
 }
 
 fn same_bytes_twice() -> Result<(), Failed> {
-    if made(pages())? == made(pages())? { Ok(()) } else { Err("two runs differ".into()) }
+    match made(pages())? == made(pages())? {
+        true => Ok(()),
+        false => Err("the pages of the catalogue were made twice and differ".into()),
+    }
 }
 
 fn made(files: Result<Files, (SourceSet, Vec<Diagnostic>)>) -> Result<Files, Failed> {
@@ -91,7 +96,7 @@ fn every_item_has_a_twin() -> Result<(), Failed> {
     if alone.is_empty() { Ok(()) } else { Err(format!("not in GLSL: {alone:?}").into()) }
 }
 
-/// Parameters of functions and fields of structs: what they are, beyond their names.
+/// Every parameter of a function and every field of a struct has a description.
 fn every_member_is_described() -> Result<(), Failed> {
     let items = catalogue::library().into_iter().flat_map(|module| module.items);
     let silent = |item: &catalogue::Item| -> Vec<String> {
@@ -102,7 +107,8 @@ fn every_member_is_described() -> Result<(), Failed> {
     if silent.is_empty() { Ok(()) } else { Err(format!("not described: {silent:?}").into()) }
 }
 
-/// A number from a number: nothing to choose, so nothing excuses the lack of a plot.
+/// A function of numbers that returns a number can be plotted without choosing anything, so each of
+/// them must have a plot.
 fn every_plain_function_is_plotted() -> Result<(), Failed> {
     let files = made(pages())?;
     let items = catalogue::library()
@@ -132,12 +138,16 @@ fn presets() -> Result<Vec<preset::Preset>, Failed> {
         .map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
 
-/// Reading them checks programs, keys, scenes and light probes.
+/// There are presets enough. Reading them already checks their programs, keys, scenes and probes.
 fn presets_ship() -> Result<(), Failed> {
     let count = presets()?.len();
-    if count >= 40 { Ok(()) } else { Err(format!("only {count} presets").into()) }
+    match count >= 40 {
+        true => Ok(()),
+        false => Err(format!("found {count} presets, expected at least 40").into()),
+    }
 }
 
+/// Each kind of mistake in a preset gives its own code, and a place in the file.
 fn preset_mistakes_are_reported() -> Result<(), Failed> {
     let (_, manifest) = project::library_manifest()
         .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
@@ -183,7 +193,8 @@ fn preset_mistakes_are_reported() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Groups are named after uniforms; the fields of those that are structs of the library exist.
+/// A group of a preset's numbers is named after a uniform. If that is a struct of the library, the
+/// struct must have every field that the preset sets.
 fn preset_numbers_name_fields() -> Result<(), Failed> {
     let structs: BTreeMap<String, Vec<String>> = catalogue::library()
         .into_iter()
@@ -208,7 +219,8 @@ fn preset_numbers_name_fields() -> Result<(), Failed> {
     if wrong.is_empty() { Ok(()) } else { Err(format!("no such fields: {wrong:?}").into()) }
 }
 
-/// The same probe was published twice, with two digits and with six: they differ by rounding only.
+/// One light probe was published twice, with two digits and with six. The two differ by no more than
+/// rounding, so a wrong digit in either would be noticed.
 fn probe_forms_agree() -> Result<(), Failed> {
     let probes =
         probe::library(&mut SourceSet::default()).map_err(|problems| format!("{problems:?}"))?;

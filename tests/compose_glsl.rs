@@ -1,9 +1,11 @@
-//! GLSL compositions: one folder a case, with the files of the root package, packages it depends
-//! on under `deps/`, and what is expected. `UPDATE_EXPECT=1` writes what comes out.
+//! GLSL composition: one folder of `tests/compose_glsl/` for each case. A folder has the files of
+//! the root package, the packages that it depends on in `deps/`, and the expected result.
+//! `UPDATE_EXPECT=1` writes the result that was found: read it before committing.
 //!
 //! A file `settings` has one entry a line: `axis = value`; `enum axis = value value`; `root = FILE`;
-//! `keep = all` or `keep = name name`; `locate = text` adds where the first such text of the output
-//! came from; `invalid = reason` for an output that no validator need accept.
+//! `keep = all` or `keep = name name`. `locate = text` adds to the result the place in the sources
+//! of the first such text in the output. `invalid = reason` says that validators need not accept
+//! the output, and why.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -128,7 +130,7 @@ fn read_files(folder: &Path, prefix: &str, files: &mut BTreeMap<String, String>)
     }
 }
 
-/// A package whose files are shown with its name.
+/// A package whose files are shown with the package's name in front.
 struct Named(String, Memory);
 
 impl Files for Named {
@@ -179,7 +181,8 @@ fn expect(folder: &Path, name: &str, other: &str, found: &str) -> Result<(), Fai
     }
 }
 
-/// Copies are equal to what they were copied from, and segments are in order.
+/// A segment of the source map that claims to be a verbatim copy is equal to its source, and the
+/// segments are in order.
 fn check_map(sources: &SourceSet, composed: &Composed) -> Result<(), Failed> {
     let segments = composed.map.segments();
     for (index, segment) in segments.iter().enumerate() {
@@ -188,9 +191,11 @@ fn check_map(sources: &SourceSet, composed: &Composed) -> Result<(), Failed> {
         if let (Some(span), true) = (segment.span, segment.verbatim)
             && !sources.text(span).starts_with(output)
         {
-            return Err(
-                format!("`{output}` is said to be a copy of `{}`", sources.text(span)).into()
-            );
+            return Err(format!(
+                "the map says that `{output}` is a copy of `{}`",
+                sources.text(span)
+            )
+            .into());
         }
     }
     Ok(())
@@ -216,7 +221,7 @@ fn validate(composed: &Composed) -> Result<(), Failed> {
     glslang(&composed.text, name)
 }
 
-/// Passes where glslangValidator is not installed.
+/// Asks glslangValidator. Passes if it is not installed.
 fn glslang(text: &str, stage: &str) -> Result<(), Failed> {
     let file = tempfile::Builder::new().suffix(&format!(".{stage}")).tempfile()?;
     fs::write(file.path(), text)?;
@@ -232,10 +237,10 @@ fn glslang(text: &str, stage: &str) -> Result<(), Failed> {
     }
 }
 
-/// A name, the code of the error it must end in, and the files.
+/// A name, the code of the expected error (empty for none), and the files.
 type Generated = (&'static str, &'static str, fn() -> Vec<(String, String)>);
 
-/// Hostile inputs that are too large to keep; the first file is the root.
+/// Hostile inputs that are too large to be committed. The first file is the root.
 const GENERATED: &[Generated] = &[
     ("object_bomb", "expansion-too-large", || {
         one((0..64).map(|n| format!("#define M{n} M{0} M{0}\n", n + 1)).collect::<String>()
@@ -297,7 +302,7 @@ fn name(number: usize) -> String {
     format!("f{number}.frag.glsl")
 }
 
-/// Ends soon, in that error or in none, on a small stack.
+/// Composing ends within seconds on a small stack, with the expected error, or without one.
 fn check_limit(code: &str, files: Vec<(String, String)>) -> Result<(), Failed> {
     let root = files[0].0.clone();
     let packages = Packages {

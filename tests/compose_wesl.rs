@@ -1,10 +1,10 @@
 //! WESL composition: one folder of `tests/compose_wesl/` for each case.
 //!
-//! A case has a root module (`main.wesl`, or what its settings say), the other files of the root
-//! package, dependencies as `deps/NAME/`, perhaps `settings.txt`, and what must come out:
-//! `expected.wgsl`, or `expected.err` with the diagnostics as people see them; with them
-//! `expected.warnings` and `expected.reads` where there are any to speak of.
-//! `UPDATE_EXPECT=1` writes what comes out: read it before committing.
+//! A case has a root module (`main.wesl`, or the one that its settings name), the other files of the
+//! root package, dependencies in `deps/NAME/`, and possibly `settings.txt`. The expected result is
+//! `expected.wgsl`, or `expected.err` with the diagnostics as users see them. `expected.warnings`
+//! has warnings if there are any, and `expected.reads` the settings that were read if the case asks
+//! for them. `UPDATE_EXPECT=1` writes the result that was found: read it before committing.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -125,7 +125,7 @@ fn check(folder: &Path) -> Result<(), Failed> {
     if differences.is_empty() { Ok(()) } else { Err(differences.into()) }
 }
 
-/// What is wrong with a file of expectations; nothing if it is updated.
+/// The difference from a file with an expected result; empty if they agree or the file is updated.
 fn compare(path: &Path, found: Option<String>) -> String {
     let expected = fs::read_to_string(path).ok();
     if expected == found {
@@ -142,7 +142,7 @@ fn compare(path: &Path, found: Option<String>) -> String {
     format!("--- {}\n{}--- found\n{}", path.display(), shown(expected), shown(found))
 }
 
-/// Copies must be copies, and the segments in order.
+/// What is wrong with the source map: a segment that claims to be a verbatim copy and is not.
 fn map_errors(sources: &SourceSet, composed: &Composed) -> String {
     let segments = composed.map.segments();
     let mut errors = String::new();
@@ -152,7 +152,8 @@ fn map_errors(sources: &SourceSet, composed: &Composed) -> String {
         if let Some(span) = segment.span.filter(|_| segment.verbatim)
             && !sources.text(span).starts_with(output)
         {
-            errors += &format!("not a copy: {output:?} of {:?}\n", sources.text(span));
+            errors +=
+                &format!("the map says that {output:?} is a copy of {:?}\n", sources.text(span));
         }
     }
     errors
@@ -179,7 +180,7 @@ fn packages(folder: &Path) -> Packages {
     }
 }
 
-/// A dependency whose files are shown with its name.
+/// A dependency whose files are shown with the package's name in front.
 struct Shown {
     name: String,
     files: Memory,
@@ -218,7 +219,8 @@ fn files(folder: &Path, prefix: &str) -> Vec<(String, String)> {
     found
 }
 
-/// Files that cannot be read, on disk: the diagnostics name the import.
+/// Files on disk that cannot be read: not UTF-8, a link out of the package, and a folder named like
+/// a module. Each gives a diagnostic of its own.
 fn unreadable() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let outside = tempfile::NamedTempFile::new()?;
@@ -236,7 +238,7 @@ fn unreadable() -> Result<(), Failed> {
     };
     let mut sources = SourceSet::default();
     let errors = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
-        .expect_err("three files are wrong");
+        .expect_err("none of the three files can be read, but loading succeeded");
     let mut found: Vec<&str> = errors.iter().map(|error| error.code.name).collect();
     found.sort_unstable();
     let expected = if cfg!(unix) {
@@ -279,18 +281,19 @@ fn lights() -> (SourceSet, Graph) {
     let root = Package { name: "app".to_owned(), files: Box::new(Memory(files.into())) };
     let mut sources = SourceSet::default();
     let graph = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
-        .expect("the modules are right");
+        .expect("the modules of this test have no errors");
     (sources, graph)
 }
 
-/// Graphs are shared between threads.
+/// Does not compile unless a graph can be shared between threads.
 const _: fn() = || {
     fn shared<T: Send + Sync>() {}
     shared::<Graph>();
 };
 
-/// Every choice, from two graphs, its settings put in from both ends: same bytes, same reads, and
-/// what was not read makes no difference.
+/// Every choice of settings is composed from two graphs, with the settings inserted in two orders.
+/// Both give the same bytes and the same reads. Choices with equal reads have equal texts, which the
+/// cache relies on: a setting that was not read makes no difference.
 fn permutations() -> Result<(), Failed> {
     let ((_, graph), (_, again)) = (lights(), lights());
     let mut by_reads: BTreeMap<Vec<(String, Setting)>, String> = BTreeMap::new();
@@ -315,12 +318,13 @@ fn permutations() -> Result<(), Failed> {
             || forward.reads != backward.reads
             || forward.map.segments() != backward.map.segments()
         {
-            return Err(format!("choice {choice} composes in two ways").into());
+            return Err(format!("choice {choice} composed twice gives two results").into());
         }
         naga::front::wgsl::parse_str(&forward.text)
             .map_err(|error| error.emit_to_string(&forward.text))?;
         if by_reads.entry(forward.reads).or_insert_with(|| forward.text.clone()) != &forward.text {
-            return Err(format!("choice {choice} reads like another but differs").into());
+            let what = "has the reads of an earlier choice, but another text";
+            return Err(format!("choice {choice} {what}").into());
         }
         count += 1;
     }
@@ -328,7 +332,7 @@ fn permutations() -> Result<(), Failed> {
     if distinct == 60 {
         Ok(())
     } else {
-        Err(format!("{distinct} distinct of {count}, expected 60").into())
+        Err(format!("{distinct} distinct texts of {count} choices, expected 60").into())
     }
 }
 
@@ -341,7 +345,8 @@ fn settings(values: &[(&str, Setting)]) -> Settings {
     }
 }
 
-/// Texts with a piece cut out or doubled, and hostile ones: an answer each, never a panic.
+/// Texts that are cut off, have a piece removed or inserted, or are hostile: each gives a text or
+/// diagnostics, never a panic.
 fn mutilated() -> Result<(), Failed> {
     let mut texts: Vec<String> = Vec::new();
     for at in 0..LIGHTS.len() {
@@ -381,7 +386,8 @@ fn mutilated() -> Result<(), Failed> {
                 compose(&graph, &settings, &Options { keep: Keep::All, ..Options::default() })
             });
         if let Err(errors) = outcome {
-            assert!(!errors.is_empty() && !render(&sources, &errors, Form::Short).is_empty());
+            let told = render(&sources, &errors, Form::Short);
+            assert!(!errors.is_empty() && !told.is_empty(), "a failure without a diagnostic");
         }
     }
     Ok(())

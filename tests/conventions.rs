@@ -1,4 +1,4 @@
-//! What the reflection says of a target, against what the text of the output says.
+//! Compares a target's reflection, by which engines bind, with the text of its output.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -50,7 +50,7 @@ struct Carried { @builtin(position) at: vec4f, @location(2) uv: vec2f }
 
 const MANIFEST: &str = "[program.one]\nwesl = \"one.wesl\"\n";
 
-/// The line that converts clip space in GLSL.
+/// The line of a GLSL output that converts wgpu's clip space to that of OpenGL.
 const CONVERTS: &str =
     "    gl_Position.yz = vec2(-gl_Position.y, gl_Position.z * 2.0 - gl_Position.w);\n";
 
@@ -63,15 +63,15 @@ fn text(found: &Found) -> Result<String, Failed> {
     Ok(String::from_utf8(found.bytes.clone())?)
 }
 
-/// The vertex stages of both clip spaces differ by one line of GLSL, and in what is said of them;
-/// fragment stages do not differ. All are judged.
+/// Vertex stages for the two clip spaces differ by one line, in GLSL only, and the reflection says
+/// which clip space they have. Fragment stages do not differ. The judges accept all outputs.
 fn clip_spaces() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     for clip in ["wgpu", "native"] {
         expect(&package.run(&["gen", "--no-cache", "--clip", clip, "-o", clip])?, 0, &[])?;
         let outputs = judge::outputs(blob_files(package.path(clip))?)?;
         if let Some(refusal) = judge::judge(&outputs, None, &|_, _| ())?.first() {
-            return Err(format!("{refusal:?}").into());
+            return Err(format!("clip space {clip}: {refusal:?}").into());
         }
     }
     for target in Target::ALL {
@@ -84,18 +84,17 @@ fn clip_spaces() -> Outcome {
             false => wgpu.bytes.clone(),
         };
         if native.bytes != expected || is_glsl == (native.bytes == wgpu.bytes) {
-            return Err(format!("{target}:\n{}", String::from_utf8_lossy(&native.bytes)).into());
+            return Err(format!("{target}: wrong native text:\n{}", text(&native)?).into());
         }
         let spaces = targets::find(*target).ok_or("no such target")?.clip;
         if [wgpu.native.clip, native.native.clip]
             != [Clip::Wgpu, Clip::Native].map(|clip| Some(spaces.of(clip)))
         {
-            return Err(
-                format!("{target}: {:?}, {:?}", wgpu.native.clip, native.native.clip).into()
-            );
+            let clips = [wgpu.native.clip, native.native.clip];
+            return Err(format!("{target}: the reflection has the clip spaces {clips:?}").into());
         }
         if wgpu.native.clip.is_some_and(|clip| clip.is_converted) != is_glsl {
-            return Err(format!("{target} says wrongly whether it converts").into());
+            return Err(format!("{target}: `is_converted` should be {is_glsl}").into());
         }
         let [wgpu, native] =
             ["wgpu", "native"].map(|clip| found(&package, clip, "fs_main", *target));
@@ -106,8 +105,8 @@ fn clip_spaces() -> Outcome {
     Ok(())
 }
 
-/// The manifest asks for a clip space, an option for another; a cache mixes nothing up; both forms
-/// of a bundle tell it.
+/// The option `--clip` goes before the manifest's clip space. The cache keeps the two apart, and
+/// both forms of a bundle say which clip space they have.
 fn clip_in_manifest_and_cache() -> Outcome {
     let package = Package::new(&format!("{MANIFEST}clip = \"native\"\n"), SHADER)?;
     let is_converted = |out: &str| -> Result<bool, Failed> {
@@ -115,7 +114,7 @@ fn clip_in_manifest_and_cache() -> Outcome {
         let told = found.native.clip.ok_or("no clip space")?.is_converted;
         match text(&found)?.contains(CONVERTS) == told {
             true => Ok(told),
-            false => Err("the reflection is wrong".into()),
+            false => Err(format!("{out}: `is_converted` is {told}, the text differs").into()),
         }
     };
     let runs: [(&[&str], bool); 4] =
@@ -124,7 +123,7 @@ fn clip_in_manifest_and_cache() -> Outcome {
         let all = [&["gen", "--cache", "cache", "-o", "out"], arguments].concat();
         expect(&package.run(&all)?, 0, &[])?;
         if is_converted("out")? != expected {
-            return Err(format!("{arguments:?}: not what was asked for").into());
+            return Err(format!("gen {arguments:?}: expected converted: {expected}").into());
         }
     }
     for (arguments, expected) in [(&[][..], false), (&["--clip", "wgpu"], true)] {
@@ -132,7 +131,7 @@ fn clip_in_manifest_and_cache() -> Outcome {
         let said = package.run(&[&compile, arguments].concat())?;
         expect(&said, 0, &["gl_Position = "])?;
         if String::from_utf8_lossy(&said.stdout).contains(CONVERTS) != expected {
-            return Err(format!("compile {arguments:?}: not what was asked for").into());
+            return Err(format!("compile {arguments:?}: expected converted: {expected}").into());
         }
     }
     fs::write(
@@ -149,7 +148,7 @@ fn clip_in_manifest_and_cache() -> Outcome {
     expect(&package.run(&["gen"])?, 1, &words)
 }
 
-/// What follows a word of a text, up to one of some characters.
+/// The text after a word, up to the first of some characters.
 fn after<'t>(text: &'t str, word: &str, until: &[char]) -> Option<&'t str> {
     let (_, rest) = text.split_once(word)?;
     rest.split(until).next().map(str::trim)
@@ -158,7 +157,8 @@ fn after<'t>(text: &'t str, word: &str, until: &[char]) -> Option<&'t str> {
 /// A name, a register such as `t3`, and its space.
 type Register = (String, String, u32);
 
-/// HLSL: registers and spaces, heaps, their buffers of places, and semantics are those of the text.
+/// HLSL: the reflection has the text's registers and spaces, sampler heaps with their index buffers,
+/// and semantics.
 fn registers() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
@@ -166,24 +166,26 @@ fn registers() -> Outcome {
         let found = found(&package, "bundle", entry, Target::HLSL)?;
         let text = text(&found)?;
         let (mut said, told) = (registers_in(&text)?, registers_told(&found, &text)?);
-        // Both heaps are declared, whichever is used.
+        // naga declares both heaps, even if only one is used.
         let heaps = told.iter().any(|(name, ..)| name.starts_with("naga"));
         said.retain(|(name, ..)| !name.starts_with("naga") || heaps);
         if said != told {
-            return Err(format!("{entry}: {said:?} in the text, {told:?} told:\n{text}").into());
+            let what = format!("the text has {said:?}, the reflection {told:?}");
+            return Err(format!("{entry}: {what}:\n{text}").into());
         }
         let native = &found.native.semantics;
         let told: Vec<String> =
             native.iter().map(|one| format!("{}{}", one.name, one.index)).collect();
         let lost = told.iter().find(|semantic| !text.contains(&format!(": {semantic}")));
         if told != semantics || lost.is_some() {
-            return Err(format!("{entry}: {told:?}, the text has no {lost:?}").into());
+            let what = format!("the reflection has {told:?}, expected {semantics:?}");
+            return Err(format!("{entry}: semantics: {what}; not in the text: {lost:?}").into());
         }
     }
     Ok(())
 }
 
-/// What the text declares.
+/// The registers that the text declares.
 fn registers_in(text: &str) -> Result<BTreeSet<Register>, Failed> {
     let mut said = BTreeSet::new();
     for line in text.lines() {
@@ -198,7 +200,8 @@ fn registers_in(text: &str) -> Result<BTreeSet<Register>, Failed> {
     Ok(said)
 }
 
-/// What the reflection says, whose places in heaps the text must have.
+/// The registers of the reflection. The text must use each sampler at the place in its heap that
+/// the reflection says.
 fn registers_told(found: &Found, text: &str) -> Result<BTreeSet<Register>, Failed> {
     let mut told = BTreeSet::new();
     for slot in &found.native.slots {
@@ -225,7 +228,7 @@ fn registers_told(found: &Found, text: &str) -> Result<BTreeSet<Register>, Faile
     Ok(told)
 }
 
-/// What the text of an output says: for each thing that is bound, its name and its number.
+/// The name and the number of everything that the text of an output binds.
 fn bound(target: Target, text: &str) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     let last =
@@ -253,8 +256,8 @@ fn bound(target: Target, text: &str) -> BTreeMap<String, String> {
     found
 }
 
-/// MSL, GLSL and WGSL: every slot, combined samplers and buffer sizes are those of the text, and
-/// nothing of the text is left out.
+/// MSL and GLSL: the reflection has exactly the slots, combined samplers and buffer sizes of the
+/// text.
 fn slots() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
@@ -282,14 +285,14 @@ fn slots() -> Outcome {
                 };
             }
             if said != told {
-                return Err(format!("{target} {entry}: {said:?} in the text, {told:?} told").into());
+                return Err(format!("{target} {entry}: text {said:?}, told {told:?}").into());
             }
             let combined: BTreeSet<_> =
                 found.native.combined.iter().map(|one| (one.texture, one.sampler)).collect();
             let pairs: BTreeSet<_> =
                 found.reflection.pairs.iter().map(|one| (one.texture, Some(one.sampler))).collect();
             if target != Target::MSL && combined != pairs {
-                return Err(format!("{target} {entry}: {combined:?}, not {pairs:?}").into());
+                return Err(format!("{target} {entry}: {combined:?}, expected {pairs:?}").into());
             }
         }
     }
@@ -297,7 +300,7 @@ fn slots() -> Outcome {
     sizes()
 }
 
-/// The uniform of GLSL for the first instance is told where the text has it.
+/// The reflection names GLSL's uniform for the first instance exactly if the text has one.
 fn first_instance() -> Outcome {
     let shader = "@vertex fn vs_main(@builtin(instance_index) i: u32) -> @builtin(position) vec4f { return vec4f(f32(i)); }";
     for (shader, is_there) in [(shader, true), (SHADER, false)] {
@@ -314,14 +317,15 @@ fn first_instance() -> Outcome {
                 || name.is_empty() == is_there
                 || !text(&found)?.contains(&name)
             {
-                return Err(format!("{target}: {name}").into());
+                let what = format!("first instance: told `{name}`, expected one: {is_there}");
+                return Err(format!("{target}: {what}").into());
             }
         }
     }
     Ok(())
 }
 
-/// The argument of MSL with sizes of buffers is that of the text.
+/// The reflection has the MSL argument with the sizes of buffers, as the text declares it.
 fn sizes() -> Outcome {
     let shader = "
 @group(0) @binding(1) var<storage> few: array<vec4f>;
@@ -336,15 +340,15 @@ fn sizes() -> Outcome {
     let argument = format!("_mslBufferSizes& _buffer_sizes [[buffer({})]]", sizes.index);
     let members = after(&text, "struct _mslBufferSizes {", &['}']).ok_or("no struct")?;
     if !text.contains(&argument) || members.matches("uint size").count() != sizes.buffers.len() {
-        return Err(format!("{sizes:?}:\n{text}").into());
+        return Err(format!("the reflection has {sizes:?}, which is not in:\n{text}").into());
     }
     if sizes.buffers != [[0, 1], [1, 0]] {
-        return Err(format!("{sizes:?}").into());
+        return Err(format!("expected the buffers [[0, 1], [1, 0]], found {sizes:?}").into());
     }
     Ok(())
 }
 
-/// The table of the guide says what the table of targets does.
+/// The guide's table of clip spaces agrees with the targets' own.
 fn guide() -> Outcome {
     let page = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/targets.md"))?;
     let (_, section) = page.split_once("## Clip space").ok_or("no section about clip space")?;
@@ -365,7 +369,7 @@ fn guide() -> Outcome {
         let told: Vec<String> = [spaces.wgpu, spaces.native].iter().flat_map(in_words).collect();
         let said: Vec<&str> = rows[2..].iter().map(|row| row[column]).collect();
         if told != said {
-            return Err(format!("{target}: the guide says {said:?}, the table {told:?}").into());
+            return Err(format!("{target}: the guide says {said:?}, the target {told:?}").into());
         }
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Costs on GPUs that are not there: what `lamplight cost` says of functions and permutations.
+//! What `lamplight cost` says of functions and permutations, for GPUs that this machine lacks.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -50,7 +50,8 @@ fn figure(object: &Value, form: &str, name: &str) -> Result<i64, Failed> {
     object[form][name].as_i64().ok_or_else(|| format!("no {form}.{name} in {object}").into())
 }
 
-/// Filters with more taps have more instructions, on each generation of GPUs.
+/// Filters with more taps have more instructions, on each generation of GPUs. If they had not, the
+/// figures would not be those of the function that was asked for.
 fn more_work() -> Outcome {
     let filters = ["hard", "pcf_3x3", "pcf_5x5"].map(|name| format!("shadow::compare::{name}"));
     let names: Vec<&str> = filters.iter().map(String::as_str).collect();
@@ -68,7 +69,7 @@ fn more_work() -> Outcome {
     Ok(())
 }
 
-/// Every function of the library has figures, in both languages.
+/// Every function of the library has figures that are possible, in both languages.
 fn every_function() -> Outcome {
     let listed = Command::new(env!("CARGO_BIN_EXE_lamplight"))
         .args(["list", "functions", "--json"])
@@ -78,41 +79,47 @@ fn every_function() -> Outcome {
         let found = objects(&["--lang", language, "--gpu", "navi21,gfx1100"])?;
         if found.len() != 2 * listed.len() {
             let text = format!("{} figures of {} functions", found.len(), listed.len());
-            return Err(text.into());
+            return Err(format!("{language}, two GPUs: {text}").into());
         }
         for object in &found {
             if figure(object, "figures", "instructions")? < 2
                 || figure(object, "figures", "vgprs")? < 1
                 || figure(object, "net", "instructions")? < 0
             {
-                return Err(format!("{language}: {object}").into());
+                return Err(format!("{language}: impossible figures: {object}").into());
             }
         }
     }
     Ok(())
 }
 
-/// What a function adds is the stage less the empty stage: the stage itself is no cheaper.
+/// The net cost of a function is the cost of a stage with it, less that of an empty stage. So it is
+/// above zero and below the cost of the whole stage.
 fn parts_add_up() -> Outcome {
     for object in objects(&["brdf::fresnel", "--gpu", "navi21"])? {
         let [whole, net] =
             [figure(&object, "figures", "code_size")?, figure(&object, "net", "code_size")?];
         if net <= 0 || whole <= net {
-            return Err(format!("{net} of {whole} bytes: {object}").into());
+            return Err(format!("net {net} of {whole} bytes is impossible: {object}").into());
         }
     }
     Ok(())
 }
 
+/// A permutation has figures for each of its stages, and PCSS costs much more than no shadow.
 fn permutations() -> Outcome {
     let found = objects(&["lights=spot", "lights=spot,shadow=pcss", "--gpu", "navi21"])?;
     let stages: Vec<&str> = found.iter().filter_map(|object| object["stage"].as_str()).collect();
     if stages != ["fragment", "vertex", "fragment", "vertex"] {
-        return Err(format!("{stages:?}").into());
+        let expected = "expected a fragment and a vertex stage for each of two permutations";
+        return Err(format!("{expected}, found {stages:?}").into());
     }
     let [plain, pcss] = [0, 2].map(|index| figure(&found[index], "figures", "instructions"));
     let (plain, pcss) = (plain?, pcss?);
-    if pcss < plain + 100 { Err(format!("{plain}, with PCSS {pcss}").into()) } else { Ok(()) }
+    match pcss >= plain + 100 {
+        true => Ok(()),
+        false => Err(format!("{plain} instructions without shadow, {pcss} with PCSS").into()),
+    }
 }
 
 const OWN_MANIFEST: &str = "[program.own]
@@ -131,8 +138,9 @@ const OWN_SHADER: &str = "@fragment fn fs(@location(0) at: vec4f) -> @location(0
 }
 ";
 
-/// A boolean axis alone is told, and one that a specialisation constant chooses: each against the
-/// default permutation too. Keys that are a boolean axis or `default` are no paths of the library.
+/// `variants --cost` tells what an axis adds, for a boolean axis and for one that a specialisation
+/// constant chooses. `cost` of single permutations agrees with it. `cost` takes `warm` and `default`
+/// for keys, although a path of the library could be written the same way.
 fn axes() -> Outcome {
     let folder = tempfile::tempdir()?;
     std::fs::write(folder.path().join("lamplight.toml"), OWN_MANIFEST)?;
@@ -156,7 +164,8 @@ fn axes() -> Outcome {
     };
     let (warm, loops) = (of("warm")?, of("loops")?);
     if warm[0] != 2 || warm[1] < 1 || loops[0] != 2 || loops[1] < 20 {
-        return Err(format!("warm {warm:?}, loops {loops:?}").into());
+        let what = format!("warm {warm:?}, loops {loops:?}");
+        return Err(format!("too few pairs or instructions (pairs, least, most): {what}").into());
     }
     let keys = ["default", "warm", "loops=9"];
     let costs = run(&[&["cost"][..], &keys, &["--gpu", "navi21"]].concat())?;
@@ -165,14 +174,15 @@ fn axes() -> Outcome {
         .collect::<Result<_, _>>()?;
     let rises = [counts[1] - counts[0], counts[2] - counts[0]];
     if rises[0] < warm[1] || rises[0] > warm[2] || rises[1] < loops[1] || rises[1] > loops[2] {
-        return Err(format!("{counts:?}, warm {warm:?}, loops {loops:?}").into());
+        let what = format!("`cost` counts {counts:?} for {keys:?}");
+        return Err(format!("{what}, `variants` tells warm {warm:?}, loops {loops:?}").into());
     }
     let unused = Command::new(env!("CARGO_BIN_EXE_lamplight"))
         .args(["variants", "--gpu", "navi21"])
         .output()?;
     match unused.status.code() {
         Some(2) => Ok(()),
-        code => Err(format!("`--gpu` without `--cost` ends with {code:?}").into()),
+        code => Err(format!("`--gpu` without `--cost`: exit code {code:?}, expected 2").into()),
     }
 }
 
@@ -180,10 +190,14 @@ fn gpus_named_twice() -> Outcome {
     let names = "navi21,vega10,navi21";
     let found = objects(&["brdf::fresnel::f_schlick_f82", "--gpu", names])?;
     let gpus: Vec<&str> = found.iter().filter_map(|object| object["gpu"].as_str()).collect();
-    if gpus == ["vega10", "navi21"] { Ok(()) } else { Err(format!("{gpus:?}").into()) }
+    match gpus == ["vega10", "navi21"] {
+        true => Ok(()),
+        false => Err(format!("expected figures of vega10 and navi21, found {gpus:?}").into()),
+    }
 }
 
-/// A vertex stage alone, both stages of one file, a compute shader, a feature that adds work.
+/// Shaders of files have figures: a vertex stage alone, both stages of one file, a compute shader.
+/// A feature that adds work adds instructions.
 fn files() -> Outcome {
     let folder = tempfile::tempdir()?;
     let vertex = "@vertex fn vs(@location(0) p: vec3f, @location(1) n: vec3f) -> Out {
@@ -227,14 +241,16 @@ struct Out { @builtin(position) p: vec4f, @location(0) n: vec3f, @location(1) @i
     let (without, with) = (instructions(&both, "more=false")?, instructions(&both, "more")?);
     let told = [stages(&alone), stages(&counting), stages(&without)];
     if told != ["vertex", "compute", "vertex fragment"] {
-        return Err(format!("{told:?}").into());
+        return Err(format!("found the stages {told:?}").into());
     }
     if alone[0].1 < 5 || counting[0].1 < 3 || with[1].1 < without[1].1 + 5 {
-        return Err(format!("{alone:?} {counting:?} {without:?} {with:?}").into());
+        return Err(format!("too few: {alone:?} {counting:?} {without:?} {with:?}").into());
     }
     Ok(())
 }
 
+/// `--baseline` records costs the first time, and then fails if a figure rose: exit code 3 names the
+/// figure, 4 says that another driver is not comparable, 1 that the file is not a baseline.
 fn a_rise_fails() -> Outcome {
     let folder = tempfile::tempdir()?;
     let file = folder.path().join("costs.json");
@@ -244,7 +260,10 @@ fn a_rise_fails() -> Outcome {
     };
     let codes = |wanted: i32, output: Output| match output.status.code() {
         Some(code) if code == wanted => Ok(said(&output)),
-        code => Err(Failed::from(format!("exit code {code:?} for {wanted}: {}", said(&output)))),
+        code => {
+            let what = format!("exit code {code:?}, expected {wanted}");
+            Err(Failed::from(format!("{what}: {}", said(&output))))
+        }
     };
     codes(0, compare(&[])?)?;
     codes(0, compare(&[])?)?;
@@ -253,7 +272,7 @@ fn a_rise_fails() -> Outcome {
     std::fs::write(&file, &lower)?;
     let told = codes(3, compare(&[])?)?;
     if !told.contains("cone_smooth navi21 fragment: instructions") {
-        return Err(format!("which figure rose is not told: {told}").into());
+        return Err(format!("the message does not name the figure that rose: {told}").into());
     }
     codes(0, compare(&["--rise", "2"])?)?;
     let other = edit(&recorded, |_, instructions| ("Mesa 1.2.3".to_owned(), instructions))?;
@@ -261,19 +280,19 @@ fn a_rise_fails() -> Outcome {
     codes(4, compare(&[])?)?;
     codes(0, compare(&["--record"])?)?;
     if std::fs::read_to_string(&file)? != recorded {
-        return Err("what was recorded again differs".into());
+        return Err("recording again on the same driver gives another file".into());
     }
     std::fs::write(&file, "{\"name\": \"somebody's\"}")?;
     codes(1, compare(&[])?)?;
     codes(1, compare(&["--record"])?)?;
     match std::fs::read_to_string(&file)?.contains("somebody's") {
         true => Ok(()),
-        false => Err("a file that is not ours was replaced".into()),
+        false => Err("a file that is not a baseline was replaced".into()),
     }
 }
 
-/// No function of the library got more expensive by more than 2 %. Recorded anew with
-/// `INSTA_UPDATE=always`. Another version of Mesa is told, and not compared.
+/// No function of the library became more expensive by more than 2 %. `INSTA_UPDATE=always` records
+/// the costs again. With another version of Mesa nothing is compared, and the trial says so.
 fn budget() -> Outcome {
     let recorded = crate::snapshot::root().join("snapshots/costs/functions.json");
     let path = recorded.to_string_lossy().into_owned();
@@ -286,12 +305,12 @@ fn budget() -> Outcome {
             eprintln!("not compared: {}", said(&output));
             Ok(())
         }
-        code => Err(format!("{code:?}: {}", said(&output)).into()),
+        code => Err(format!("exit code {code:?}: {}", said(&output)).into()),
     }
 }
 
-/// What the catalogue shows is what is measured, where the driver is the one that was recorded; and
-/// every value of every axis is one of the library's manifest.
+/// The recorded costs, which the catalogue shows, are what is measured now. They are compared only
+/// if this machine has the driver that was recorded. Every recorded axis and value exists.
 fn record_is_current() -> Outcome {
     let mut sources = SourceSet::default();
     let library = cost::library(&mut sources);
@@ -303,7 +322,8 @@ fn record_is_current() -> Outcome {
         let mut axes = program.iter().flat_map(|program| program.space.axes());
         let axis = axes.find(|axis| axis.name == row.axis);
         if !axis.is_some_and(|axis| axis.value_names().contains(&row.value)) {
-            return Err(format!("{row:?}: run `cargo xtask docs --costs`").into());
+            let what = format!("no axis of the library has this recorded value: {row:?}");
+            return Err(format!("{what}: run `cargo xtask docs --costs`").into());
         }
     }
     let found = objects(&[])?;
@@ -313,7 +333,10 @@ fn record_is_current() -> Outcome {
         return Ok(());
     }
     if found.len() != recorded.functions.len() * recorded.gpus.len() {
-        return Err("other functions are recorded: run `cargo xtask docs --costs`".into());
+        let (functions, gpus) = (recorded.functions.len(), recorded.gpus.len());
+        let what = format!("recorded {functions} functions on {gpus} GPUs");
+        let what = format!("{what}, measured {} rows", found.len());
+        return Err(format!("{what}: run `cargo xtask docs --costs`").into());
     }
     for object in &found {
         let (name, gpu) = (object["name"].as_str(), object["gpu"].as_str());
@@ -329,7 +352,7 @@ fn record_is_current() -> Outcome {
     Ok(())
 }
 
-/// Recorded costs with another driver and other numbers of instructions.
+/// Changes the driver and the numbers of instructions of recorded costs.
 fn edit(text: &str, change: impl Fn(String, i64) -> (String, i64)) -> Result<String, Failed> {
     let mut value: Value = serde_json::from_str(text)?;
     let driver = value["driver"].as_str().unwrap_or_default().to_owned();
@@ -351,13 +374,15 @@ fn wrong_names() -> Outcome {
     for (arguments, code, text) in cases {
         let output = lamplight(arguments)?;
         if output.status.code() != Some(code) || !said(&output).contains(text) {
-            return Err(format!("{arguments:?}: {:?} {}", output.status, said(&output)).into());
+            let found = format!("{:?}: {}", output.status, said(&output));
+            let expected = format!("expected exit code {code} and `{text}`");
+            return Err(format!("{arguments:?}: {expected}, found {found}").into());
         }
     }
     Ok(())
 }
 
-/// Where the loader finds no library, the command says what to install.
+/// Without the driver's library, the command ends with exit code 4 and says what to install.
 fn without_a_driver() -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
     let output = command
@@ -366,6 +391,6 @@ fn without_a_driver() -> Outcome {
         .output()?;
     match output.status.code() {
         Some(4) if said(&output).contains("apt-get install mesa-vulkan-drivers") => Ok(()),
-        code => Err(format!("{code:?}: {}", said(&output)).into()),
+        code => Err(format!("exit code {code:?}: {}", said(&output)).into()),
     }
 }

@@ -1,4 +1,4 @@
-//! The same bytes from `lamplight gen` and `lamplight compose`, whatever the number of threads,
+//! `lamplight gen` and `lamplight compose` give the same bytes, whatever the number of threads,
 //! the order of flags, the order in which files were made, and the folder they are in.
 
 use std::collections::BTreeMap;
@@ -60,9 +60,9 @@ void main() {
 }
 ";
 
-/// Numbers of threads; the last is no power of two and more than most machines of a CI have.
+/// Numbers of threads. The last is not a power of two, and more than most CI machines have.
 const THREADS: [&str; 3] = ["1", "2", "7"];
-/// Each with the arguments in another order.
+/// One command with its arguments in different orders.
 const GENERATE: [&[&str]; 3] = [
     &["gen", "--manifest", "lamplight.toml", "--target", "spirv,wgsl,glsl450,essl300", "-o"],
     &[
@@ -85,6 +85,7 @@ const GENERATE: [&[&str]; 3] = [
         "-o",
     ],
 ];
+/// One command with its arguments in different orders.
 const COMPOSE: [&[&str]; 3] = [
     &[
         "compose",
@@ -145,7 +146,8 @@ fn alike(commands: &[&[&str]], out: &str) -> Result<(), Failed> {
         match &first {
             None => first = Some(outputs),
             Some(first) => same(first, &outputs).map_err(|name| {
-                format!("{name} differs with {threads} threads: {}", command.join(" "))
+                let command = command.join(" ");
+                format!("{name} differs from the first run's: {threads} threads, `{command}`")
             })?,
         }
     }
@@ -160,7 +162,7 @@ fn same(
     names.find(|name| first.get(*name) != other.get(*name)).map_or(Ok(()), |name| Err(name.clone()))
 }
 
-/// The files, made in an order that differs from run to run.
+/// Writes the files in an order that differs from run to run.
 fn written(run: usize) -> Result<TempDir, Failed> {
     let folder = tempfile::tempdir()?;
     let mut files = FILES;
@@ -176,7 +178,7 @@ fn written(run: usize) -> Result<TempDir, Failed> {
     Ok(folder)
 }
 
-/// What is printed, and the files below `out`.
+/// Runs a command, and gives the files below `out`, or its output if it writes no files.
 fn outputs(
     folder: &Path,
     threads: &str,
@@ -195,7 +197,7 @@ fn outputs(
     }
     let mut found = BTreeMap::new();
     collect(&folder.join(out), "", &mut found)?;
-    // A summary has times in it.
+    // With files, the output is a summary with times, which differ from run to run.
     found.extend(out.is_empty().then_some(("standard output".to_owned(), output.stdout)));
     Ok(found)
 }

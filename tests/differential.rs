@@ -1,7 +1,8 @@
-//! The composer beside the `wesl` crate: the same meaning from the same modules.
+//! Compares our composer with the `wesl` crate: from the same modules, both must give texts of the
+//! same meaning.
 //!
-//! Texts differ in names, order and comments, so both are parsed by naga and compared in a
-//! canonical form. What the two are known to disagree about is listed in [`ACCEPTED`].
+//! The texts differ in names, order and comments, so naga parses both, and they are compared in a
+//! canonical form. The known disagreements are listed in [`ACCEPTED`].
 
 mod library;
 mod normal;
@@ -14,17 +15,18 @@ use libtest_mimic::{Failed, Trial};
 use normal::normal;
 use peer::{Files, Flags, Peer};
 
-/// Generated trees, in trials that run beside each other.
+/// The number of generated module trees.
 const TREES: u64 = 240;
+/// The number of trials that share them, so that they run in parallel.
 const TRIALS: u64 = 8;
 
-/// Words of one side's error, and why the other side's success is right.
+/// Differences that are accepted: a part of the message that shows one, and why our side is right.
 const ACCEPTED: &[(&str, &str)] = &[(
     "only lamplight refuses: error[name-conflict]",
     "an override keeps its name, since an engine sets it by that; wesl renames it, as it does all that is imported",
 )];
 
-/// How much was really compared.
+/// How many texts were compared, and for how many of them both composers gave a text.
 #[derive(Default)]
 struct Tally {
     all: usize,
@@ -60,9 +62,10 @@ fn trees(seeds: impl Iterator<Item = u64>) -> Result<(), Failed> {
         }
     }
     match failures.first() {
-        // Trees that both refuse compare nothing.
+        // If both composers refuse a tree, nothing is compared. That must be rare.
         None if tally.composed * 10 < tally.all * 9 => {
-            Err(format!("only {} of {} compose", tally.composed, tally.all).into())
+            let (composed, all) = (tally.composed, tally.all);
+            Err(format!("both composers accept only {composed} of {all}, expected 90 %").into())
         }
         None => Ok(()),
         Some(first) => Err(format!("{} differences; the first: {first}", failures.len()).into()),

@@ -1,4 +1,4 @@
-//! What users of the command line meet: each trial is named after what a person expects.
+//! The command line as users meet it. Each trial is named after what a user would expect of it.
 
 mod checks;
 mod command_line;
@@ -14,7 +14,7 @@ use libtest_mimic::Trial;
 
 type Outcome = Result<(), libtest_mimic::Failed>;
 
-/// A kind of trials: names and what they do.
+/// The name of a trial, and its function.
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {

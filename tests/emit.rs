@@ -1,7 +1,8 @@
-//! Shaders through validation and every target, judged by the targets' own validators.
+//! Validates shaders, emits them for every target, and has the targets' own validators judge them.
 //!
-//! `emit/valid/*` must pass everywhere, and their reflection is a snapshot; `emit/invalid/*` must
-//! fail, and their diagnostics are. Names end in `.wgsl`, `.vert.glsl` or `.frag.glsl`.
+//! Shaders of `emit/valid/` must pass for every target, and a snapshot holds their reflection. Those
+//! of `emit/invalid/` must be refused, and a snapshot holds the diagnostics. Their names end in
+//! `.wgsl`, `.vert.glsl` or `.frag.glsl`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -31,7 +32,8 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Valid in every target, twice the same bytes, accepted by the external validators.
+/// The shader is emitted for every target, gives the same bytes twice, and the external validators
+/// accept it.
 fn valid(path: &Path) -> Outcome {
     let (sources, composed) = read(path);
     let validated = validate(&composed).map_err(|errors| render(&sources, &errors, Form::Human))?;
@@ -56,12 +58,15 @@ fn valid(path: &Path) -> Outcome {
 
 fn invalid(path: &Path) -> Outcome {
     let (sources, composed) = read(path);
-    let Err(errors) = validate(&composed) else { return Err("the shader was accepted".into()) };
+    let Err(errors) = validate(&composed) else {
+        return Err(format!("{} was accepted, expected diagnostics", path.display()).into());
+    };
     snapshot(path, render(&sources, &errors, Form::Human));
     Ok(())
 }
 
-/// The full analysis of a fresh validation writes what the cheap one of `isolate` wrote.
+/// `isolate` derives the analysis of one entry point from that of the module, which is cheap. A full
+/// validation of the isolated module must give the same output.
 fn same_from_the_whole(
     validated: &Validated,
     entry: &str,
@@ -74,7 +79,7 @@ fn same_from_the_whole(
     if again == *emitted {
         Ok(())
     } else {
-        Err(format!("{target} differs after a full validation").into())
+        Err(format!("{entry}: {target} differs after a full validation").into())
     }
 }
 
@@ -99,7 +104,7 @@ fn judge(entry: &str, stage: naga::ShaderStage, target: Target, emitted: &Emitte
                 .map_err(|error| error.emit_to_string(&text).into())
         }
         _ if emitted.native.entry_name.is_empty() => {
-            Err(format!("{target} has no name for {entry}").into())
+            Err(format!("{target}: the reflection has no name for the entry point {entry}").into())
         }
         _ => Ok(()),
     }
@@ -112,7 +117,7 @@ fn run(command: &mut Command) -> Outcome {
     if output.status.success() { Ok(()) } else { Err(said.into()) }
 }
 
-/// Texts that would exhaust naga's stack give an error, and quickly.
+/// Texts that would exhaust naga's stack give the error `limit-exceeded` before naga sees them.
 fn hostile_texts() -> Outcome {
     let texts = [
         format!("const a = {}1;", "1 + ".repeat(20_000)),
@@ -130,14 +135,17 @@ fn hostile_texts() -> Outcome {
             let (_, composed) = wrap("hostile", text.clone(), language, Some(Stage::Fragment));
             let errors = validate(&composed).err().ok_or("a hostile text was accepted")?;
             if errors[0].code.name != "limit-exceeded" {
-                return Err(format!("{}: {}", errors[0].code.name, errors[0].message).into());
+                let start: String = text.chars().take(40).collect();
+                let found = format!("`{}`: {}", errors[0].code.name, errors[0].message);
+                let what = format!("{language:?} text `{start}...`");
+                return Err(format!("{what}: expected `limit-exceeded`, found {found}").into());
             }
         }
     }
     Ok(())
 }
 
-/// The deepest texts within the limits, and long chains of declarations, end with an answer.
+/// The deepest texts within the limits, and long chains of declarations, do not overflow the stack.
 fn accepted_depths() -> Outcome {
     let chain: String =
         (0..20_000).map(|index| format!("const a{index} = a{};\n", index + 1)).collect();
@@ -157,7 +165,7 @@ fn accepted_depths() -> Outcome {
     ];
     for text in texts {
         let (_, composed) = wrap("deep", text, Language::Wesl, None);
-        // Either answer is fine: reaching it is the test.
+        // Both results are right. The trial fails by ending the process if the stack overflows.
         let _ = validate(&composed);
     }
     let glsl = [
@@ -173,6 +181,7 @@ fn accepted_depths() -> Outcome {
     Ok(())
 }
 
+/// A panic within naga becomes a diagnostic with the panic's message and what naga was given.
 fn panics() -> Outcome {
     let result: Result<(), _> =
         validate::on_large_stack(|| validate::guard("the text", || panic!("on purpose")));
@@ -180,7 +189,10 @@ fn panics() -> Outcome {
     let told = error.code.name == "naga-internal"
         && error.message.contains("on purpose")
         && error.notes[0].contains("the text");
-    if told { Ok(()) } else { Err(error.message.into()) }
+    match told {
+        true => Ok(()),
+        false => Err(format!("expected `naga-internal` with `on purpose`, found {error:?}").into()),
+    }
 }
 
 fn cases(folder: &str) -> Vec<PathBuf> {
@@ -201,7 +213,7 @@ fn read(path: &Path) -> (SourceSet, Composed) {
     wrap(&name, std::fs::read_to_string(path).unwrap(), language, stage)
 }
 
-/// The text as if composed from one file without a change.
+/// The text as the composer would give it for one file that it does not change.
 pub fn wrap(
     name: &str,
     text: String,

@@ -1,10 +1,10 @@
-//! The CPU executor. Cases in `tests/eval/*.wgsl` are comments:
+//! The evaluator, which runs shaders on the CPU. Cases are comments in `tests/eval/*.wgsl`:
 //!
-//! - `// expect: f(1, 2.5) = 3` flattened scalars; checked in f64, in f32, and that the f32 result
-//!   lies within the bound of value plus error
-//! - `// error: f(1) = loop-code` the code of the error
-//! - `// finding: f(0) = Domain` something the sanitizer notices; `none` for nothing
-//! - `// quad: f(0 | 1 | 0 | 1) = 1 | 1 | 1 | 1` the four fragments of a quad
+//! - `// expect: f(1, 2.5) = 3`: arguments and result, flattened to scalars. The result is checked
+//!   in f64 and in f32, and the f32 result must lie within the error bound of the evaluator.
+//! - `// error: f(1) = loop-code`: the code of the expected error.
+//! - `// finding: f(0) = Domain`: what the sanitizer notices; `none` for nothing.
+//! - `// quad: f(0 | 1 | 0 | 1) = 1 | 1 | 1 | 1`: the four fragments of a quad.
 
 mod constants;
 mod drivers;
@@ -37,7 +37,7 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Parses, validates and lowers.
+/// Parses and validates a text, and lowers it to the evaluator's program.
 pub fn program(text: &str) -> Result<Program, Failed> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let capabilities = naga::valid::Capabilities::all();
@@ -74,13 +74,13 @@ fn check(text: &str) -> Result<(), Failed> {
         }
     }
     match (failures.is_empty(), cases) {
-        (true, 0) => Err("no cases".into()),
+        (true, 0) => Err("the file has no case, which is a comment like `// expect: ...`".into()),
         (true, _) => Ok(()),
         _ => Err(failures.into()),
     }
 }
 
-/// A function and a value of each of its slots, from `name(scalars) = rest`.
+/// A case `name(arguments) = wanted`. The arguments are those of one call, or of four for a quad.
 struct Call<'c> {
     id: FunctionId,
     arguments: Vec<&'c str>,
@@ -95,7 +95,7 @@ fn call<'c>(program: &Program, case: &'c str) -> Result<Call<'c>, Failed> {
     Ok(Call { id, arguments: arguments.split('|').collect(), wanted: wanted.trim() })
 }
 
-/// Scalars as slots.
+/// Parses scalars as numbers of the kinds that a function takes or returns.
 pub fn slots<N: Number>(text: &str, kinds: &[Kind]) -> Result<Vec<N>, Failed> {
     let scalars = text.split([',', ' ']).filter(|scalar| !scalar.is_empty());
     scalars
@@ -136,7 +136,7 @@ fn run<N: Number>(program: &Program, call: &Call) -> Result<Vec<N>, Failed> {
     let mut machine = Machine::<N>::new(program)?;
     let arguments = slots::<N>(call.arguments[0], &function.arguments)?;
     let result = machine.call(call.id, &arguments)?.to_vec();
-    // A second call must not see the first.
+    // The first call must leave nothing behind that a second call sees.
     let again = machine.call(call.id, &arguments)?;
     if again
         .iter()
@@ -148,7 +148,8 @@ fn run<N: Number>(program: &Program, call: &Call) -> Result<Vec<N>, Failed> {
     Ok(result)
 }
 
-/// Results as wanted: words exactly, numbers within a relative tolerance.
+/// Fails unless the results are the wanted ones: floats within a relative tolerance, integers and
+/// booleans exactly.
 pub fn near(
     function: &Function,
     found: &[f64],
@@ -181,7 +182,8 @@ fn show(function: &Function, slots: &[f64]) -> String {
     scalars.collect::<Vec<_>>().join(" ")
 }
 
-/// Value plus error has the value of f64, and the f32 run inside of its bound.
+/// The run with error bounds must have the values of the f64 run, and the f32 run must lie within
+/// the bounds.
 fn within(
     function: &Function,
     bounded: &[Bounded],
@@ -192,12 +194,19 @@ fn within(
         if *kind != Kind::Float {
             let same =
                 bounded[i].word() == double[i].word() && single[i].word() == double[i].word();
-            same.then_some(()).ok_or("words differ between number types")?;
+            same.then_some(()).ok_or_else(|| {
+                format!(
+                    "word {i} is {} with bounds, {} in f64, {} in f32",
+                    bounded[i].word(),
+                    double[i].word(),
+                    single[i].word()
+                )
+            })?;
             continue;
         }
         let same = bounded[i].value() == double[i] || double[i].is_nan();
         same.then_some(()).ok_or_else(|| {
-            format!("value {} of value plus error, {} in f64", bounded[i].value(), double[i])
+            format!("the run with bounds gives {}, f64 gives {}", bounded[i].value(), double[i])
         })?;
         let distance = (f64::from(single[i]) - double[i]).abs();
         if distance > bounded[i].error() {
@@ -214,16 +223,16 @@ fn within(
 fn error(program: &Program, case: &str) -> Result<(), Failed> {
     let call = call(program, case)?;
     let function = program.signature(call.id).unwrap();
-    // The arguments of a function that was not lowered are unknown: none are given.
+    // A function that could not be lowered has no known arguments, so none are given.
     let arguments = if function.error.is_some() {
         Vec::new()
     } else {
         slots::<f64>(call.arguments[0], &function.arguments)?
     };
     match Machine::<f64>::new(program)?.call(call.id, &arguments) {
-        Ok(result) => Err(format!("no error but {result:?}").into()),
+        Ok(result) => Err(format!("expected `{}`, found {result:?}", call.wanted).into()),
         Err(error) if error.code.name == call.wanted => Ok(()),
-        Err(error) => Err(error.to_string().into()),
+        Err(error) => Err(format!("expected `{}`, found {error}", call.wanted).into()),
     }
 }
 
@@ -236,7 +245,10 @@ fn finding(program: &Program, case: &str) -> Result<(), Failed> {
     let found: Vec<String> =
         machine.findings().iter().map(|finding| format!("{:?}", finding.kind)).collect();
     let found = if found.is_empty() { "none".to_string() } else { found.join(" ") };
-    if found == call.wanted { Ok(()) } else { Err(found.into()) }
+    match found == call.wanted {
+        true => Ok(()),
+        false => Err(format!("expected the findings `{}`, found `{found}`", call.wanted).into()),
+    }
 }
 
 fn quad(program: &Program, case: &str) -> Result<(), Failed> {

@@ -1,4 +1,4 @@
-//! The examples do what they say.
+//! Runs the examples and checks their results.
 
 #[path = "../examples/hot_reload.rs"]
 #[expect(dead_code, reason = "`main` is run by the example alone")]
@@ -34,6 +34,7 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
+/// The example that loads a bundle draws an orange pixel.
 fn loads_a_bundle() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("shaders.lamplight");
@@ -50,7 +51,7 @@ fn loads_a_bundle() -> Result<(), Failed> {
         .map_err(|problems| format!("{problems:?}"))?;
     bundle::write_file(&made.contents, &path)?;
     let path = path.to_string_lossy().into_owned();
-    // Mesa's thread-local state must be gone before the process ends.
+    // Mesa keeps state for each thread. It must be dropped before the process ends.
     let pixel = lamplight::execute::on_thread(|| {
         load_bundle::draw(&path).map_err(|error| error.to_string())
     })
@@ -62,8 +63,8 @@ fn loads_a_bundle() -> Result<(), Failed> {
     }
 }
 
-/// What the guide's page on hot reload says that the example prints, while `watch` follows an edit
-/// of the page's shader.
+/// While `watch` follows an edit of the shader, the example of hot reload prints what the guide's
+/// page says that it prints.
 fn swaps_while_it_draws() -> Result<(), Failed> {
     let page = std::fs::read_to_string(root().join("docs/guide/hot-reload.md"))?;
     let folder = tempfile::tempdir()?;
@@ -80,7 +81,8 @@ fn swaps_while_it_draws() -> Result<(), Failed> {
     let bundle = folder.path().join("live.lamplight");
     let started = guide::waits_for(|| bundle.is_file());
     let mut told = Vec::new();
-    // Edited once the first frame is drawn, so that the swap happens while it draws.
+    // The shader is edited after the first frame, so that the shader is replaced while frames are
+    // drawn.
     let drawn = lamplight::execute::on_thread(|| {
         let mut tell = |line: String| {
             if told.is_empty() {
@@ -100,7 +102,7 @@ fn swaps_while_it_draws() -> Result<(), Failed> {
     guide::shows_output(&page, "--example hot_reload", &told)
 }
 
-/// README's first example of GLSL, with a compiler that knows nothing of Lamplight.
+/// The first GLSL example of README compiles with glslangValidator alone, from exported files.
 fn readme_glsl_compiles() -> Result<(), Failed> {
     let readme = std::fs::read_to_string(root().join("README.md"))?;
     let block = readme.split("```glsl\n").nth(1).and_then(|rest| rest.split("```").next());
@@ -117,6 +119,7 @@ fn readme_glsl_compiles() -> Result<(), Failed> {
     run(compiler.args(["-V", "-o", "/dev/null", &include]).arg(shader)).map(drop)
 }
 
+/// The example in plain GLSL compiles with glslangValidator alone, from exported files.
 fn plain_glsl_compiles() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     run(Command::new(env!("CARGO_BIN_EXE_lamplight")).arg("export").arg(folder.path()))?;
@@ -126,6 +129,7 @@ fn plain_glsl_compiles() -> Result<(), Failed> {
         .map(drop)
 }
 
+/// The `wesl` crate links a shader that imports the library, as the example shows.
 fn wesl_crate_links() -> Result<(), Failed> {
     let linked = wesl_crate::link().map_err(|error| error.to_string())?;
     let module =
@@ -133,11 +137,12 @@ fn wesl_crate_links() -> Result<(), Failed> {
     if module.entry_points.len() == 1 {
         Ok(())
     } else {
-        Err(format!("no entry point:\n{linked}").into())
+        let count = module.entry_points.len();
+        Err(format!("expected one entry point, found {count}:\n{linked}").into())
     }
 }
 
-/// The build script compiles all permutations; the program finds each of them.
+/// The build script compiles all permutations, and the example's program finds each of them.
 fn build_script_compiles() -> Result<(), Failed> {
     let said = cargo(
         &root(),
@@ -145,7 +150,10 @@ fn build_script_compiles() -> Result<(), Failed> {
     )?;
     let keys: Vec<&str> = said.lines().filter_map(|line| Some(line.split_once(": ")?.0)).collect();
     let expected = ["cone=exponent", "cone=exponent,specular", "default", "specular"];
-    if keys == expected { Ok(()) } else { Err(format!("{keys:?}, not {expected:?}").into()) }
+    match keys == expected {
+        true => Ok(()),
+        false => Err(format!("the program found {keys:?}, expected {expected:?}").into()),
+    }
 }
 
 /// Runs cargo, as a user of the examples does.
@@ -154,7 +162,7 @@ pub fn cargo(folder: &Path, arguments: &[&str]) -> Result<String, Failed> {
     run(Command::new(program).current_dir(folder).args(arguments))
 }
 
-/// What a command wrote to its standard output, or all it wrote where it failed.
+/// Runs a command. Gives its standard output, or fails with all of its output.
 pub fn run(command: &mut Command) -> Result<String, Failed> {
     let output = command
         .output()

@@ -1,8 +1,9 @@
-//! Fragments of a frame computed again by the evaluator, from the very inputs the driver gave them.
+//! Computes fragments of a frame again with the evaluator, from exactly the inputs that the driver
+//! gave them.
 //!
-//! A fragment agrees where each component of its colour lies within the bound of value plus error.
-//! It is open where it does not, but a comparison on the way was too close to call, or where the
-//! specification gives no bound.
+//! A fragment agrees if each component of its colour lies within the evaluator's error bound. It is
+//! open, which means neither right nor wrong, in two cases: the specification gives no bound; or the
+//! fragment does not agree, and a comparison in the shader was within the error of either result.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -16,13 +17,14 @@ use lamplight::picture::frame::Composed;
 
 type Place = (u32, u32);
 
-/// What became of the fragments.
+/// Counts of the fragments that were compared.
 #[derive(Default)]
 pub struct Tally {
     pub tried: usize,
     pub open: usize,
-    /// Largest error over its bound.
+    /// The largest error, as a share of its bound.
     pub share: f64,
+    /// Ways around a defect of a driver, with how often each was taken.
     pub detours: BTreeMap<&'static str, usize>,
 }
 
@@ -51,19 +53,21 @@ impl std::fmt::Display for Tally {
     }
 }
 
-/// The targets of a frame drawn with a watched fragment stage: the colour, then the inputs.
+/// A frame whose fragment stage also wrote its inputs. The first target is the colour, and the
+/// others are the inputs.
 pub struct Watched<'a> {
     pub size: [u32; 2],
     pub targets: &'a [Vec<u32>],
 }
 
 impl Watched<'_> {
-    /// Quads that are drawn to all four fragments.
+    /// How many quads have all four fragments covered.
     pub fn whole_quads(&self) -> usize {
         self.quads().count()
     }
 
-    /// Whole quads all over the frame, in the order the evaluator takes them.
+    /// The quads of the frame with all four fragments covered. The pixels of each are in the order of
+    /// the evaluator's lanes.
     fn quads(&self) -> impl Iterator<Item = [usize; 4]> + '_ {
         let [width, height] = self.size;
         let quads = (0..height / 2).flat_map(move |y| (0..width / 2).map(move |x| (2 * x, 2 * y)));
@@ -73,7 +77,7 @@ impl Watched<'_> {
         pixels.filter(|quad| quad.iter().all(|pixel| self.is_covered(*pixel)))
     }
 
-    /// Whether the fragment was given something, even if it was discarded then.
+    /// Whether the driver ran the fragment, even if the fragment was then discarded.
     fn is_covered(&self, pixel: usize) -> bool {
         let told = self.targets.get(1).unwrap_or(&self.targets[0]);
         four(told, pixel) != [SENTINEL; 4]
@@ -87,7 +91,7 @@ impl Watched<'_> {
         four(&self.targets[0], pixel).map(|word| f64::from(f32::from_bits(word)))
     }
 
-    /// The words of a fragment's inputs, behind the colour.
+    /// The words of a fragment's inputs.
     pub fn inputs(&self, pixel: usize) -> impl Iterator<Item = u32> {
         self.targets[1..].iter().flat_map(move |target| four(target, pixel))
     }
@@ -97,7 +101,7 @@ fn four(target: &[u32], pixel: usize) -> [u32; 4] {
     std::array::from_fn(|word| target[4 * pixel + word])
 }
 
-/// Computes fragments of a frame again, one whole quad in `step`.
+/// Computes every `step`-th whole quad of a frame again, and compares.
 pub fn recompute(
     stage: &Composed,
     resources: Resources,
@@ -112,7 +116,7 @@ pub fn recompute(
     Ok(())
 }
 
-/// [`recompute`] for frames of several drivers: what was given the same is computed once.
+/// [`recompute`] for frames of several drivers. Quads with the same inputs are computed once.
 pub fn recompute_each(
     stage: &Composed,
     resources: Resources,
@@ -121,7 +125,7 @@ pub fn recompute_each(
 ) -> Result<Vec<Result<Tally, String>>, String> {
     let program = Program::new(&stage.validated.module, &stage.validated.info)
         .map_err(|error| error.to_string())?;
-    // GLSL has a plain function of that name too; entry points come after functions.
+    // A module from GLSL has a plain function of the same name. Entry points come after functions.
     let (id, _) = program
         .functions()
         .filter(|(_, function)| function.name == stage.entry)
@@ -156,11 +160,11 @@ pub fn recompute_each(
     Ok(tallies)
 }
 
-/// What the evaluator says of a quad.
+/// The evaluator's results for a quad.
 struct Wanted {
     results: [Vec<Bounded>; 4],
     discarded: [bool; 4],
-    /// Whether a comparison on the way was too close to call.
+    /// Whether a comparison in the shader was within the error of either result.
     doubt: bool,
 }
 
@@ -176,8 +180,10 @@ fn judge(
             tally.tried += 1;
             match wanted.doubt {
                 true => tally.open += 1,
-                false if is_discarded => return Err(format!("pixel {pixel}: was not discarded")),
-                false => return Err(format!("pixel {pixel}: was discarded")),
+                false if is_discarded => {
+                    return Err(format!("pixel {pixel} is drawn, but should be discarded"));
+                }
+                false => return Err(format!("pixel {pixel} is discarded, but should be drawn")),
             }
         } else if is_discarded {
             tally.tried += 1;
@@ -201,7 +207,7 @@ fn judge_colour(
     };
     let shares: Vec<f64> = found.into_iter().zip(wanted).map(share).collect();
     if shares.len() != 4 {
-        return Err(format!("{} numbers in place of a colour", shares.len()));
+        return Err(format!("a colour should have 4 numbers, found {}", shares.len()));
     }
     let far = shares.iter().position(|share| share.is_nan() || *share > 1.0);
     tally.tried += 1;
@@ -220,7 +226,7 @@ fn judge_colour(
     Ok(())
 }
 
-/// What a fragment was given.
+/// The inputs of a fragment, as the evaluator takes them.
 fn slots(signature: &Function, watched: &Watched<'_>, pixel: usize) -> Vec<Bounded> {
     let slot = |(kind, word): (&Kind, u32)| match kind {
         Kind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
@@ -229,7 +235,7 @@ fn slots(signature: &Function, watched: &Watched<'_>, pixel: usize) -> Vec<Bound
     signature.arguments.iter().zip(watched.inputs(pixel)).map(slot).collect()
 }
 
-/// What the evaluator binds in the place of the device.
+/// The buffers, textures and samplers of a device, as the evaluator takes them.
 pub fn resources(
     buffers: Buffers,
     fixtures: &BTreeMap<Place, Arc<Fixture>>,
@@ -258,7 +264,7 @@ pub fn resources(
     resources
 }
 
-/// For each component of what is at a location, the index of the fragment's input word.
+/// The index of a fragment's input word, for each location and component.
 pub fn places(stage: &Composed) -> Result<BTreeMap<(u32, usize), usize>, String> {
     let program = Program::new(&stage.validated.module, &stage.validated.info)
         .map_err(|error| error.to_string())?;

@@ -1,6 +1,6 @@
-//! Whole programs: permutations of `forward` drawn on each driver, and every sampled fragment
-//! computed again by the evaluator. `shipped` draws the WGSL of a bundle, put together from functions of
-//! many permutations, and computes from the composed text.
+//! Draws permutations of `forward` on each driver, and computes a sample of the fragments again with
+//! the evaluator. Trials named `shipped` draw the WGSL of a bundle, which was linked from functions
+//! of many permutations, and compute from the composed text.
 
 mod shipped;
 
@@ -28,14 +28,14 @@ use libtest_mimic::{Failed, Trial};
 use crate::fragments::{self, Tally, Watched};
 use crate::metal::scrambled;
 
-/// Pixels from left to right, and from top to bottom.
+/// The size of a frame in pixels.
 const WIDTH: u32 = 256;
 const HEIGHT: u32 = 64;
-/// One quad in so many is computed again.
+/// Every 29th quad is computed again.
 const STEP: usize = 29;
-/// Least fragments of a permutation.
+/// The least number of fragments of a permutation that must be compared.
 const LEAST: usize = 200;
-/// Largest share of open fragments of a permutation.
+/// The largest share of a permutation's fragments that may be open (see [`crate::fragments`]).
 const OPEN: f64 = 0.01;
 
 const BACKENDS: [&str; 2] = ["vulkan", "gl"];
@@ -80,7 +80,7 @@ fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(),
     outcome.ok_or("panicked")?.map_err(Failed::from)
 }
 
-/// The default, then points until every value of every axis was in one.
+/// The default permutation, and more until every value of every axis is in one of them.
 pub fn covering(space: &Space) -> Vec<Assignment> {
     let mut missing = space.valid_values();
     let mut points = Vec::new();
@@ -96,7 +96,7 @@ pub fn covering(space: &Space) -> Vec<Assignment> {
             .iter()
             .enumerate()
             .find_map(|(axis, values)| Some((axis, values.iter().next()?)));
-        // Elsewhere a value that is missing too, or else each in turn.
+        // The other axes take a value that is missing too, or else each value in turn.
         let turn = points.len();
         let choose = |axis: usize, allowed: ValueSet| {
             let new = missing[axis].and(allowed).iter().next();
@@ -107,7 +107,7 @@ pub fn covering(space: &Space) -> Vec<Assignment> {
     points
 }
 
-/// All pairs of values, and more points until there are so many.
+/// Permutations that cover all pairs of values, and random ones until there are `least`.
 pub fn points(space: &Space, least: usize) -> Vec<Assignment> {
     let mut points = cover::pairwise(space).points;
     let mut seed = 1;
@@ -126,20 +126,20 @@ pub fn points(space: &Space, least: usize) -> Vec<Assignment> {
     points
 }
 
-/// The library's programs in one language.
+/// The library's programs, in one language.
 pub struct Sources {
     programs: Programs,
     language: Language,
     pub space: Space,
-    /// What is drawn, where that is not the composed text.
+    /// The bundle whose outputs are drawn; without one, the composed texts are drawn.
     bundle: Option<Bundle>,
 }
 
-/// A permutation with everything it is drawn with.
+/// A permutation, with everything that is needed to draw it.
 pub struct Scene {
     pub vertex: Composed,
     pub fragment: Composed,
-    /// Both stages as drawn.
+    /// The modules that are drawn, of both stages.
     drawn: [Arc<Validated>; 2],
     pub mesh: Mesh,
     pub buffers: Buffers,
@@ -185,7 +185,7 @@ impl Sources {
     }
 }
 
-/// What targets have of the points and of all pairs of values, in one bundle.
+/// A bundle with some targets of `points`, and of permutations that cover all pairs of values.
 pub fn bundle(
     sources: &Sources,
     points: &[Assignment],
@@ -218,13 +218,13 @@ pub fn bundle(
     let made =
         made.map_err(|problems| render(&sources.programs.texts(), &problems, Form::Human))?;
     if let Some(whole) = made.summary.whole.first() {
-        return Err(format!("compiled as a whole: {whole:?}"));
+        return Err(format!("expected every text to be linked; as a whole: {whole:?}"));
     }
     Bundle::from_bytes(pack_bundle(&made.contents).map_err(|error| error.to_string())?)
         .map_err(|error| error.to_string())
 }
 
-/// One stage as it was shipped.
+/// One stage, from the WGSL in the bundle.
 fn shipped(bundle: &Bundle, entry: &str, key: &str) -> Result<Arc<Validated>, String> {
     let found = || bundle.program("forward")?.entry(Language::Wesl, entry)?.get(key, Target::WGSL);
     let found = found().map_err(|error: lamplight::bundle::Error| error.to_string())?;
@@ -233,7 +233,7 @@ fn shipped(bundle: &Bundle, entry: &str, key: &str) -> Result<Arc<Validated>, St
     validate(&composed).map(Arc::new).map_err(|problems| format!("{problems:?}"))
 }
 
-/// A number for every uniform, sensible where it matters.
+/// Values for any uniform. Those that the picture depends on are chosen, the others vary.
 fn number(path: &str) -> Vec<f64> {
     let (_, name) = path.rsplit_once('.').unwrap_or(("", path));
     let index =
@@ -285,7 +285,7 @@ fn number(path: &str) -> Vec<f64> {
     }
 }
 
-/// A texture or sampler for a binding: smooth colours, depths with an edge.
+/// A texture or a sampler for a binding. Colours vary smoothly, and depths have an edge.
 pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
     let sampler =
         |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
@@ -299,7 +299,7 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
                 (false, true) => TextureKind::ColorCube,
                 (false, false) => TextureKind::Color2d,
             };
-            // The depth map once more, where it is read as colours.
+            // `shadow_depth` is the depth map too, read as a colour texture.
             let is_depth = kind.is_depth() || name == "shadow_depth";
             let value = |index: usize| {
                 let (x, y) = ((index % 8) as f32, (index / 8 % 8) as f32);
@@ -323,7 +323,7 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
     }
 }
 
-/// A bumpy sheet in front of the viewer: 8 x 8 squares from -1 to 1.
+/// A bumpy sheet of 8 x 8 squares in front of the viewer, from -1 to 1.
 fn mesh(vertex: &Reflection) -> Mesh {
     let mut attributes = Vec::new();
     for input in &vertex.inputs {
@@ -391,9 +391,9 @@ fn agrees(renderer: &dyn Session, scene: &Scene) -> Result<Tally, String> {
     let watched = Watched { size: [WIDTH, HEIGHT], targets: &frame.targets };
     fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
     match tally {
-        Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
+        Tally { tried, .. } if tried < LEAST => Err(format!("{tried} of {LEAST} fragments")),
         Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => {
-            Err(format!("{open} of {tried} fragments are open"))
+            Err(format!("{open} of {tried} fragments are open, at most {OPEN} of them may be"))
         }
         tally => Ok(tally),
     }

@@ -1,5 +1,5 @@
-//! `gen`, `merge` and `watch` over a small package: what is done again and what is not, that
-//! caches and shards change no byte, and that mistakes are told alike from a cache.
+//! `gen`, `merge` and `watch` over a small package. They do only work that is new, caches and shards
+//! do not change a byte, and errors from a cache are those of a fresh run.
 
 mod shards;
 mod shared;
@@ -44,6 +44,8 @@ pub fn trials() -> Vec<Trial> {
     cases.into_iter().map(|(name, case)| Trial::test(format!("generate::{name}"), case)).collect()
 }
 
+/// A lean text has no comments and no layout, and is otherwise unchanged. Otherwise two texts with
+/// different meanings could share a place in the cache.
 fn layout() -> Outcome {
     let wgsl = [
         ("a / b;", "a / b;"),
@@ -72,7 +74,7 @@ fn layout() -> Outcome {
     let glsl = glsl.into_iter().map(|(text, wanted)| (lean::glsl(text), wanted));
     match wgsl.chain(glsl).find(|(found, wanted)| found != wanted) {
         None => Ok(()),
-        Some((found, wanted)) => Err(format!("{found:?}, wanted {wanted:?}").into()),
+        Some((found, wanted)) => Err(format!("found {found:?}, wanted {wanted:?}").into()),
     }
 }
 
@@ -129,9 +131,10 @@ void main() {
 }
 ";
 
-/// Permutations, and distinct texts of all entry points: twelve fragment shaders, one vertex
-/// shader in WESL and two in GLSL.
+/// The number of permutations.
 const PERMUTATIONS: u64 = 12;
+/// The number of distinct texts of all entry points: twelve fragment shaders, one vertex shader in
+/// WESL and two in GLSL.
 const TEXTS: u64 = 15;
 
 struct Package(TempDir);
@@ -169,7 +172,7 @@ impl Package {
         Ok(self.command(arguments).output()?)
     }
 
-    /// Runs `gen`, which succeeds; its summary.
+    /// Runs `gen`, which must succeed, and gives its summary.
     fn generate(&self, arguments: &[&str]) -> Result<Value, Failed> {
         let all = [&["gen", "--json", "--cache", "cache"], arguments].concat();
         let output = self.run(&all)?;
@@ -205,8 +208,11 @@ fn ensure(holds: bool, message: impl Into<String>) -> Outcome {
     if holds { Ok(()) } else { Err(message.into().into()) }
 }
 
+/// Fails, with the place of the call, unless two values are equal.
+#[track_caller]
 fn equal<T: PartialEq + std::fmt::Debug>(found: T, expected: T) -> Outcome {
-    ensure(found == expected, format!("found {found:?}, expected {expected:?}"))
+    let place = std::panic::Location::caller();
+    ensure(found == expected, format!("{place}: found {found:?}, expected {expected:?}"))
 }
 
 fn texts(summary: &Value) -> u64 {
@@ -222,6 +228,8 @@ fn compiled(summary: &Value) -> u64 {
     texts(summary) - summary["cached"].as_u64().unwrap_or_default()
 }
 
+/// A second run finds that the bundle is up to date, quickly, and prints the same warnings. A new
+/// comment in the manifest needs a run that compiles nothing.
 fn nothing_to_do() -> Outcome {
     let package = Package::new()?;
     let first = package.generate(&[])?;
@@ -229,38 +237,42 @@ fn nothing_to_do() -> Outcome {
     equal(first["programs"][0]["permutations"].as_u64(), Some(PERMUTATIONS))?;
     let second = package.generate(&[])?;
     equal(&second["up_to_date"], &Value::Bool(true))?;
-    // It still says what is wrong with the texts that it did not read again.
+    // The run prints the warnings about texts that it did not compose again.
     let told = |output: Output| String::from_utf8_lossy(&output.stderr).into_owned();
     let again = told(package.run(&["gen", "--cache", "cache"])?);
     ensure(
         again.contains("unused-import") && again.contains("small.wesl:2:32"),
-        format!("the warning is gone: {again}"),
+        format!("the second run does not print `unused-import` at small.wesl:2:32: {again}"),
     )?;
     let seconds = second["seconds"].as_f64().unwrap_or(f64::MAX);
-    // A hundredth of that in an optimised build on a machine that does nothing else.
-    ensure(seconds < 1.0, format!("it took {seconds} s to find that out"))?;
+    // An optimised build on an idle machine takes a hundredth of this bound.
+    ensure(seconds < 1.0, format!("a run with nothing to do took {seconds} s"))?;
     package.write("lamplight.toml", &format!("{MANIFEST}\n# a comment\n"))?;
     let third = package.generate(&[])?;
     equal((&third["up_to_date"], compiled(&third)), (&Value::Bool(false), 0))
 }
 
+/// An edit compiles the texts that it changes and no others.
 fn edits() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
     // `green` is in the fragment shaders of four permutations.
     package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", "0.0, 0.5, 0.0"))?;
     equal(compiled(&package.generate(&[])?), 4)?;
-    // `shade` in those of six.
+    // `shade` is in the fragment shaders of six permutations.
     package.write("shade.wesl", &SHADE.replace("steps + 1", "steps + 2"))?;
     equal(compiled(&package.generate(&[])?), 6)?;
-    // One of the two GLSL texts.
+    // The edit is in one of the two GLSL texts.
     package.write("small.vert.glsl", &VERTEX.replace("position, 2.0", "position, 3.0"))?;
     equal(compiled(&package.generate(&[])?), 1)?;
-    // Everything as before again.
+    // The first version of this file comes back, so the cache has all texts but those two that also
+    // contain the edited `shade`.
     package.write("tint.wesl", TINT)?;
     equal(compiled(&package.generate(&[])?), 2)
 }
 
+/// Edits of functions that nothing calls, and of comments and layout, compile nothing and leave the
+/// bundle as it is.
 fn unreached() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
@@ -268,7 +280,7 @@ fn unreached() -> Outcome {
     package.write("shade.wesl", &SHADE.replace("return 1.0", "return 2.0"))?;
     let second = package.generate(&[])?;
     equal((&second["up_to_date"], compiled(&second)), (&Value::Bool(false), 0))?;
-    // Comments and layout of what is reached.
+    // These edits change only comments and layout, of functions that are called.
     package.write(
         "tint.wesl",
         &TINT.replace("fn red", "/* Of /* all */ colours. */ fn red // the first\n"),
@@ -282,18 +294,20 @@ fn unreached() -> Outcome {
     equal(package.files("bundle")?, before)
 }
 
+/// The bundle has the same bytes from an empty cache, from a full one, and without a cache.
 fn caching() -> Outcome {
     let package = Package::new()?;
     package.generate(&["-o", "first"])?;
     equal(compiled(&package.generate(&["-o", "second"])?), 0)?;
     ensure(
         package.run(&["gen", "--no-cache", "-o", "third"])?.status.success(),
-        "it failed without a cache",
+        "`gen --no-cache` failed",
     )?;
     equal(package.files("first")?, package.files("second")?)?;
     equal(package.files("first")?, package.files("third")?)
 }
 
+/// Every record of the cache with a flipped bit is noticed and made again.
 fn damage() -> Outcome {
     let package = Package::new()?;
     package.generate(&["-o", "first"])?;
@@ -309,6 +323,7 @@ fn damage() -> Outcome {
     equal(compiled(&package.generate(&["-o", "third"])?), 0)
 }
 
+/// A blob that was deleted from the bundle is written again from the cache.
 fn lost_blobs() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
@@ -319,6 +334,8 @@ fn lost_blobs() -> Outcome {
     equal(package.files("bundle")?, before)
 }
 
+/// Errors are cached too. A run that takes them from the cache prints the same text, or the new
+/// place if lines have moved.
 fn mistakes() -> Outcome {
     let package = Package::new()?;
     let wrong = TINT.replace("0.0, 0.0, 1.0, 1.0", "0.0, 0.0, true, 1.0");
@@ -328,13 +345,13 @@ fn mistakes() -> Outcome {
         let told = String::from_utf8_lossy(&output.stderr).into_owned();
         equal(output.status.code(), Some(1))?;
         equal(told.matches(place).count(), 1)
-            .map_err(|_| Failed::from(format!("not once at {place}: {told}")))?;
+            .map_err(|_| Failed::from(format!("expected one error at {place}: {told}")))?;
         Ok(told)
     };
     let first = run("tint.wesl:3:")?;
     ensure(
         package.files("cache")?.keys().any(|name| name.starts_with("errors/")),
-        "mistakes are not kept",
+        "the cache has no record of the errors",
     )?;
     equal(run("tint.wesl:3:")?, first)?;
     package.write("tint.wesl", &format!("\n// Moved down.\n{wrong}"))?;
@@ -344,6 +361,7 @@ fn mistakes() -> Outcome {
     Ok(())
 }
 
+/// `gen --check` ends with 3 if the bundle is not up to date, and never changes it.
 fn check() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
@@ -358,6 +376,7 @@ fn check() -> Outcome {
     equal(run()?, Some(0))
 }
 
+/// Options limit a run to one program, permutation and target. Unknown names are refused.
 fn choices() -> Outcome {
     let package = Package::new()?;
     let summary = package.generate(&[

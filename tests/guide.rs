@@ -1,8 +1,8 @@
-//! The guide: whatever its pages show is run, and compared with what they say.
+//! The guide: the commands of its pages are run, and their output is compared with the pages.
 //!
-//! A page is a Markdown file of `docs/guide/`. Its fenced blocks say by their info string what
-//! they are; `CONTRIBUTING.md` lists the forms, [`block`] reads them. Each page is one session of
-//! a shell in an empty folder. `INSTA_UPDATE=always` writes what was found into the pages.
+//! A page is a Markdown file of `docs/guide/`. The info string of a fenced block says what the block
+//! is. `CONTRIBUTING.md` lists the forms, and [`block`] reads them. Each page is one shell session
+//! in an empty folder. `INSTA_UPDATE=always` writes the outputs that were found into the pages.
 
 mod block;
 mod compare;
@@ -29,12 +29,12 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Where the pages are.
+/// The folder of the pages.
 fn folder() -> PathBuf {
     snapshot::root().join("docs/guide")
 }
 
-/// The pages, sorted by name, without the list of them.
+/// The pages, sorted by name, without the table of contents.
 fn pages() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder()).into_iter().flatten().flatten();
     let mut found: Vec<PathBuf> = entries
@@ -72,11 +72,14 @@ pub fn shows_output(page: &str, command: &str, printed: &[String]) -> Result<(),
     let printed: Vec<&str> = printed.iter().map(String::as_str).collect();
     match compare::matches(shown, &printed) {
         true => Ok(()),
-        false => Err(format!("the page shows {shown:#?}, printed was {printed:#?}").into()),
+        false => {
+            let what = format!("the page shows {shown:#?}, it printed {printed:#?}");
+            Err(format!("`{command}`: {what}").into())
+        }
     }
 }
 
-/// Waits until something holds; whether it did within a minute.
+/// Waits until a condition holds. Gives whether it did within a minute.
 pub fn waits_for(holds: impl Fn() -> bool) -> bool {
     let start = std::time::Instant::now();
     while !holds() && start.elapsed() < std::time::Duration::from_secs(60) {
@@ -91,10 +94,10 @@ fn title(text: &str) -> Result<&str, Failed> {
     heading.ok_or_else(|| "the page has no title".into())
 }
 
-/// Whether differences are to be written rather than told.
+/// Whether differences are written into the pages, and not reported.
 fn accepts() -> bool {
     std::env::var("INSTA_UPDATE").is_ok_and(|mode| mode == "always")
 }
 
-/// How to accept a difference.
+/// The command that accepts differences.
 const ACCEPT: &str = "accept with: INSTA_UPDATE=always cargo test --test all -- guide::";

@@ -1,4 +1,4 @@
-//! The numeric harness: executors, kernels, cases.
+//! The numeric harness: executors, kernels, expressions and cases.
 
 mod refused;
 
@@ -45,20 +45,21 @@ pub fn trials() -> Vec<Trial> {
         .collect()
 }
 
-/// Executors whose words go to another process and back: they run a part of the cases here, and
-/// all of them with `lamplight check --executor webgpu --executor webgl2`.
+/// Executors in a browser. Their data goes to another process and back, which is slow. So they run
+/// only a part of the cases here, and all of them with `lamplight check --executor webgpu --executor
+/// webgl2`.
 const BROWSERS: [&str; 2] = ["webgl2", "webgpu"];
-/// They run the cases of one file in so many.
+/// They run the cases of every fourth file.
 const PART: usize = 4;
 
-/// Runs with every executor open, on a thread that ends before the trial does.
+/// Runs a function with every executor open, on a thread that ends before the trial does.
 fn opened<T: Send>(
     run: impl FnOnce(&mut [check::Open]) -> Result<T, Failed> + Send,
 ) -> Result<T, Failed> {
     opened_of(|_| true, run)
 }
 
-/// Runs with some executors open.
+/// Runs a function with some executors open.
 fn opened_of<T: Send>(
     wanted: fn(&str) -> bool,
     run: impl FnOnce(&mut [check::Open]) -> Result<T, Failed> + Send,
@@ -73,12 +74,12 @@ fn opened_of<T: Send>(
     outcome.ok_or("panicked")?.map_err(Failed::from)
 }
 
-/// The library's own cases, in both languages, on every executor that is not in a browser.
+/// The library's cases pass in both languages, on every executor that is not in a browser.
 fn library() -> Result<(), Failed> {
     library_on(|name| !BROWSERS.contains(&name), 1)
 }
 
-/// A part of them on those that are.
+/// A part of the library's cases passes on the executors in a browser.
 fn browsers() -> Result<(), Failed> {
     library_on(|name| BROWSERS.contains(&name), PART)
 }
@@ -100,9 +101,9 @@ fn library_on(wanted: fn(&str) -> bool, part: usize) -> Result<(), Failed> {
         if std::env::var_os("LAMPLIGHT_TABLE").is_some() {
             println!("{}", check::table(&report));
         }
-        // A filter that names no file must not pass.
+        // If the environment's filter matches no file, the trial must fail, since it proved nothing.
         if report.outcomes.is_empty() {
-            return Err(format!("no case file's path has `{only}` in it").into());
+            return Err(format!("no case file has `{only}` in its path").into());
         }
         match (failed(&report) + &check::lacking(&report)).as_str() {
             "" => Ok(()),
@@ -111,8 +112,8 @@ fn library_on(wanted: fn(&str) -> bool, part: usize) -> Result<(), Failed> {
     })
 }
 
-/// A thread that waits for a part of its job takes up another job on the same stack. Many modules
-/// must not add up to more than a stack holds.
+/// Checking many modules does not overflow a stack. A thread of the pool that waits for a part of
+/// its job starts another job on the same stack, so the depth could grow with the modules.
 fn many_modules() -> Result<(), Failed> {
     const MODULES: usize = 400;
     let file = |index: usize| {
@@ -131,11 +132,14 @@ fn many_modules() -> Result<(), Failed> {
     let report = library
         .check(&sources, &paths, &[Language::Wesl], &mut [])
         .map_err(|errors| render(&sources, &errors))?;
-    if report.outcomes.is_empty() { Ok(()) } else { Err("nothing was to run".into()) }
+    match report.outcomes.is_empty() {
+        true => Ok(()),
+        false => Err("without executors, no case should have a result".into()),
+    }
 }
 
-/// What a target has no word for is told apart from what fails, with the reason: GLSL ES 3.00
-/// knows no arrays of arrays, and GLSL 3.30 only those of an extension.
+/// A function that a target cannot express is reported as lacking, with the reason, and not as a
+/// failure. GLSL ES 3.00 has no arrays of arrays, and GLSL 3.30 has them only with an extension.
 fn lacking() -> Result<(), Failed> {
     let module = "fn pick(i: u32) -> f32 {
     var table = array<array<f32, 2>, 2>(array<f32, 2>(1.0, 2.0), array<f32, 2>(3.0, 4.0));
@@ -165,7 +169,8 @@ fn lacking() -> Result<(), Failed> {
         if report.passed() && is_told && counted == report.outcomes.len() {
             Ok(())
         } else {
-            Err(format!("{lacking}\n{}", failed(&report)).into())
+            let what = "expected essl300 and webgl2 to lack arrays of arrays, and no failure";
+            Err(format!("{what}; lacking:\n{lacking}\nfailures:\n{}", failed(&report)).into())
         }
     })
 }
@@ -186,11 +191,11 @@ fn every_function_has_cases() -> Result<(), Failed> {
     if missing.is_empty() {
         Ok(())
     } else {
-        Err(format!("no case tries\n{}", missing.join("\n")).into())
+        Err(format!("these functions have no case:\n{}", missing.join("\n")).into())
     }
 }
 
-/// A list within a list holds vectors, not numbers.
+/// For a vector parameter, a list within a list holds vectors: two here, not six numbers.
 fn vectors() -> Result<(), Failed> {
     let module = "fn length_of(v: vec3f) -> f32 { return length(v); }";
     let cases = "[[case]]\nfunction = \"length_of\"\nformula = \"length(v)\"\ntolerance = { ulp = 4 }\nlaws = { reaches = [0, 5] }\ninputs = { v = [[[0, 0, 0], [3, 0, 4]]] }\n";
@@ -210,12 +215,12 @@ fn vectors() -> Result<(), Failed> {
         if report.passed() && inputs.iter().all(|count| *count == 2) {
             Ok(())
         } else {
-            Err(format!("{inputs:?}\n{}", failed(&report)).into())
+            Err(format!("expected 2 inputs each, found {inputs:?}\n{}", failed(&report)).into())
         }
     })
 }
 
-/// Values of expressions, alike in both languages and on every executor.
+/// Expressions with their values, which must be the same in both languages and on every executor.
 const EXPRESSIONS: &[(&str, &str)] = &[
     ("lighting::spot::cone_exponent(0.5, 0.25, 2.0)", "0.25"),
     ("lamplight::lighting::spot::cone_hard(0.5, 0.75) + 1f", "1"),
@@ -252,7 +257,7 @@ fn expressions() -> Result<(), Failed> {
                     };
                     if found != *expected {
                         wrong += &format!(
-                            "{text} in {language:?} on {}: {found}, not {expected}\n",
+                            "{text} in {language:?} on {}: found {found}, expected {expected}\n",
                             open.executor
                         );
                     }
@@ -263,7 +268,7 @@ fn expressions() -> Result<(), Failed> {
     })
 }
 
-/// What failed, in words.
+/// The failures of a report, as text.
 fn failed(report: &check::Report) -> String {
     check::failures_as_text(&check::failures(report))
 }
@@ -284,6 +289,8 @@ fn shapes(a: f32, o: Outer, u: vec3u) -> Outer {
     return r;
 }";
 
+/// An executor runs a kernel with structs, matrices, booleans and integers, with more rows than one
+/// dispatch has, and gives the exact words.
 fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
     let module = naga::front::wgsl::parse_str(SHAPES)?;
     let kernel =
@@ -300,7 +307,7 @@ fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
     draws_as_listed(executor, session.as_ref())
 }
 
-/// An executor draws frames where its entry says so, and nowhere else.
+/// An executor draws frames exactly if its entry says so.
 fn draws_as_listed(executor: &executors::Entry, session: &dyn Session) -> Result<(), Failed> {
     let text = "@vertex fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
         return vec4f(f32(index & 1u), f32(index >> 1u), 0.5, 1.0);
@@ -323,12 +330,15 @@ fn draws_as_listed(executor: &executors::Entry, session: &dyn Session) -> Result
     match (session.draw_frames(&drawing), executor.samples) {
         (Ok(frames), Some(_)) => {
             let covered = frames[0].depth.iter().filter(|depth| **depth == 0.5).count();
-            assert!((4..16).contains(&covered), "{covered} pixels");
+            assert!((4..16).contains(&covered), "a triangle over 8 of 64 pixels covers {covered}");
             Ok(())
         }
         (Err(_), None) => Ok(()),
         (Err(problem), Some(_)) => Err(problem.message.into()),
-        (Ok(_), None) => Err("draws frames, which its entry does not say".into()),
+        (Ok(_), None) => {
+            Err(format!("`{}` draws frames, but its entry says that it does not", executor.name)
+                .into())
+        }
     }
 }
 

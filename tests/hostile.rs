@@ -1,5 +1,5 @@
-//! Input that is small and asks for much: memory, time, the stack. Each gets an error with a place
-//! and the exit code of wrong input, in a process that may use little memory.
+//! Small inputs that ask for much memory, time or stack. Each gives an error with a place and the
+//! exit code of wrong input, in a process whose memory is limited.
 
 mod beside;
 mod bundles;
@@ -21,7 +21,7 @@ use tempfile::TempDir;
 
 pub type Outcome = Result<(), Failed>;
 
-/// Address space of a command, in KiB. Large stacks of idle threads count too.
+/// The address space that a command may use, in KiB. The large stacks of idle threads count too.
 const MEMORY_KIB: u64 = 4 << 20;
 
 pub fn trials() -> Vec<Trial> {
@@ -42,7 +42,7 @@ pub fn trials() -> Vec<Trial> {
     rows.chain(others.into_iter().flatten()).collect()
 }
 
-/// Files, a command over them, and what it says.
+/// Files, a command over them, the exit code, and a part of what the command prints.
 pub struct Hostile {
     pub name: &'static str,
     pub files: fn() -> Vec<(&'static str, String)>,
@@ -64,12 +64,12 @@ impl Hostile {
     }
 }
 
-/// Runs the command line in a folder with little memory.
+/// Runs the command in a folder, with limited memory.
 pub fn run(folder: &TempDir, arguments: &[&str]) -> Result<Output, Failed> {
     run_within(MEMORY_KIB, folder, arguments)
 }
 
-/// The same with so many KiB of address space.
+/// The same with another limit of the address space, in KiB.
 pub fn run_within(kib: u64, folder: &TempDir, arguments: &[&str]) -> Result<Output, Failed> {
     let limited = format!("ulimit -v {kib}; exec \"$@\"");
     Ok(Command::new("sh")
@@ -81,7 +81,9 @@ pub fn run_within(kib: u64, folder: &TempDir, arguments: &[&str]) -> Result<Outp
         .output()?)
 }
 
-/// Ends with the code, and says the words on either stream.
+/// Fails unless the command ended with the code, printed the words on either stream, and neither
+/// panicked nor reported an internal error.
+#[track_caller]
 pub fn fails(output: &Output, code: i32, words: &str) -> Outcome {
     let told = String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
     let is_calm = !told.contains("panicked") && !told.contains("internal error");
@@ -89,5 +91,7 @@ pub fn fails(output: &Output, code: i32, words: &str) -> Outcome {
         return Ok(());
     }
     let start: String = told.chars().take(2000).collect();
-    Err(format!("expected {code} and `{words}`, got {:?}: {start}", output.status).into())
+    let place = std::panic::Location::caller();
+    let expected = format!("expected exit code {code} and `{words}`");
+    Err(format!("{place}: {expected}, found {:?}: {start}", output.status).into())
 }

@@ -1,5 +1,5 @@
-//! The repository itself: folders of `src/` without cycles, a map in ARCHITECTURE.md that is true,
-//! short paths, short functions and files, and nothing that a run left behind.
+//! Rules of the repository: folders of `src/` have no cycles, the map in ARCHITECTURE.md is true,
+//! paths, functions and files are short, and no run left a file behind.
 
 mod lengths;
 
@@ -11,10 +11,10 @@ use libtest_mimic::{Failed, Trial};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// Files of `src/` that are no stage: they only declare the others.
+/// Files of `src/` that only declare the others.
 const ROOTS: [&str; 2] = ["lib.rs", "main.rs"];
 
-/// For each folder (or single file) of `src/` those it names, and a file that does.
+/// For each folder (or single file) of `src/`, those that it uses, each with a file that does so.
 type Graph = BTreeMap<String, BTreeMap<String, PathBuf>>;
 
 pub fn trials() -> Vec<Trial> {
@@ -39,13 +39,14 @@ fn needs_are_installed() -> Result<(), Failed> {
     for entry in lamplight::execute::executors::ALL {
         let is_missing = |need: &&&str| !machine.contains(&format!("package: \"{need}\""));
         if let Some(need) = entry.needs.iter().find(is_missing) {
-            return Err(format!("xtask/src/machine.rs does not install `{need}`").into());
+            let what = format!("which the executor `{}` needs", entry.name);
+            return Err(format!("xtask/src/machine.rs does not install `{need}`, {what}").into());
         }
     }
     Ok(())
 }
 
-/// Targets, executors and scenes say what they are, and have the names of their files.
+/// Targets, executors and scenes have a description and are named after their files.
 fn entries_are_described() -> Result<(), Failed> {
     let targets = lamplight::emit::targets::ALL;
     let executors = lamplight::execute::executors::ALL;
@@ -58,26 +59,27 @@ fn entries_are_described() -> Result<(), Failed> {
     for (folder, name, about) in all {
         problems.extend(undescribed(name, about));
         if !Path::new(ROOT).join(folder).join(format!("{name}.rs")).is_file() {
-            problems.push(format!("`{name}` is not called like its file in {folder}"));
+            problems.push(format!("there is no file {folder}/{name}.rs for `{name}`"));
         }
     }
     if problems.is_empty() { Ok(()) } else { Err(problems.join("\n").into()) }
 }
 
-/// An entry says in one line what it is.
+/// What is wrong with an entry's description, which is one line.
 pub fn undescribed(name: &str, about: &str) -> Option<String> {
-    (about.len() < 4 || about.contains('\n')).then(|| format!("`{name}` does not say what it is"))
+    (about.len() < 4 || about.contains('\n'))
+        .then(|| format!("the description of `{name}` should be one line, found {about:?}"))
 }
 
-/// No folder of `src/` uses one that uses it, however long the way round.
+/// No folder of `src/` uses another that uses it, directly or through others.
 fn no_cycles() -> Result<(), Failed> {
     match cycle(&graph()?) {
-        Some(cycle) => Err(cycle.into()),
+        Some(cycle) => Err(format!("folders of src/ use each other: {cycle}").into()),
         None => Ok(()),
     }
 }
 
-/// The table of folders in ARCHITECTURE.md lists each folder once, behind those that it uses.
+/// The table of folders in ARCHITECTURE.md lists each folder once, after those that it uses.
 fn map_is_in_order() -> Result<(), Failed> {
     let text = std::fs::read_to_string(Path::new(ROOT).join("ARCHITECTURE.md"))?;
     let listed: Vec<&str> = text
@@ -92,11 +94,13 @@ fn map_is_in_order() -> Result<(), Failed> {
     for (index, name) in listed.iter().enumerate() {
         match graph.get(*name) {
             None => problems.push(format!("there is no `src/{name}`")),
-            Some(_) if listed[..index].contains(name) => problems.push(format!("`{name}` twice")),
+            Some(_) if listed[..index].contains(name) => {
+                problems.push(format!("`{name}` is listed twice"));
+            }
             Some(uses) => problems.extend(
                 uses.iter().filter(|(used, _)| !listed[..index].contains(&used.as_str())).map(
                     |(used, file)| {
-                        format!("`{name}` stands above `{used}`, which {} uses", file.display())
+                        format!("`{name}` is above `{used}`, which {} uses", file.display())
                     },
                 ),
             ),
@@ -110,26 +114,27 @@ fn map_is_in_order() -> Result<(), Failed> {
     }
 }
 
-/// The search finds what it should find, and reads every form of a path.
+/// The search for cycles reads every form of a path, and finds a cycle. If it did not, the trial
+/// [`no_cycles`] would pass whatever the folders use.
 fn cycles_are_found() -> Result<(), Failed> {
     let text = "use crate::{b::X, c::{Y, d::Z}};\nfn f() { crate::e::g() } // crate::no\n";
     let names = named(text, 1);
     if names != BTreeSet::from(["b", "c", "e"].map(str::to_owned)) {
-        return Err(format!("read {names:?}").into());
+        return Err(format!("the text names b, c and e, found {names:?}").into());
     }
     if named("use super::super::b::X;\nuse super::c;", 2) != BTreeSet::from(["b".to_owned()]) {
-        return Err("`super::super` of a file two folders deep is the crate".into());
+        return Err("in a file two folders deep, `super::super::b` should be read as `b`".into());
     }
     let edge = |to: &str| BTreeMap::from([(to.to_owned(), PathBuf::from("file.rs"))]);
     let graph: Graph =
         [("a", "b"), ("b", "c"), ("c", "b")].map(|(a, b)| (a.to_owned(), edge(b))).into();
     match cycle(&graph) {
         Some(words) if words.starts_with("b -> c -> b") => Ok(()),
-        other => Err(format!("{other:?}").into()),
+        other => Err(format!("expected the cycle `b -> c -> b`, found {other:?}").into()),
     }
 }
 
-/// What stands in the root of the repository, and nothing else.
+/// The files that the root of the repository may have.
 const ROOT_FILES: [&str; 13] = [
     ".gitignore",
     "ARCHITECTURE.md",
@@ -146,11 +151,11 @@ const ROOT_FILES: [&str; 13] = [
     "rustfmt.toml",
 ];
 
-/// How names end of what editors, tools and failed tests leave.
+/// Endings of files that editors, tools and failed tests leave behind.
 const LEFTOVERS: [&str; 10] =
     [".new", ".orig", ".rej", ".bak", ".tmp", ".log", ".swp", ".profraw", ".spv", "~"];
 
-/// Files that are no text: pictures, and inputs that are wrong on purpose.
+/// Files that may be binary: pictures, tables, and inputs that are wrong on purpose.
 const BINARIES: [&str; 13] = [
     ".png",
     "shaderlib/tables/blue_noise.bin",
@@ -167,10 +172,10 @@ const BINARIES: [&str; 13] = [
     "tests/regressions/record/valid",
 ];
 
-/// Most characters of a path: Windows stops at 260, of which a folder above takes its part.
+/// A path must have fewer characters. Windows allows 260, with the folder that holds the repository.
 const LONGEST: usize = 120;
 
-/// Commands print through `src/cli/terminal.rs`, which escapes what a terminal would obey.
+/// Commands print through `src/cli/terminal.rs`, which escapes control characters.
 fn one_way_to_the_terminal() -> Result<(), Failed> {
     let mut files = Vec::new();
     rust_files(&Path::new(ROOT).join("src/cli"), &mut files)?;
@@ -192,15 +197,15 @@ fn one_way_to_the_terminal() -> Result<(), Failed> {
     }
 }
 
-/// The repository holds nothing that a run left behind.
+/// The repository has no file that a run left behind.
 fn nothing_is_left_behind() -> Result<(), Failed> {
     let files = git(&["ls-files", "-z"])?;
     let ignored = git(&["ls-files", "-z", "--cached", "--ignored", "--exclude-standard"])?;
     let mut found: Vec<String> =
-        ignored.iter().map(|path| format!("{path} is ignored and yet committed")).collect();
+        ignored.iter().map(|path| format!("{path} is committed although git ignores it")).collect();
     for path in &files {
         let bytes = std::fs::read(Path::new(ROOT).join(path));
-        // A file that is deleted and not yet committed as such is no leftover.
+        // git still lists a file that is deleted before the deletion is committed.
         found.extend(bytes.ok().and_then(|bytes| leftover(path, &bytes)));
     }
     match found.is_empty() {
@@ -209,19 +214,20 @@ fn nothing_is_left_behind() -> Result<(), Failed> {
     }
 }
 
-/// Why a file does not belong into the repository.
+/// The reason why a file does not belong in the repository, if there is one.
 fn leftover(path: &str, bytes: &[u8]) -> Option<String> {
     let is_named_so = LEFTOVERS.iter().any(|end| path.ends_with(end));
     let may_be_binary = BINARIES.iter().any(|end| path.ends_with(end));
     if !path.contains('/') && !ROOT_FILES.contains(&path) {
-        Some(format!("{path} does not belong into the root; or list it in tests/house.rs"))
+        Some(format!("{path} does not belong in the root; if it does, list it in tests/house.rs"))
     } else if is_named_so || !may_be_binary && std::str::from_utf8(bytes).is_err() {
-        Some(format!("{path} was left behind by a run"))
+        Some(format!("{path} looks like a file that a run left behind"))
     } else {
         None
     }
 }
 
+/// The search for such files finds those of each kind, and no others.
 fn leftovers_are_seen() -> Result<(), Failed> {
     let wrong: [(&str, &[u8]); 4] = [
         ("vert.spv", b""),
@@ -232,10 +238,10 @@ fn leftovers_are_seen() -> Result<(), Failed> {
     let right: [(&str, &[u8]); 3] =
         [("README.md", b"text"), ("docs/a.png", b"\x89PNG"), ("src/a.rs", b"text")];
     for (path, bytes) in wrong {
-        leftover(path, bytes).ok_or_else(|| format!("{path} is not seen"))?;
+        leftover(path, bytes).ok_or_else(|| format!("{path} should be found, and is not"))?;
     }
     match right.iter().find_map(|(path, bytes)| leftover(path, bytes)) {
-        Some(wrong) => Err(wrong.into()),
+        Some(wrong) => Err(format!("this file belongs there: {wrong}").into()),
         None => Ok(()),
     }
 }
@@ -247,11 +253,11 @@ fn paths_are_short() -> Result<(), Failed> {
         files.into_iter().filter(|path| path.chars().count() >= LONGEST).collect();
     match long.is_empty() {
         true => Ok(()),
-        false => Err(format!("{LONGEST} characters or more:\n{}", long.join("\n")).into()),
+        false => Err(format!("paths of {LONGEST} characters or more:\n{}", long.join("\n")).into()),
     }
 }
 
-/// What git lists, separated by zeros.
+/// Runs git and gives the paths that it prints, which end with zero bytes.
 fn git(arguments: &[&str]) -> Result<Vec<String>, Failed> {
     let output = Command::new("git").args(arguments).current_dir(ROOT).output()?;
     if !output.status.success() {
@@ -273,7 +279,7 @@ fn graph() -> Result<Graph, Failed> {
         if parts.len() == 1 && ROOTS.contains(&&*parts[0]) {
             continue;
         }
-        // Modules between this file's items and the crate.
+        // How many `super::` lead from this file's items to the crate.
         let depth = parts.len() - usize::from(parts.last().is_some_and(|last| last == "mod.rs"));
         let uses = graph.entry(name.to_owned()).or_default();
         for used in named(&std::fs::read_to_string(file)?, depth) {
@@ -318,7 +324,7 @@ fn named(text: &str, depth: usize) -> BTreeSet<String> {
     names
 }
 
-/// The first names of what follows `crate::`: one, or those of a list in braces.
+/// The first names of the path after `crate::`: one name, or those of a list in braces.
 fn heads(rest: &str) -> Vec<String> {
     let word = |text: &str| -> String {
         text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
@@ -337,7 +343,7 @@ fn heads(rest: &str) -> Vec<String> {
     found
 }
 
-/// The first cycle, spelt out with a file for each step.
+/// The first cycle of a graph, as text, with a file for each step.
 fn cycle(graph: &Graph) -> Option<String> {
     graph.keys().find_map(|start| {
         let mut way = vec![start.as_str()];
@@ -351,7 +357,7 @@ fn cycle(graph: &Graph) -> Option<String> {
     })
 }
 
-/// Whether the way leads back to where it starts; then it is that way.
+/// Extends a path until it leads back to its start. Gives whether that is possible.
 fn back<'a>(graph: &'a Graph, way: &mut Vec<&'a str>, seen: &mut BTreeSet<&'a str>) -> bool {
     let Some(uses) = way.last().and_then(|last| graph.get(*last)) else { return false };
     for used in uses.keys() {

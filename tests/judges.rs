@@ -1,4 +1,5 @@
-//! The judges of the targets: what they refuse, what is told of it, and what is there afterwards.
+//! The judges of the targets: what they refuse, what the user is told, and that refused outputs do
+//! not replace a bundle.
 
 mod placed;
 
@@ -32,7 +33,7 @@ pub fn trials() -> Vec<Trial> {
     cases.into_iter().map(|(name, case)| Trial::test(format!("judges::{name}"), case)).collect()
 }
 
-/// A shader with something of everything, whose functions have names that outputs keep.
+/// A shader with many kinds of declarations. Outputs keep the names of its functions.
 const SHADER: &str = "
 struct Lamp { color: vec3f, power: f32, weights: array<vec4f, 3> }
 @group(0) @binding(0) var<uniform> lamp: Lamp;
@@ -56,7 +57,7 @@ fn powered(level: f32) -> f32 {
 const MANIFEST: &str =
     "[program.one]\nwesl = \"one.wesl\"\naxis.number = { values = [\"none\", \"one\", \"two\"] }\n";
 
-/// A package in a folder of its own.
+/// A package in a temporary folder.
 pub struct Package(tempfile::TempDir);
 
 impl Package {
@@ -81,7 +82,7 @@ impl Package {
         Ok(self.command(arguments).output()?)
     }
 
-    /// The outputs of the package's bundle, which is made now.
+    /// Makes the package's bundle and gives its outputs.
     fn outputs(&self) -> Result<Vec<Output>, Failed> {
         let said = self.run(&["gen", "--no-cache"])?;
         if !said.status.success() {
@@ -96,12 +97,18 @@ fn told(said: &Said) -> String {
     String::from_utf8_lossy(&all).into_owned()
 }
 
+/// Fails, with the place of the call, unless a command ended with a code and printed all words.
+#[track_caller]
 pub fn expect(said: &Said, code: i32, words: &[&str]) -> Outcome {
+    let place = std::panic::Location::caller();
     let text = told(said);
     let lost = words.iter().find(|word| !text.contains(**word));
     match (said.status.code(), lost) {
         (Some(found), None) if found == code => Ok(()),
-        (found, lost) => Err(format!("exit code {found:?}, without {lost:?}:\n{text}").into()),
+        (found, lost) => {
+            let what = format!("exit code {found:?}, expected {code}; words not found: {lost:?}");
+            Err(format!("{place}: {what}:\n{text}").into())
+        }
     }
 }
 
@@ -109,8 +116,8 @@ fn judged(outputs: &[Output]) -> Result<Vec<judge::Refusal>, Failed> {
     Ok(judge::judge(outputs, None, &|_, _| ())?)
 }
 
-/// Breaks an output: the power of a lamp is called otherwise in one line, or in SPIR-V a type is
-/// asked for that is not there. The number of the line, in texts.
+/// Breaks an output: a text uses a name in one line that is not declared, and SPIR-V has a wrong
+/// instruction near its end. Gives the number of the line, for texts.
 fn broken(output: &Output) -> Result<Option<u32>, Failed> {
     let mut bytes = fs::read(&output.file)?;
     if output.target == Target::SPIRV {
@@ -126,12 +133,12 @@ fn broken(output: &Output) -> Result<Option<u32>, Failed> {
     Ok(Some(line))
 }
 
-/// All targets are judged, and what is wrong in a line is told of that line.
+/// The judge of each target accepts its sound output, and refuses the broken one at its line.
 fn every_judge_refuses() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     let outputs = package.outputs()?;
     if let Some(refusal) = judged(&outputs)?.first() {
-        return Err(format!("refused as it is: {refusal:?}").into());
+        return Err(format!("a sound output is refused: {refusal:?}").into());
     }
     let mut lines = Vec::new();
     for target in Target::ALL {
@@ -146,11 +153,11 @@ fn every_judge_refuses() -> Outcome {
     if found == lines {
         return Ok(());
     }
-    Err(format!("{found:?} instead of {lines:?}: {refusals:?}").into())
+    Err(format!("refused at {found:?}, expected {lines:?}: {refusals:?}").into())
 }
 
-/// Batches hide nothing: of a hundred outputs that are nearly alike the one at fault is found, in
-/// each target, though nothing in it is new to those that are compiled one by one.
+/// A wrong output is found among a hundred that are judged in one batch. Judges compile only texts
+/// with new pairs of tokens one by one, and this one has no new pair, so only the batch can find it.
 fn one_of_many_is_found() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     let outputs = package.outputs()?;
@@ -159,7 +166,7 @@ fn one_of_many_is_found() -> Outcome {
         let first = outputs.iter().find(|output| output.target == *target).ok_or("no output")?;
         let text = fs::read_to_string(&first.file)?;
         for copy in 0..100 {
-            // `pow` instead of `powered` is a pair of tokens that other texts have.
+            // Each pair of neighbouring tokens in this wrong text is also in other texts.
             let text = match copy {
                 70 => text.replace("return twice *", "return level *").replace("level + level", ""),
                 _ => text.clone(),
@@ -175,15 +182,18 @@ fn one_of_many_is_found() -> Outcome {
     let refusals = judged(&many)?;
     let found: BTreeSet<PathBuf> =
         refusals.iter().map(|refusal| refusal.output.file.clone()).collect();
-    if found == wrong { Ok(()) } else { Err(format!("{refusals:?}").into()) }
+    match found == wrong {
+        true => Ok(()),
+        false => Err(format!("refused should be {wrong:?}, found {refusals:?}").into()),
+    }
 }
 
-/// GLSL ES is judged as 3.10 too, SPIR-V for Vulkan 1.0 too.
+/// GLSL ES is judged as version 3.10 too, and SPIR-V for Vulkan 1.0 too.
 fn later_versions() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     let outputs = package.outputs()?;
     let find = |target| outputs.iter().find(|output| output.target == target).ok_or("no output");
-    // A name that is free in 3.00, and a keyword of 3.10.
+    // `buffer` is an ordinary name in 3.00, and a keyword in 3.10.
     let es = find(Target::ESSL300)?;
     let text = fs::read_to_string(&es.file)?;
     fs::write(&es.file, text.replace("twice", "buffer"))?;
@@ -194,7 +204,7 @@ fn later_versions() -> Outcome {
     let refusals = judged(&[es.clone(), spirv.clone()])?;
     match refusals.as_slice() {
         [es, spirv] if es.words.contains("BUFFER") && spirv.words.contains("vulkan1.0") => Ok(()),
-        _ => Err(format!("{refusals:?}").into()),
+        _ => Err(format!("expected BUFFER in GLSL ES, and vulkan1.0: {refusals:?}").into()),
     }
 }
 
@@ -214,7 +224,7 @@ fn counted(value: u32) -> u32 {
 
 const COUNTED_MANIFEST: &str = "[program.one]\nwesl = \"one.wesl\"\ntargets = [\"essl300\", \"hlsl\"]\naxis.bits = { values = [false, true] }\n";
 
-/// An output that passed is not judged again, and one that did not is.
+/// An output that passed is not judged again. One that was refused is.
 fn what_passed_is_known() -> Outcome {
     let manifest = COUNTED_MANIFEST.replace("\"essl300\", ", "");
     let package = Package::new(&manifest, COUNTED)?;
@@ -230,8 +240,8 @@ fn what_passed_is_known() -> Outcome {
     Ok(())
 }
 
-/// A judge that is not there is exit code 4 with the command that installs it, before anything is
-/// written.
+/// If a judge is not installed, the run ends with exit code 4 and the command that installs it,
+/// before it writes anything.
 fn missing_programs_are_told() -> Outcome {
     let nothing = tempfile::tempdir()?;
     let lacking = [
@@ -246,7 +256,7 @@ fn missing_programs_are_told() -> Outcome {
     if lacking.iter().map(|(target, _)| *target).collect::<BTreeSet<_>>()
         != Target::ALL.iter().map(|target| target.name()).collect()
     {
-        return Err("a target is not tried".into());
+        return Err("this trial should list every target once".into());
     }
     let package = Package::new(MANIFEST, SHADER)?;
     for (target, install) in lacking {
@@ -257,13 +267,13 @@ fn missing_programs_are_told() -> Outcome {
     let words = ["npm install", "cache/lamplight-tint webgpu@"];
     expect(&package.run(&arguments)?, 4, &words)?;
     match package.path("bundle").exists() {
-        true => Err("something was written".into()),
+        true => Err("a bundle was written although a judge is missing".into()),
         false => Ok(()),
     }
 }
 
-/// A package in the place of Dawn's: what it refuses is told, and a text that it does not answer
-/// for is no text that passed.
+/// Tint is run with a package that stands in for Dawn's. A refusal is told with its place. A text
+/// for which the package gives no verdict does not count as passed.
 fn tint() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     let folder = package.path("lamplight-tint/node_modules/webgpu");
@@ -298,7 +308,8 @@ export const create = () => ({{ requestAdapter: async () => ({{ requestDevice: a
     expect(&package.run(&arguments)?, 0, &["1 outputs judged, 2 known to pass"])
 }
 
-/// Arrays of zeros, however deep, of whatever, where glslang takes no cast of a number.
+/// HLSL initialises arrays of zeros with a cast of a number, which glslang does not accept for all
+/// types. Arrays of every type and depth must pass their judges.
 fn arrays_of_zeros() -> Outcome {
     let shader = "
 struct Lamp { color: vec3f, weights: array<f32, 4> }
@@ -324,7 +335,10 @@ fn long(index: u32) -> f32 { var found: array<i32, 3000>; found[index] = 1; wide
     match judged(&outputs)?.first() {
         Some(refusal) => Err(format!("{refusal:?}\n{}", text(&refusal.output.file)).into()),
         None if outputs.len() == targets.len() => Ok(()),
-        None => Err(format!("{} outputs", outputs.len()).into()),
+        None => {
+            let (found, expected) = (outputs.len(), targets.len());
+            Err(format!("found {found} outputs, expected {expected}").into())
+        }
     }
 }
 

@@ -1,4 +1,5 @@
-//! Typed keys compile and say what `permute` says; dense keys never change.
+//! The typed keys that `lamplight keys` writes. They compile, and give the same keys and numbers as
+//! `permute`. A key's number never changes, because engines store it.
 
 mod programs;
 
@@ -41,15 +42,18 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
-/// How a language's keys are put to use: a program that reads a line of ordinals for each key.
+/// How the keys of a language are tried: a program that uses them. It reads a line of ordinals for
+/// each key and prints the key and its number.
 struct Harness {
     language: &'static str,
     file: &'static str,
     main: fn(&Manifest) -> String,
     source: &'static str,
-    /// `{}` stands for the folder.
+    /// The command that compiles the program. `{}` stands for the folder.
     compile: &'static [&'static str],
+    /// The command that runs the program. `{}` stands for the folder.
     run: &'static [&'static str],
+    /// A change of the written keys before they are compiled.
     edit: fn(String) -> String,
 }
 
@@ -92,7 +96,7 @@ const C: Harness = Harness {
     edit: |text| text,
 };
 
-/// The types are stripped by hand: node does so itself only since version 22.
+/// The trial strips the types, because node does so itself only since version 22.
 const TYPESCRIPT: Harness = Harness {
     language: "ts",
     file: "keys.mjs",
@@ -103,7 +107,8 @@ const TYPESCRIPT: Harness = Harness {
     edit: stripped,
 };
 
-/// A lock to which values were added since, and which has values and an axis that are gone.
+/// A lock file to which values were added later. It has values and an axis that the manifest no
+/// longer has.
 const OLDER_LOCK: &str = "p gone no yes\np lamp none point old\np lit false true\np moving off on\n\
     p lamp + spot\np count 4 1\np lamp + area sky\n";
 const NEWER: &str = "[program.p]\nwesl = \"a.wesl\"\n[program.p.axis]\n\
@@ -111,6 +116,8 @@ const NEWER: &str = "[program.p]\nwesl = \"a.wesl\"\n[program.p.axis]\n\
     lit = { values = [true, false] }\ncount = { values = [1, 4, 10] }\n\
     moving = { values = [\"on\", \"off\"], mode = \"dynamic\" }\n";
 
+/// The keys of a language agree with `permute`, for the library and for a manifest that has changed
+/// since its lock file was begun.
 fn in_language(harness: &Harness) -> Outcome {
     let (manifest, lock) = (library()?, read_lock()?);
     of_manifest(harness, &manifest, &lock)?;
@@ -122,7 +129,8 @@ fn in_language(harness: &Harness) -> Outcome {
     of_manifest(harness, &newer, &extended(&older, &newer))
 }
 
-/// Keys, their numbers and the way back are those of the library.
+/// The program of a language gives the key and the number of every permutation as `permute` does, and
+/// gets the key back from the number.
 fn of_manifest(harness: &Harness, manifest: &Manifest, lock: &Lock) -> Outcome {
     let folder = tempfile::tempdir()?;
     let language = keys::find(harness.language).ok_or("no such language")?;
@@ -147,8 +155,9 @@ fn of_manifest(harness: &Harness, manifest: &Manifest, lock: &Lock) -> Outcome {
         return Ok(());
     }
     let differing = found.lines().zip(expected.lines()).find(|(found, expected)| found != expected);
-    Err(format!("{differing:?}, {} of {} lines", found.lines().count(), expected.lines().count())
-        .into())
+    let counts = format!("{} of {} lines", found.lines().count(), expected.lines().count());
+    let what = format!("the first that differ (found, expected): {differing:?}");
+    Err(format!("{}: {counts}; {what}", harness.language).into())
 }
 
 fn execute(folder: &Path, command: &[&str], input: &str) -> Result<String, Failed> {
@@ -184,7 +193,7 @@ fn library() -> Result<Manifest, Failed> {
     Ok(found.1)
 }
 
-/// What a runtime does that strips types: interfaces and aliases go, and annotations.
+/// Removes the types from TypeScript, as a runtime does: interfaces, aliases and annotations.
 fn stripped(text: String) -> String {
     let mut out = String::new();
     let mut inside = false;
@@ -256,6 +265,7 @@ fn parsed(text: &str) -> Result<Manifest, Failed> {
         .map_err(|problems| render(&sources, &problems, Form::Human))?)
 }
 
+/// Keys compile even if axes and values have names that are keywords, or that collide.
 fn awkward(language: &str, file: &str, command: &[&str]) -> Outcome {
     let manifest = parsed(AWKWARD)?;
     let folder = tempfile::tempdir()?;
@@ -294,17 +304,20 @@ fn extended(lock: &Lock, manifest: &Manifest) -> Lock {
         .fold(lock.clone(), |lock, program| lock.extended(&program.name, &program.space))
 }
 
+/// The library's lock file has every axis and value of its manifest.
 fn up_to_date() -> Outcome {
     let text = extended(&read_lock()?, &library()?).to_string();
     if text == LOCK {
         Ok(())
     } else {
-        Err("run `lamplight keys --lock --manifest shaderlib/lamplight.toml` and commit the lock"
+        let command = "lamplight keys --lock --manifest shaderlib/lamplight.toml";
+        Err(format!("shaderlib/lamplight.lock is out of date: run `{command}` and commit it")
             .into())
     }
 }
 
-/// Every shipped key keeps its text and its number when an axis and values are added.
+/// Every shipped key keeps its text and its number when an axis and values are added. Otherwise an
+/// engine with stored keys would load other shaders.
 fn growth() -> Outcome {
     let (old, lock) = (parsed(MANIFEST)?, read_lock()?);
     let grown = MANIFEST
@@ -331,7 +344,8 @@ fn growth() -> Outcome {
                 || new_lock.dense(&program.name, &after.space, &same) != dense
                 || dense.is_none()
             {
-                return Err(format!("{} {key} changed: {dense:?}", program.name).into());
+                let what = format!("its text or its number {dense:?} changed");
+                return Err(format!("{} {key}: {what}", program.name).into());
             }
             count += 1;
         }

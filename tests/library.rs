@@ -1,5 +1,5 @@
-//! The library's own programs: reviewed permutations in full, all others by their hashes, every
-//! outputs of each target before its judge.
+//! The library's own programs. Some permutations are recorded as texts, which people review; all are
+//! recorded by hashes; and the judge of each target judges a part of the outputs.
 
 mod recorded;
 
@@ -19,9 +19,9 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::snapshot;
 
-/// Permutations of `forward` whose texts and outputs are reviewed by eye: one for each thing that
-/// changes the shape of the shader. The names are those of the folders of their snapshots, which
-/// keys would make longer than some systems allow.
+/// Permutations of `forward` whose texts and outputs people review: one for each thing that changes
+/// the structure of the shader. Each has a short name for the folder of its snapshots, since paths
+/// with whole keys would be too long for some systems.
 const REVIEWED: &[(&str, &str)] = &[
     ("default", "default"),
     ("unlit", "lights=none"),
@@ -56,6 +56,7 @@ pub fn trials() -> Vec<Trial> {
     reviewed.chain(whole.map(|(name, run)| Trial::test(name, run))).collect()
 }
 
+/// Compares the composed texts and the outputs of a permutation with its snapshots.
 fn review(name: &str, text: &str) -> Result<(), Failed> {
     let (mut sources, manifest) = project::library_manifest()
         .map_err(|(sources, errors)| render(&sources, &errors, Form::Human))?;
@@ -73,7 +74,7 @@ fn review(name: &str, text: &str) -> Result<(), Failed> {
     let made = made.map_err(|errors| render(&sources, &errors, Form::Human))?;
     let shipped = made.contents.programs.get("forward").ok_or("no program `forward` is made")?;
     for (path, language, entry) in roots(program) {
-        // A GLSL stage is shipped by the name of its twin.
+        // A bundle names a GLSL stage after the entry point of its WESL twin.
         let label =
             if path.ends_with(".vert.glsl") || entry == "vs_main" { "vs_main" } else { "fs_main" };
         let unit = shipped
@@ -106,7 +107,7 @@ fn review(name: &str, text: &str) -> Result<(), Failed> {
 /// A root file with its language and an entry point.
 type Root<'a> = (&'a str, Language, &'static str);
 
-/// What is composed of a root file under some settings.
+/// The composed text of a root file under some settings.
 fn composed(
     sources: &mut SourceSet,
     (path, language, entry): Root<'_>,
@@ -124,7 +125,7 @@ fn composed(
     Ok(composed.map_err(|errors| render(sources, &errors, Form::Human))?.text)
 }
 
-/// Root files with an entry point each: those of WESL for every reviewed permutation, and GLSL.
+/// The root files of a program in both languages, with their entry points.
 fn roots(program: &Program) -> Vec<Root<'_>> {
     let wesl = program.wesl.iter().flat_map(|file| [("vs_main", file), ("fs_main", file)]);
     let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
@@ -132,7 +133,7 @@ fn roots(program: &Program) -> Vec<Root<'_>> {
     wesl.chain(glsl.map(|file| (file.path.as_str(), Language::Glsl, "main"))).collect()
 }
 
-/// Text as it is; SPIR-V disassembled by spirv-dis.
+/// An output as text. SPIR-V is disassembled by spirv-dis.
 fn readable(target: Target, bytes: &[u8]) -> Result<String, Failed> {
     if target != Target::SPIRV {
         return Ok(String::from_utf8(bytes.to_vec())?);
@@ -148,7 +149,7 @@ fn readable(target: Target, bytes: &[u8]) -> Result<String, Failed> {
     }
 }
 
-/// The bundle of the whole manifest, made once.
+/// The bundle of the library's whole manifest. It is made once for all trials.
 fn contents() -> Result<&'static Contents, Failed> {
     static CONTENTS: OnceLock<Result<Contents, String>> = OnceLock::new();
     CONTENTS.get_or_init(|| on_large_stack(library)).as_ref().map_err(|error| error.clone().into())
@@ -164,12 +165,13 @@ fn library() -> Result<Contents, String> {
         .map_err(|errors| render(&sources, &errors, Form::Human))
 }
 
-/// Every output of every permutation is what was accepted.
+/// Every output of every permutation has the bytes that were recorded.
 fn hashes() -> Result<(), Failed> {
     recorded::check(contents()?)
 }
 
-/// Each value of each axis that changes a text does so in both languages.
+/// Each value of each static axis changes some output, in both languages. A value without effect in
+/// one language would mean that the twins differ.
 fn values_have_effect() -> Result<(), Failed> {
     let mut idle = Vec::new();
     for (name, program) in &contents()?.programs {
@@ -187,7 +189,7 @@ fn values_have_effect() -> Result<(), Failed> {
     if idle.is_empty() { Ok(()) } else { Err(idle.join("\n").into()) }
 }
 
-/// A setting as keys write it.
+/// A setting, written as in a key.
 fn setting_of(axis: &str, value: &str) -> String {
     if value == "true" { axis.to_owned() } else { format!("{axis}={value}") }
 }
@@ -201,7 +203,8 @@ fn differs_by(entry: &EntryContents, setting: &str) -> bool {
     })
 }
 
-/// A text that changes in one key is shown, with the key.
+/// If the output of one key changes, the message has the key and the difference. An equal bundle has
+/// no differences.
 fn difference_is_shown() -> Result<(), Failed> {
     let old = contents()?;
     let mut new = old.clone();
@@ -224,15 +227,18 @@ fn difference_is_shown() -> Result<(), Failed> {
     ];
     match same.is_empty() && parts.iter().all(|part| said.contains(part)) {
         true => Ok(()),
-        false => Err(format!("{same}\n---\n{said}").into()),
+        false => {
+            let what = format!("expected no difference, found:\n{same}");
+            Err(format!("{what}\n---\nexpected {parts:?}, found:\n{said}").into())
+        }
     }
 }
 
-/// One output of each target in so many is judged here; `cargo xtask gen` judges all.
+/// Every seventh output of each target is judged here. `cargo xtask gen` judges all.
 const JUDGED: usize = 7;
 
-/// The judge of each target takes its outputs. Tint is left to `cargo xtask gen`: its package
-/// comes from npm.
+/// The judge of each target accepts its outputs. Tint is not asked here, since its package comes
+/// from npm; `cargo xtask gen` asks it.
 fn judges() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     write_directory(contents()?, folder.path())?;
@@ -243,7 +249,8 @@ fn judges() -> Result<(), Failed> {
         let before = some.len();
         some.extend(of_target.step_by(JUDGED).cloned());
         if some.len() < before + 100 {
-            return Err(format!("{target} has {} outputs", some.len() - before).into());
+            let found = some.len() - before;
+            return Err(format!("{target}: {found} outputs to judge, expected 100").into());
         }
     }
     let refusals = judge::judge(&some, None, &|_, _| ())?;

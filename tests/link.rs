@@ -1,5 +1,6 @@
-//! Separate compilation: a text has the same bytes whether its functions are its own or were
-//! taken from others, and whatever may not be taken apart is left whole.
+//! The linker, which translates each function once. A text has the same bytes whether its functions
+//! were translated for it or taken from other texts. A text that cannot be divided into functions is
+//! compiled as a whole, with a reason.
 
 mod texts;
 mod writers;
@@ -28,7 +29,7 @@ use writers::{
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-/// One permutation of `forward` in so many is also compiled by itself.
+/// Every 23rd permutation of `forward` is also compiled alone.
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
@@ -79,7 +80,7 @@ fn units(generated: &Generated) -> BTreeMap<(String, String), &Unit> {
     units.collect()
 }
 
-/// Each text by itself has the bytes, the names and the reflection that it has among all others.
+/// Each text, compiled alone, has the same bytes, names and reflection as among all others.
 fn agree(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -103,7 +104,8 @@ fn agree(
 
 fn differ(alone: &Unit, together: &Unit) -> Option<String> {
     if alone.reflection != together.reflection {
-        return Some("another reflection".to_owned());
+        let (alone, together) = (&alone.reflection, &together.reflection);
+        return Some(format!("reflection, alone:\n{alone:?}\ntogether:\n{together:?}"));
     }
     let differ = |target: &&String| alone.targets[*target] != together.targets[*target];
     alone.targets.keys().find(differ).map(|target| {
@@ -112,6 +114,7 @@ fn differ(alone: &Unit, together: &Unit) -> Option<String> {
     })
 }
 
+/// Permutations of `forward` have the same bytes alone and together, and all of them are linked.
 fn forward() -> Outcome {
     let (mut sources, mut manifest) = project::library_manifest()
         .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
@@ -122,14 +125,17 @@ fn forward() -> Outcome {
 
 fn all_linked(generated: &Generated) -> Outcome {
     match generated.summary.whole.first() {
-        Some(whole) => Err(format!("compiled as a whole: {whole:?}").into()),
+        Some(whole) => {
+            Err(format!("every text should be linked; compiled as a whole: {whole:?}").into())
+        }
         None => Ok(()),
     }
 }
 
-/// What is linked has the declarations that naga writes for the whole text, up to their names and
-/// their order: the functions all, of the others those that are named. This fails where a version
-/// of naga writes a function in a way that depends on its module.
+/// A linked output has the declarations that naga writes for the whole text, except for their names
+/// and their order. It has all functions, and those other declarations that are used. This trial
+/// fails if a version of naga writes a function in a way that depends on the rest of its module,
+/// which the linker assumes it does not.
 fn whole_and_linked() -> Outcome {
     let folder = tempfile::tempdir()?;
     for (name, manifest, text) in [
@@ -143,13 +149,13 @@ fn whole_and_linked() -> Outcome {
     let (mut sources, mut manifest) = project::library_manifest()
         .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
     manifest.programs.retain(|program| program.name == "forward");
-    // naga's GLSL front end numbers values and orders statements by what its module has, so that
-    // texts of GLSL cannot be compared word by word: `frames` and `metal` draw them instead.
+    // naga's GLSL front end numbers values and orders statements by what else the module has, so
+    // outputs of GLSL sources cannot be compared as texts. `frames` and `metal` draw them instead.
     manifest.programs.iter_mut().for_each(|program| program.glsl = None);
     compare::all(&mut sources, &project::library(), &manifest, STEP)
 }
 
-/// A package of one module in a folder.
+/// Writes a package of one module to a folder, and reads it.
 fn package(
     folder: &Path,
     name: &str,
@@ -169,11 +175,13 @@ fn package(
     Ok((sources, packages, manifest))
 }
 
+/// Texts with much that naga's writers number, rename or add have the same bytes alone and together.
 fn traps() -> Outcome {
     alone_and_together("traps", TRAPS_MANIFEST, TRAPS)?;
     alone_and_together("rows", ROWS_MANIFEST, ROWS)
 }
 
+/// Names with a meaning to a writer have the same bytes alone and together.
 fn names() -> Outcome {
     alone_and_together("names", NAMES_MANIFEST, NAMES)
 }
@@ -189,16 +197,17 @@ fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {
     judge_all(&out)
 }
 
-/// Every output of a bundle is well formed.
+/// The judges accept every output of a bundle.
 fn judge_all(out: &Path) -> Outcome {
     let outputs = judge::outputs(lamplight::bundle::blob_files(out)?)?;
     match judge::judge(&outputs, None, &|_, _| ())?.first() {
         None if !outputs.is_empty() => Ok(()),
-        refusal => Err(format!("{refusal:?}").into()),
+        Some(refusal) => Err(format!("an output is refused: {refusal:?}").into()),
+        None => Err(format!("{} has no outputs to judge", out.display()).into()),
     }
 }
 
-/// A program of one fragment shader with something more in it.
+/// A fragment shader with more declarations and statements.
 fn fragment(more: &str, body: &str) -> String {
     format!(
         "@group(0) @binding(0) var map: texture_2d<f32>; @group(0) @binding(1) var smp: sampler;
@@ -211,7 +220,7 @@ fn fragment(more: &str, body: &str) -> String {
     )
 }
 
-/// Why targets of a program are compiled as a whole.
+/// The targets of a program that are compiled as a whole, with the reason.
 fn reasons_of(text: &str, targets: &str) -> Result<BTreeMap<String, Reason>, Failed> {
     let folder = tempfile::tempdir()?;
     let manifest = format!("[program.one]\nwesl = \"one.wesl\"\n{targets}\n");
@@ -220,7 +229,7 @@ fn reasons_of(text: &str, targets: &str) -> Result<BTreeMap<String, Reason>, Fai
     Ok(made.summary.whole.into_iter().map(|whole| (whole.target, whole.reason)).collect())
 }
 
-/// Declarations and statements with which a text is linked.
+/// Declarations and statements with which a text can be linked.
 const LINKED: &[(&str, &str)] = &[
     ("", "let d = dpdx(at.x); if d > 0.0 { discard; }"),
     ("fn f(x: f32) -> f32 { return fwidth(x); }", "let d = f(at.x);"),
@@ -252,7 +261,7 @@ const LINKED: &[(&str, &str)] = &[
     ("fn SamplerState(x: f32) -> f32 { return x; }", "let d = SamplerState(1.0);"),
 ];
 
-/// Declarations and statements with which it is compiled as a whole, and why.
+/// Declarations and statements with which a text is compiled as a whole, and the reason.
 const WHOLE: &[(&str, &str, Reason)] = &[
     ("override o: f32 = 1.0;", "let d = o;", Reason::Override),
     ("@group(0) @binding(3) var<storage> s: array<f32>;", "let d = s[0];", Reason::StorageBuffer),
@@ -264,25 +273,29 @@ const WHOLE: &[(&str, &str, Reason)] = &[
     ("fn Zqbqz(x: f32) -> f32 { return x; }", "let d = Zqbqz(1.0);", Reason::MarkedName),
 ];
 
+/// A text is compiled as a whole only for a known reason. If more texts were, `gen` would be slow
+/// without anybody noticing.
 fn reasons() -> Outcome {
     for (more, body) in LINKED {
         let reasons = reasons_of(&fragment(more, body), "")?;
         if !reasons.is_empty() {
-            return Err(format!("{more} {body}: {reasons:?}").into());
+            return Err(format!("`{more} {body}` should be linked, found {reasons:?}").into());
         }
     }
     for (more, body, reason) in WHOLE {
-        // Not every target has storage buffers.
+        // Only these targets are asked for, since not every target has storage buffers.
         let targets = "targets = [\"spirv\", \"wgsl\"]";
         let reasons = reasons_of(&fragment(more, body), targets)?;
         if reasons.len() != 2 || reasons.values().any(|found| found != reason) {
-            return Err(format!("{more} {body}: {reasons:?} instead of {reason:?}").into());
+            let what = format!("expected {reason:?} for both targets, found {reasons:?}");
+            return Err(format!("`{more} {body}`: {what}").into());
         }
     }
     Ok(())
 }
 
-/// A derivative where fragments have parted is warned of, for the permutation alone and among others.
+/// A derivative in non-uniform control flow gives a warning, for the permutation alone and among
+/// others.
 fn warnings() -> Outcome {
     let text = "
 @group(0) @binding(0) var map: texture_2d<f32>;
@@ -295,7 +308,8 @@ fn sampled(at: vec2f) -> vec4f { if far(at) { return textureSample(map, smp, at)
     warned(text)
 }
 
-/// naga takes the array of an alias for another type: the text is valid once it is written out.
+/// The same with an alias. naga takes the array of an alias for another type than the array of its
+/// type, so it accepts this text only with the alias replaced. The warning must not be lost then.
 fn warnings_beside_aliases() -> Outcome {
     let text = "
 alias Colour = vec4f;
@@ -313,7 +327,7 @@ fn sampled(at: vec2f) -> vec4f { if far(at) { return textureSample(map, smp, at)
     warned(text)
 }
 
-/// A program is warned of once, for its parted permutation.
+/// A program gives one warning, for its permutation `parted`.
 fn warned(text: &str) -> Outcome {
     let manifest =
         "[program.small]\nwesl = \"small.wesl\"\naxis.parted = { values = [false, true] }\n";
@@ -324,6 +338,6 @@ fn warned(text: &str) -> Outcome {
     if (together, alone) == (1, 1) {
         Ok(())
     } else {
-        Err(format!("{together} warnings together, {alone} alone").into())
+        Err(format!("expected 1 warning, found {together} together and {alone} alone").into())
     }
 }

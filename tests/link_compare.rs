@@ -1,4 +1,4 @@
-//! Linked outputs beside those that naga writes for the whole text.
+//! Compares linked outputs with those that naga writes for the whole text.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use lamplight::source::SourceSet;
 use lamplight::validate::validate;
 use libtest_mimic::Failed;
 
-/// Compares every so-many-th permutation of every program, in both languages.
+/// Compares every `step`-th permutation of every program, in both languages.
 pub fn all(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -72,14 +72,16 @@ fn one(
         let linked = &made.unit.targets[target.name()].bytes;
         let (whole, linked) = match *target {
             Target::SPIRV => (opcodes(&whole), opcodes(linked)),
-            // Metal passes variables along in the order of the module, and the entry point that naga
-            // wraps around a GLSL `main` copies them in that order.
+            // These two depend on the order of variables in the module: Metal passes variables to
+            // functions in that order, and the entry point that naga wraps around a GLSL `main`
+            // copies them in that order.
             _ if *target == Target::MSL || composed.language == Language::Glsl => {
                 (sorted(declarations(&whole)), sorted(declarations(linked)))
             }
             _ => (declarations(&whole), declarations(linked)),
         };
-        // The whole text has more types, constants and helpers than its functions need.
+        // Only functions of the whole text must be in the linked one. The whole text may have types,
+        // constants and helpers that no function needs.
         let is_function = |text: &&String| {
             let head = text.split(" {").next().unwrap_or_default();
             let is_sorted = *target == Target::MSL || composed.language == Language::Glsl;
@@ -89,14 +91,17 @@ fn one(
         let missing = whole.difference(&linked).find(is_function);
         let more = linked.difference(&whole).next();
         if let Some(found) = missing.or(more) {
-            let which = if missing.is_some() { "is missing" } else { "is not in the whole" };
+            let which = match missing.is_some() {
+                true => "the linked output lacks this declaration of the whole one",
+                false => "only the linked output has this declaration",
+            };
             return Err(format!("{entry} in {target}: {which}: {found}"));
         }
     }
     Ok(())
 }
 
-/// The declarations of a text, up to names that differ by a number.
+/// The declarations of a text, with names without the numbers that writers add.
 fn declarations(bytes: &[u8]) -> BTreeSet<String> {
     let text = String::from_utf8_lossy(bytes);
     let mut found = BTreeSet::new();
@@ -113,10 +118,10 @@ fn declarations(bytes: &[u8]) -> BTreeSet<String> {
     found
 }
 
-/// The declarations with their words in an order of their own.
+/// The declarations, each with its words sorted.
 fn sorted(declarations: BTreeSet<String>) -> BTreeSet<String> {
     let one = |text: String| {
-        // Where statements have another order, values have other numbers.
+        // If statements have another order, the writer numbers values in another way.
         let unnumbered = |word: &str| {
             let (value, rest) = word.split_at(word.find('.').unwrap_or(word.len()));
             let digits = value.strip_prefix("_e").unwrap_or("x");
@@ -130,7 +135,7 @@ fn sorted(declarations: BTreeSet<String>) -> BTreeSet<String> {
     declarations.into_iter().map(one).collect()
 }
 
-/// Words, numbers and single characters; no comments and no directives.
+/// The words, numbers and other characters of a text, without comments and directives.
 fn tokens(text: &str) -> Vec<&str> {
     let starts = ["#", "//", "precision ", "using "];
     let lines = text.lines().filter(|line| !starts.iter().any(|start| line.starts_with(start)));
@@ -151,15 +156,15 @@ fn tokens(text: &str) -> Vec<&str> {
     tokens
 }
 
-/// A word without the numbers and underscores that tell names apart. Metal's wrappers of arrays
-/// are one word.
+/// A word without the numbers and underscores that writers add to make names unique. All of Metal's
+/// wrappers of arrays become one word.
 fn plain(token: &str) -> String {
     let is_name = token.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_');
     if !is_name {
         return token.to_owned();
     }
     let one = |part: &str| {
-        // Blocks are called after their type.
+        // The names of blocks contain the name of their type.
         if part.contains("_block_") {
             return "BLOCK".to_owned();
         }
@@ -179,8 +184,8 @@ fn plain(token: &str) -> String {
     token.split('.').map(one).collect::<Vec<String>>().join(".")
 }
 
-/// How often each instruction that computes occurs. Constants, types, names and the loads that the
-/// writer adds for callees depend on the module.
+/// How often each instruction occurs that is part of a function's computation. Constants, types,
+/// names, and the loads that the writer adds for callees depend on the module and are left out.
 fn opcodes(bytes: &[u8]) -> BTreeSet<String> {
     const MODULE: [u16; 24] = [
         5, 6, 11, 14, 15, 16, 17, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 32, 33, 59, 61,

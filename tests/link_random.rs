@@ -1,5 +1,5 @@
-//! Random programs: their outputs depend on sources, settings and target alone, every judge takes
-//! them, and they compute what the evaluator computes.
+//! Random programs. Their outputs depend on the sources, the settings and the target only, every
+//! judge accepts them, and they compute what the evaluator computes.
 //!
 //! `seed -> program -> outputs, made in several ways and compared -> judges -> executors`
 //!
@@ -33,16 +33,17 @@ use program::Program;
 use random::Random;
 use run::{Ran, Runnable, Runner};
 
-/// How many programs the tests make, and from which seed on.
+/// How many programs the tests make.
 const PROGRAMS: u64 = 200;
+/// The seed of the first program.
 const SEED: u64 = 1;
-/// The judges beside the crate see one program in so many.
+/// The external judges are given every 20th program.
 const JUDGED: u64 = 20;
-/// Outputs of one program in so many are run.
+/// The outputs of every second program are run.
 const RUN: u64 = 2;
-/// Programs whose outputs are judged together.
+/// The number of programs whose outputs are judged together.
 const BATCH: u64 = 64;
-/// Programs of a hundred that the crate may refuse, since the generator does not know everything.
+/// How many percent of the programs the crate may refuse. The generator does not know every rule.
 const REFUSED: usize = 10;
 
 pub fn trials() -> Vec<Trial> {
@@ -53,7 +54,7 @@ pub fn trials() -> Vec<Trial> {
     })]
 }
 
-/// A number from the environment.
+/// A number from the environment, or the usual one.
 fn number(name: &str, usual: u64) -> Result<u64, Failed> {
     match std::env::var(name) {
         Ok(text) => Ok(text.parse().map_err(|_| format!("{name} is not a number"))?),
@@ -81,7 +82,7 @@ fn random_programs() -> Result<(), Failed> {
         batch(next..end, &how, &mut tally)?;
         next = end;
         for (kind, found) in &tally.findings {
-            // What was found is kept even if the run does not come to its end.
+            // A finding is written at once, so that it is kept if the run is ended.
             if told.insert(kind.clone()) {
                 tell(kind, found, how.runner.as_ref())?;
             }
@@ -93,7 +94,8 @@ fn random_programs() -> Result<(), Failed> {
     println!("{tally}");
     let refused: usize = tally.refused.values().sum();
     if refused * 100 > REFUSED * tally.programs {
-        return Err(format!("the crate refuses {refused} programs: {:?}", tally.refused).into());
+        let what = format!("the crate refuses {refused} of {} programs", tally.programs);
+        return Err(format!("{what}, at most {REFUSED} %: {:?}", tally.refused).into());
     }
     match tally.findings.is_empty() {
         true => Ok(()),
@@ -101,43 +103,47 @@ fn random_programs() -> Result<(), Failed> {
     }
 }
 
-/// How much is asked of the programs.
+/// How many of the programs are judged and run.
 struct How {
-    /// The judges beside the crate see one program in so many.
+    /// The external judges are given every `every`-th program.
     every: u64,
-    /// So many outputs of a program in each target.
+    /// They are given at most this many outputs of a program in each target.
     most: usize,
-    /// Outputs of one program in so many are run.
+    /// The outputs of every `often`-th program are run; none if it is 0.
     often: u64,
     runner: Option<Runner>,
 }
 
-/// What became of the programs.
+/// The results of all programs so far.
 #[derive(Default)]
 struct Tally {
     programs: usize,
     outputs: usize,
     judged: usize,
-    /// By the words of the first error.
+    /// How many programs were refused, for each first error.
     refused: BTreeMap<String, usize>,
-    /// Compiled as a whole, by reason and target: how many, and the seed of the first.
+    /// How many outputs were compiled as a whole, for each reason and target, with the seed of the
+    /// first.
     whole: BTreeMap<String, (usize, u64)>,
-    /// Stages that were run.
+    /// The stages that were run, by executor.
     ran: BTreeMap<&'static str, Ran>,
-    /// Programs of which nothing was run, since they have no fragment stage.
+    /// How many programs were not run because they have no fragment stage.
     vertex_alone: usize,
-    /// By kind: how many, and the first.
+    /// The findings, by kind.
     findings: BTreeMap<String, Found>,
 }
 
+/// A kind of finding.
 struct Found {
-    /// Of every program with it; the finding is the first one's.
+    /// The seeds of all programs with a finding of this kind.
     seeds: BTreeSet<u64>,
+    /// The seed of the first program with it.
     seed: u64,
+    /// The finding of the first program.
     finding: Finding,
 }
 
-/// Seeds of a finding that are told.
+/// How many seeds of a kind of finding are printed.
 const SEEDS: usize = 8;
 
 impl Tally {
@@ -222,7 +228,7 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
     Ok(())
 }
 
-/// The first so many outputs of each target. Their order is random.
+/// The first `most` outputs of each target. Their order is random.
 fn few(mut outputs: Vec<Output>, most: usize) -> Vec<Output> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     outputs.retain(|output| {
@@ -239,7 +245,8 @@ fn refusal(output: &Output, words: &str) -> Finding {
         true => String::new(),
     };
     let line = words.lines().find(|line| line.to_lowercase().contains("error"));
-    // Without the author's names, and without places.
+    // The author's names are between quotes. They and the places are left out, so that the same
+    // mistake has the same kind in all programs.
     let unnamed = line.unwrap_or_default().split('\'').step_by(2);
     let said: String = unnamed.flat_map(str::chars).filter(|one| !one.is_ascii_digit()).collect();
     let kind = format!("{} is refused: {said}", output.target);
@@ -253,12 +260,13 @@ fn first_words(words: &str) -> String {
     message.chars().filter(|c| !c.is_ascii_digit()).take(60).collect()
 }
 
-/// A panic is a finding too.
+/// The verdict on the program of a seed. A panic is a finding too.
 fn judged(seed: u64) -> Result<Verdict, Finding> {
     guarded(&program(seed), seed)
 }
 
-/// The program of a seed, or its text from a file, such as one that was made smaller by hand.
+/// The program of a seed. The environment may name a file with another text for it, such as one that
+/// somebody made smaller.
 fn program(seed: u64) -> Program {
     let program = Program::new(seed);
     match std::env::var_os("LAMPLIGHT_LINK_TEXT")
@@ -275,7 +283,7 @@ fn guarded(program: &Program, seed: u64) -> Result<Verdict, Finding> {
         .unwrap_or_else(|_| Err(Finding::new("panic", program.text.clone())))
 }
 
-/// Writes the first program of a kind of finding, as small as it can be made.
+/// Writes the first program of a kind of finding to a file. It is made smaller if that is asked for.
 fn tell(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<(), Failed> {
     let folder = findings();
     std::fs::create_dir_all(&folder)?;
@@ -295,12 +303,12 @@ fn tell(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<(), Failed
     Ok(std::fs::write(file, text)?)
 }
 
-/// Where findings are left.
+/// The folder to which findings are written.
 fn findings() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("target/fuzz/link")
 }
 
-/// What is wrong with a program, if it is of that kind.
+/// The finding of a kind in a program, if the program has one.
 fn again(program: &Program, seed: u64, kind: &str, runner: Option<&Runner>) -> Option<Finding> {
     match guarded(program, seed) {
         Err(finding) => (finding.kind == kind).then_some(finding),

@@ -1,4 +1,4 @@
-//! The language server over its protocol, as a process on two pipes; and Neovim as a real client.
+//! The language server: a process that is asked over its protocol, and Neovim as a real client.
 
 mod session;
 
@@ -57,15 +57,19 @@ fn fs_main(@location(0) n: vec3f) -> @location(0) vec4f {
 }
 ";
 
+/// Fails unless a condition holds, with the place of the call and what the server answered.
+#[track_caller]
 fn expect(is_so: bool, found: &impl std::fmt::Debug) -> Outcome {
-    if is_so { Ok(()) } else { Err(format!("{found:#?}").into()) }
+    let place = std::panic::Location::caller();
+    if is_so { Ok(()) } else { Err(format!("{place}: unexpected answer: {found:#?}").into()) }
 }
 
 fn codes(found: &[Value]) -> Vec<&str> {
     found.iter().filter_map(|found| found["code"].as_str()).collect()
 }
 
-/// Syntax, names and types, for the permutation that is shown, at the author's places.
+/// Errors of syntax, names and types are told at the author's places, for the permutation that is
+/// shown. A file that is closed has none.
 fn diagnostics() -> Outcome {
     let mut session = Session::new(MAIN)?;
     let first = session.told("main.wesl")?;
@@ -127,7 +131,7 @@ fn references_and_rename() -> Outcome {
     let mut session = Session::new(MAIN)?;
     let context = json!({ "context": { "includeDeclaration": true } });
     let found = session.at("textDocument/references", MAIN, "half(sum)", context)?;
-    // The declaration, the import, two calls.
+    // The references are the declaration, the import and two calls.
     expect(found.as_array().map(Vec::len) == Some(4), &found)?;
     let renamed =
         session.at("textDocument/rename", MAIN, "half(sum)", json!({ "newName": "halved" }))?;
@@ -200,7 +204,7 @@ fn actions() -> Outcome {
     let import = "import lamplight::brdf::specular::phong;\n";
     let title = "Import `lamplight::brdf::specular::phong`";
     expect(edit(title) == Some(json!(import)), &(&found, &told))?;
-    // An import that nothing uses, once everything else is right.
+    // An unused import is told, and can be removed, once there are no errors.
     session.change(&MAIN.replace("diffuse::lambert;", "diffuse::{lambert, oren_nayar};"))?;
     let told = session.told("main.wesl")?;
     let parameters = json!({
@@ -228,7 +232,8 @@ fn inactive() -> Outcome {
     expect(lines == [3, 12, 15, 16], &told)?;
     let document = json!({ "textDocument": { "uri": session.uri("main.wesl")? } });
     let tokens = session.ask("textDocument/semanticTokens/full", document.clone())?;
-    // Four lines of a function, three of a block, two statements, five numbers each.
+    // The inactive lines are four of a function, three of a block and two statements. Each token has
+    // five numbers.
     expect(tokens["data"].as_array().map(Vec::len) == Some(9 * 5), &tokens)?;
     let hints = session.ask("textDocument/inlayHint", document)?;
     expect(hints.as_array().map(Vec::len) == Some(4), &hints)
@@ -254,8 +259,8 @@ fn permutation() -> Outcome {
     expect(lenses[0]["command"]["title"] == "4 permutations: composed text", &lenses)
 }
 
-/// Formatting changes blanks only, and nothing the second time: over a text with odd blanks, and
-/// over every module of the library.
+/// Formatting changes only blanks, and changes nothing the second time. This holds for a text with
+/// odd blanks and for every module of the library.
 fn formatting() -> Outcome {
     let mut session = Session::new(MAIN)?;
     let mut format = |text: &str| -> Result<String, Failed> {
@@ -301,7 +306,7 @@ fn symbols_and_signature() -> Outcome {
     expect(label.starts_with("fn lambert(") && label.contains("f32"), &signature)
 }
 
-/// Whatever comes in, the server answers the next question.
+/// After any wrong message and any broken text, the server answers the next request.
 fn survives() -> Outcome {
     let mut session = Session::new(MAIN)?;
     session.told("main.wesl")?;
@@ -358,7 +363,7 @@ fn survives() -> Outcome {
     expect(status.success(), &status)
 }
 
-/// Neovim without a screen, where it is installed: `cargo xtask test` installs it.
+/// Neovim, run without a screen, uses the server. `cargo xtask test` installs it.
 fn neovim() -> Outcome {
     let folder = tempfile::tempdir()?;
     let root = folder.path().canonicalize()?;

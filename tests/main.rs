@@ -1,4 +1,4 @@
-//! The one test binary. Each kind of test lists its cases, most of them found by their files.
+//! The test binary. Each module lists its trials, most of which are found by their files.
 
 #![allow(
     clippy::unwrap_used,
@@ -119,7 +119,8 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
 ];
 
 fn main() -> ExitCode {
-    // While there is one thread; where it is missing, the trials that need it say so.
+    // This changes environment variables, so it must be done while there is one thread. If something
+    // is missing, the trials that need it say so.
     lamplight::execute::executors::prepare(lamplight::execute::executors::ALL);
     let trials = KINDS.iter().flat_map(|kind| kind()).collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()

@@ -1,9 +1,11 @@
-//! Metal's language on the CPU: what its judge refuses and accepts, and whether its functions and
-//! textures give what they should.
+//! Metal's language on the CPU, with clang and our own header for it: what the judge refuses and
+//! accepts, and whether functions and textures give the right results.
 //!
-//! `metal/refused/*.metal` start with the line and the words of the mistake that they have;
-//! `metal/functions/*.metal` are tried against `metal/references.rs`; `metal/lookups/*.wgsl`
-//! against the evaluator. `metal/accepted/*.wgsl` are emitted and must be accepted; `frames` draws permutations of `forward` from the MSL of a bundle.
+//! - `metal/refused/*.metal` begin with the line and the message of their mistake.
+//! - `metal/functions/*.metal` are compared with `metal/references.rs`.
+//! - `metal/lookups/*.wgsl` are compared with the evaluator.
+//! - `metal/accepted/*.wgsl` are emitted as MSL, which the judge must accept.
+//! - `frames` draws permutations of `forward` from the MSL of a bundle.
 
 mod accepted;
 mod expectations;
@@ -46,6 +48,7 @@ fn told(wrong: &[String]) -> Outcome {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n").into()) }
 }
 
+/// The judge refuses every text with a mistake, at its line and with its message.
 fn mistakes() -> Outcome {
     let files = files("refused");
     let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
@@ -58,15 +61,17 @@ fn mistakes() -> Outcome {
         let found = refusals.iter().find(|refusal| refusal.index == index);
         let errors = found.map_or("accepted", |refusal| &refusal.errors);
         if !errors.starts_with(&format!("{line}:")) || !errors.contains(words) {
-            wrong.push(format!("{}: {errors}", files[index].display()));
+            let expected = format!("expected `{words}` in line {line}");
+            wrong.push(format!("{}: {expected}, found {errors}", files[index].display()));
         }
     }
     told(&wrong)
 }
 
-/// Quads of each text.
+/// The number of quads for each text.
 const QUADS: u32 = 64;
 
+/// The functions of our header give the results that Metal's specification defines.
 fn functions() -> Outcome {
     let files = files("functions");
     let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
@@ -83,7 +88,8 @@ fn functions() -> Outcome {
         }
     }
     if files.len() != REFERENCES.len() {
-        wrong.push(format!("{} texts, {} references", files.len(), REFERENCES.len()));
+        let counts = format!("{} texts, {} references", files.len(), REFERENCES.len());
+        wrong.push(format!("each text needs one reference: {counts}"));
     }
     told(&wrong)
 }
@@ -115,7 +121,7 @@ fn fragment(reference: &Reference, row: u32) -> Fragment {
     Fragment { locations: vec![location(0), location(4), location(8)], ..Fragment::default() }
 }
 
-/// A word that looks random.
+/// A pseudo-random word for an index.
 pub fn scrambled(index: u32) -> u32 {
     let mut word = index.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
     for step in [(16, 0x85eb_ca6bu32), (13, 0xc2b2_ae35), (16, 1)] {
@@ -131,7 +137,7 @@ fn compare(reference: &Reference, words: &[u32; 12], found: &[u32]) -> Result<()
             if expected == found {
                 return Ok(());
             }
-            Err(format!("{words:08x?} gives {found:08x?} instead of {expected:08x?}"))
+            Err(format!("{words:08x?} gives {found:08x?}, expected {expected:08x?}"))
         }
         Reference::Numbers { share, least, expected, .. } => {
             let numbers = words.map(|word| f64::from(f32::from_bits(word)));
@@ -145,14 +151,15 @@ fn compare(reference: &Reference, words: &[u32; 12], found: &[u32]) -> Result<()
             match found.iter().zip(&expected).position(is_off) {
                 None if found.len() == expected.len() => Ok(()),
                 place => {
-                    Err(format!("{numbers:?} gives {found:?} instead of {expected:?}, {place:?}"))
+                    let what = format!("the first wrong number is {place:?}");
+                    Err(format!("{numbers:?} gives {found:?}, expected {expected:?}; {what}"))
                 }
             }
         }
     }
 }
 
-/// A shader that crashes is told of, and the next one runs.
+/// A shader that crashes gives an error, and the next one runs.
 fn crashes() -> Outcome {
     let text = |body: &str| {
         format!(
@@ -167,14 +174,14 @@ fn crashes() -> Outcome {
     let mut program = Program::build(&[&crash, &sound]).map_err(|missing| missing.reason)?;
     let quads = [std::array::from_fn(|_| Fragment { position: [1.0; 4], ..Fragment::default() })];
     let Err(error) = program.quads(0, &Bound::default(), &quads) else {
-        return Err("a crash was not noticed".into());
+        return Err("a shader that writes through a null pointer gave no error".into());
     };
     if !error.contains("the program ended") {
-        return Err(error.into());
+        return Err(format!("expected `the program ended`, found {error}").into());
     }
     let shaded = program.quads(1, &Bound::default(), &quads)?;
     if shaded[0][3].targets[0] != [1.0f32.to_bits(); 4] {
-        return Err(format!("{shaded:?}").into());
+        return Err(format!("the shader after the crash should give 1, found {shaded:?}").into());
     }
     Ok(())
 }

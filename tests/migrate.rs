@@ -1,4 +1,5 @@
-//! Sources of `naga_oil` as WESL: the same to naga as what `naga_oil` composes, and never a panic.
+//! Sources of `naga_oil` that are rewritten to WESL. naga must read the same modules from them as
+//! from what `naga_oil` composes, and no input may cause a panic.
 
 #[path = "../bench/src/alike.rs"]
 mod alike;
@@ -44,7 +45,7 @@ fn migrated(files: &BTreeMap<String, String>) -> Migrated {
     migrate::naga_oil(&sources, &added)
 }
 
-/// The whole text of every file is what it should be, comments and layout included.
+/// The rewritten files are those of the snapshot, with their comments and layout.
 fn text() -> Outcome {
     let found = migrated(&engine()?);
     let messages: Vec<&str> = found.diagnostics.iter().map(|one| one.message.as_str()).collect();
@@ -58,8 +59,9 @@ fn text() -> Outcome {
     snapshot::check("migrate", "engine", &text)
 }
 
-/// Every choice of the shader defs gives the module that `naga_oil` composes from the original, as
-/// `cargo xtask bench migrate tests/migrate/engine tests/migrate/naga_oil.txt` recorded it.
+/// Every choice of shader defs gives the module that `naga_oil` composes from the original files.
+/// `cargo xtask bench migrate tests/migrate/engine tests/migrate/naga_oil.txt` recorded these modules
+/// as fingerprints.
 fn same_modules() -> Outcome {
     let files = engine()?;
     let found = migrated(&files);
@@ -67,22 +69,26 @@ fn same_modules() -> Outcome {
     let recorded = fs::read_to_string(snapshot::root().join("tests/migrate/naga_oil.txt"))?;
     let choices = alike::choices(&found);
     if choices.len() != 32 || recorded.lines().count() != choices.len() {
-        return Err(
-            format!("{} choices, {} recorded", choices.len(), recorded.lines().count()).into()
-        );
+        return Err(format!(
+            "{} choices, {} recorded, expected 32",
+            choices.len(),
+            recorded.lines().count()
+        )
+        .into());
     }
     for (defs, theirs) in choices.iter().zip(recorded.lines()) {
         let ours = alike::ours(&packages, "main.wgsl", &found, &files["main.wgsl"], defs)
             .map_err(|why| format!("{defs:?}: {why}"))?;
         let ours = alike::normalised(ours, &prefixes);
         if !theirs.starts_with(&alike::fingerprint(&ours)) {
-            return Err(format!("{theirs} is not what {defs:?} gives:\n{ours:#?}").into());
+            return Err(format!("{defs:?}: recorded is {theirs}, found:\n{ours:#?}").into());
         }
     }
     Ok(())
 }
 
-/// Texts of which a part is gone, twice there or in another place: an answer for each file.
+/// Files in which lines were removed, repeated or swapped. For each file there is a rewritten file or
+/// a diagnostic, and no panic.
 fn mutants() -> Outcome {
     let files = engine()?;
     let mut state = 7_u64;
@@ -108,17 +114,22 @@ fn mutants() -> Outcome {
         let found = migrated(&mutant);
         let told = found.diagnostics.iter().filter(|one| one.code.name == "not-migrated").count();
         if found.files.len() + told < files.len() {
-            return Err(format!("a file is lost without a word:\n{}", mutant[path]).into());
+            let what = "has neither a rewritten file nor a diagnostic";
+            return Err(format!("a file {what}, with this {path}:\n{}", mutant[path]).into());
         }
         whole += usize::from(told == 0);
     }
     match whole {
         100..=390 => Ok(()),
-        _ => Err(format!("{whole} of 400 mutants are migrated: they try little").into()),
+        _ => {
+            let what = "expected 100 to 390, so that both cases are tried";
+            Err(format!("{whole} of 400 changed packages are migrated, {what}").into())
+        }
     }
 }
 
-/// The command writes beside what is there, again over its own, and never over anything else.
+/// The command writes new files beside the originals. A second run replaces the files of the first,
+/// and no others.
 fn beside() -> Outcome {
     let folder = tempfile::tempdir()?;
     let files = engine()?;
@@ -131,7 +142,7 @@ fn beside() -> Outcome {
     expect(&run(folder.path())?, 0, "4 of 4 files migrated")?;
     for (path, text) in &files {
         if fs::read_to_string(folder.path().join(path))? != *text {
-            return Err(format!("{path} was changed").into());
+            return Err(format!("the original file {path} was changed").into());
         }
     }
     let arguments = ["compose", "main.wesl", "--set", "LIGHTS=3", "--feature", "SPOT"];
@@ -142,7 +153,7 @@ fn beside() -> Outcome {
     expect(&run(folder.path())?, 1, "")?;
     match fs::read_to_string(folder.path().join("main.wesl"))?.as_str() {
         "// mine" => Ok(()),
-        _ => Err("a file of somebody else was replaced".into()),
+        _ => Err("main.wesl was edited by the user, and `migrate` replaced it".into()),
     }
 }
 
@@ -155,10 +166,18 @@ fn lamplight(folder: &Path, arguments: &[&str]) -> Result<Output, Failed> {
     Ok(command.args(arguments).current_dir(folder).output()?)
 }
 
+/// Fails, with the place of the call, unless a command ended with a code and printed some words.
+#[track_caller]
 fn expect(output: &Output, code: i32, said: &str) -> Outcome {
+    let place = std::panic::Location::caller();
     let out = String::from_utf8_lossy(&output.stdout);
     match output.status.code() == Some(code) && out.contains(said) {
         true => Ok(()),
-        false => Err(format!("{out}{}", String::from_utf8_lossy(&output.stderr)).into()),
+        false => {
+            let expected = format!("{place}: expected exit code {code} and `{said}`");
+            let found = format!("{:?}: {out}", output.status);
+            Err(format!("{expected}, found {found}{}", String::from_utf8_lossy(&output.stderr))
+                .into())
+        }
     }
 }

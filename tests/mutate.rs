@@ -1,5 +1,6 @@
-//! How much the numeric cases notice: mutants of a few modules, the list of equivalent ones, and
-//! the statements and branches that the cases reach.
+//! How many mistakes the numeric cases notice: mutants of a few modules, the list of equivalent
+//! mutants, and the statements and branches that the cases reach. A mutant is a function with one
+//! small change.
 
 use std::sync::{Arc, Mutex};
 
@@ -32,25 +33,28 @@ fn mutants(library: &Library, modules: &[&str]) -> Result<Report, Failed> {
     report.map_err(|errors| render(&sources.into_inner().unwrap(), &errors, Form::Short).into())
 }
 
-/// Modules that take a moment; all of them are `cargo xtask mutate`.
+/// Modules that are quick to test. `cargo xtask mutate` tests all modules.
 const QUICK: &[&str] =
     &["lighting::spot", "lighting::material", "math::safe", "shadow::bias", "surface::view"];
 
+/// The cases of these modules notice every mutant but one.
 fn library_kills() -> Outcome {
     let report = mutants(&Library::embedded(), QUICK)?;
     let (killed, all) = report.killed();
-    // One of `is_nan_bits` alone lives, and the list says why.
+    // Only one mutant, of `is_nan_bits`, is not noticed, and the list has the reason.
     let explained =
         report.outcomes.iter().filter(|outcome| matches!(outcome.fate, Fate::Explained(_))).count();
     if all < 150 || all - killed != 1 || explained != 1 {
-        return Err(format!("{}{}", report.survivors(), report.summary()).into());
+        let counts = format!("{killed} of {all} killed, {explained} explained");
+        let what = "expected at least 150 mutants, all killed but one that is explained";
+        return Err(format!("{what}: {counts}\n{}", report.survivors()).into());
     }
     assert_eq!(report.summary(), format!("killed {killed} of {all} mutants"));
     Ok(())
 }
 
-/// Every entry names a function and a line that are there and a reason, and each only once; those
-/// of a quick module are mutants that do survive.
+/// Every entry of the list of equivalent mutants has a function and a line that exist, and a reason,
+/// and is listed once. The entries of a quick module are mutants that really survive.
 fn list_is_sound() -> Outcome {
     let library = Library::embedded();
     let list: Table =
@@ -73,11 +77,12 @@ fn list_is_sound() -> Outcome {
         let body = body.split("\n}").next().unwrap_or_default();
         let has_line = body.lines().any(|line| line.trim() == text("line"));
         if !has_line || text("reason").len() < 20 || text("mutation").is_empty() {
-            return Err(format!("this entry is not sound: {entry}").into());
+            let what = "needs a line of its function, a mutation, and a reason of 20 characters";
+            return Err(format!("an entry of survivors.toml {what}: {entry}").into());
         }
         let key = (function.clone(), text("line"), text("mutation"));
         if seen.contains(&key) {
-            return Err(format!("this entry is there twice: {entry}").into());
+            return Err(format!("survivors.toml has this entry twice: {entry}").into());
         }
         seen.push(key);
     }
@@ -92,7 +97,8 @@ fn list_is_sound() -> Outcome {
     if listed > 0 && found == listed {
         Ok(())
     } else {
-        Err(format!("{found} of {listed} entries are mutants that survive").into())
+        let what = "mutants that survive, expected all";
+        Err(format!("{found} of the {listed} entries of `shadow::bias` are {what}").into())
     }
 }
 
@@ -103,18 +109,21 @@ fn package(files: &[(&str, &str)]) -> Library {
 
 const HALF: &str = "fn half(x: f32) -> f32 {\n    return x * 0.5;\n}\n";
 
-/// A constant that is 1 % off is noticed in f64 however much f32 is allowed.
+/// A constant that is 1 % off is noticed however large the tolerance for f32 is, since mutants are
+/// compared in f64.
 fn hidden_by_tolerance() -> Outcome {
     let cases = "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
     let report = mutants(&package(&[("mine.wesl", HALF), ("mine.toml", cases)]), &["mine"])?;
     if report.summary() == "killed 2 of 2 mutants" {
         Ok(())
     } else {
-        Err(format!("{}{}", report.survivors(), report.summary()).into())
+        let found = format!("{}{}", report.survivors(), report.summary());
+        Err(format!("expected both mutants to be killed, found:\n{found}").into())
     }
 }
 
-/// The code is no oracle of itself, and what no case runs is said to be so.
+/// A case whose oracle is the evaluator kills no mutants, since it compares the code with itself. The
+/// report says if no case runs a function.
 fn survivors_are_told() -> Outcome {
     let module = format!("{HALF}fn other(x: f32) -> f32 {{\n    return 1.0 - x;\n}}\n");
     let cases = "[[case]]\nfunction = \"half\"\noracle = \"eval\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
@@ -125,12 +134,17 @@ fn survivors_are_told() -> Outcome {
         "mine.wesl:5: mine::other: operator `+` in `1.0 - x` (no case runs this function)\n",
     ] {
         if !text.contains(expected) {
-            return Err(format!("{expected} is missing in\n{text}").into());
+            return Err(format!("expected `{expected}` among the survivors:\n{text}").into());
         }
     }
-    if report.passed() { Err("a report of survivors passes".into()) } else { Ok(()) }
+    match report.passed() {
+        true => Err("the report passes although mutants survive".into()),
+        false => Ok(()),
+    }
 }
 
+/// An entry for a mutant that is killed is reported as stale, and an entry without a reason is
+/// refused.
 fn stale_entries_are_told() -> Outcome {
     let cases = "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ninputs = { x = 3 }\n";
     let entry = "[[equivalent]]\nfunction = \"mine::half\"\nline = \"return x * 0.5;\"\nmutation = \"`0.505` instead of `0.5`\"\nreason = \"none\"\n";
@@ -142,10 +156,13 @@ fn stale_entries_are_told() -> Outcome {
     let error =
         mutants(&package(&files), &["mine"]).err().ok_or("an entry without a reason is taken")?;
     let message = error.message().unwrap_or_default().to_owned();
-    if message.contains("`reason`") { Ok(()) } else { Err(message.into()) }
+    match message.contains("`reason`") {
+        true => Ok(()),
+        false => Err(format!("expected `reason` in the error: {message}").into()),
+    }
 }
 
-/// Every statement and every branch of the library is reached by some case.
+/// Cases reach every statement and every branch of the library.
 fn every_block_is_reached() -> Outcome {
     let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
     let found = mutate::coverage(&library, &sources, &library.modules());
@@ -160,6 +177,7 @@ fn every_block_is_reached() -> Outcome {
     if missed.is_empty() && blocks > 250 {
         Ok(())
     } else {
-        Err(format!("of {blocks} blocks no case reaches\n{missed}").into())
+        let what = "blocks (expected more than 250), no case reaches these";
+        Err(format!("of {blocks} {what}:\n{missed}").into())
     }
 }

@@ -1,5 +1,5 @@
-//! `cargo xtask new`: what it writes is read by the crate's own parsers, and trials demand what it
-//! leaves empty.
+//! `cargo xtask new`: the crate's own parsers read the files that it writes, and trials fail until
+//! the parts that it leaves empty are written.
 
 #[path = "../xtask/src/new/mod.rs"]
 mod made;
@@ -40,17 +40,17 @@ pub fn trials() -> Vec<Trial> {
     all.into_iter().map(|(name, run)| Trial::test(format!("new::{name}"), run)).collect()
 }
 
-/// The texts that are made, by their path. Nothing is written.
+/// The files that the command would write, by path. Nothing is written here.
 fn make(kind: &str, name: &str) -> Result<BTreeMap<String, String>, Failed> {
     let made = made::make(&root(), kind, name)?;
     match made.next.is_empty() {
-        true => Err("nothing is said of what to do next".into()),
+        true => Err(format!("`new {kind} {name}` does not say what to do next").into()),
         false => Ok(made.files.into_iter().collect()),
     }
 }
 
 fn text<'t>(files: &'t BTreeMap<String, String>, path: &str) -> Result<&'t str, Failed> {
-    let missing = || format!("`{path}` is not written, but {:?}", files.keys());
+    let missing = || format!("`{path}` is not written, only {:?}", files.keys());
     Ok(files.get(path).map(String::as_str).ok_or_else(missing)?)
 }
 
@@ -64,38 +64,40 @@ fn parsed<T>(
     parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
 
-/// In a module that there is, and in a new one.
+/// A new function, in a module that exists and in new ones, has a case, a plot and a reference. It
+/// compiles, and its documentation is demanded.
 fn function() -> Outcome {
     for module in ["brdf::diffuse", "brdf::fresh", "optics::fresh"] {
         let files = make("function", &format!("{module}::minnaert"))?;
         let stem = format!("shaderlib/{}", module.replace("::", "/"));
         let cases = parsed(text(&files, &format!("{stem}.toml"))?, cases::parse)?;
         if !cases.cases.iter().any(|case| case.function == "minnaert") {
-            return Err(format!("{stem}.toml has no case").into());
+            return Err(format!("{stem}.toml has no case for `minnaert`").into());
         }
         let plots = parsed(text(&files, &format!("{stem}.plot.toml"))?, plot::parse)?;
         if !plots.contains_key("minnaert") {
-            return Err(format!("{stem}.plot.toml has no plot").into());
+            return Err(format!("{stem}.plot.toml has no plot for `minnaert`").into());
         }
         compiles(&files, &stem)?;
         for extension in ["wesl", "glsl"] {
             let faults = shaderlib::undocumented(text(&files, &format!("{stem}.{extension}"))?);
             let wanted = ["in a sentence", "lacks `Source: `", "lacks `Error model: `"];
             if !wanted.iter().all(|part| faults.iter().any(|fault| fault.contains(part))) {
-                return Err(format!("{stem}.{extension}: only {faults:?} are demanded").into());
+                let what = format!("expected the faults {wanted:?}, found {faults:?}");
+                return Err(format!("{stem}.{extension}: {what}").into());
             }
         }
         let reference = format!("src/proof/references/{}.rs", module.replace("::", "_"));
         let text = text(&files, &reference)?;
         balanced(text)?;
         if !text.contains("(\"minnaert\", |a| minnaert(a.f64()).into())") {
-            return Err(format!("{reference} has no row:\n{text}").into());
+            return Err(format!("{reference} has no row for `minnaert`:\n{text}").into());
         }
     }
     Ok(())
 }
 
-/// The library with other texts in the place of its own.
+/// The library, with some files replaced.
 struct Overlay(Memory);
 
 impl Files for Overlay {
@@ -111,7 +113,7 @@ impl Files for Overlay {
     }
 }
 
-/// The module compiles in both languages.
+/// Fails unless the module compiles in both languages.
 fn compiles(files: &BTreeMap<String, String>, stem: &str) -> Outcome {
     let below = |(path, text): (&String, &String)| {
         path.strip_prefix("shaderlib/").map(|path| (path.to_owned(), text.clone()))
@@ -144,14 +146,15 @@ fn compiles(files: &BTreeMap<String, String>, stem: &str) -> Outcome {
     Ok(())
 }
 
-/// The manifest, the lock file and the table of pictures agree on the new value.
+/// A new value of an axis is in the manifest, in the lock file and in the table of pictures.
 fn axis_value() -> Outcome {
     let files = make("axis-value", "forward::fog=height")?;
     let manifest = parsed(text(&files, "shaderlib/lamplight.toml")?, manifest::parse)?;
     let program = manifest.program("forward").ok_or("no program `forward`")?;
     let axis = program.space.axis("fog").ok_or("no axis `fog`")?;
     if axis.value_names().last().map(String::as_str) != Some("height") {
-        return Err(format!("the axis has {:?}", axis.value_names()).into());
+        let values = axis.value_names();
+        return Err(format!("the last value of `fog` should be `height`: {values:?}").into());
     }
     let known =
         parsed(&std::fs::read_to_string(root().join("shaderlib/lamplight.lock"))?, lock::parse)?;
@@ -160,45 +163,50 @@ fn axis_value() -> Outcome {
         .iter()
         .fold(known, |lock, program| lock.extended(&program.name, &program.space));
     if extended.to_string() != text(&files, "shaderlib/lamplight.lock")? {
-        return Err("the lock file is not as `lamplight keys --lock` writes it".into());
+        return Err("the lock file differs from what `lamplight keys --lock` would write".into());
     }
     let pictures = text(&files, "shaderlib/pictures.toml")?;
     parsed(pictures, |sources, id| Table::parse(sources, id, &manifest))?;
     let without = pictures.replace("height = {}\n", "");
     match parsed(&without, |sources, id| Table::parse(sources, id, &manifest)) {
         Err(problem) if problem.message().unwrap_or_default().contains("`fog=height`") => Ok(()),
-        _ => Err("the row of the value is not demanded".into()),
+        Err(problem) => {
+            let found = problem.message().unwrap_or_default();
+            Err(format!("without a row, expected an error for `fog=height`, found {found}").into())
+        }
+        Ok(_) => Err("a table of pictures without a row for `fog=height` is accepted".into()),
     }
 }
 
+/// A new diagnostic has an empty title and page, which trials then demand.
 fn diagnostic() -> Outcome {
     let files = make("diagnostic", "unknown-swizzle")?;
     let text = text(&files, "src/diagnostic/codes/unknown-swizzle.md")?;
     match text == "#\n\nPage: \n" {
         true => Ok(()),
-        false => Err(format!("something is said already:\n{text}").into()),
+        false => Err(format!("expected an empty title and page, found:\n{text}").into()),
     }
 }
 
-/// A file of Rust whose name is its entry's, and whose description is demanded.
+/// A new entry is a Rust file with the entry's name. Its description is empty, which trials notice.
 fn rust(kind: &str, path: &str) -> Outcome {
     let files = make(kind, "fresh")?;
     let text = text(&files, path)?;
     balanced(text)?;
     if house::undescribed("fresh", "").is_none() || house::undescribed("fresh", "What.").is_some() {
-        return Err("an empty description is not noticed".into());
+        return Err("`undescribed` should notice an empty description, and no other".into());
     }
     if kind == "scene" && scene::nothing_is_shown(&[]).is_none() {
-        return Err("an empty scene is not noticed".into());
+        return Err("`nothing_is_shown` should notice an empty scene".into());
     }
     let has_name = text.contains("name: \"fresh\"") || text.contains("Target::FRESH");
     match has_name && text.contains("about: \"\"") {
         true => Ok(()),
-        false => Err(format!("{path} is not as its siblings:\n{text}").into()),
+        false => Err(format!("{path} should have its name and an empty `about`:\n{text}").into()),
     }
 }
 
-/// Every bracket is closed by its own kind.
+/// Fails unless every bracket is closed by its own kind.
 fn balanced(text: &str) -> Outcome {
     let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
     let mut open = Vec::new();
@@ -208,15 +216,18 @@ fn balanced(text: &str) -> Outcome {
             '[' => open.push(']'),
             '{' => open.push('}'),
             ')' | ']' | '}' if open.pop() != Some(letter) => {
-                return Err(format!("`{letter}` closes nothing:\n{text}").into());
+                return Err(format!("`{letter}` closes no open bracket:\n{text}").into());
             }
             _ => {}
         }
     }
-    if open.is_empty() { Ok(()) } else { Err(format!("{open:?} is missing:\n{text}").into()) }
+    match open.is_empty() {
+        true => Ok(()),
+        false => Err(format!("brackets are open, {open:?} are missing:\n{text}").into()),
+    }
 }
 
-/// What the usage shows as an example of each kind can be made.
+/// The example of each kind in the usage can be made.
 fn examples() -> Outcome {
     for kind in made::KINDS {
         make(kind.name, kind.example).map_err(|problem| format!("{}: {problem:?}", kind.name))?;
@@ -224,7 +235,7 @@ fn examples() -> Outcome {
     Ok(())
 }
 
-/// Wrong names and what there is already are refused with a reason.
+/// Wrong names, and names that exist already, are refused with a reason.
 fn mistakes() -> Outcome {
     let wrong = [
         ("functions", "brdf::diffuse::fresh", "there is no kind `functions`"),
@@ -244,7 +255,11 @@ fn mistakes() -> Outcome {
     for (kind, name, expected) in wrong {
         match made::make(Path::new(&root()), kind, name) {
             Err(said) if said.contains(expected) => {}
-            other => return Err(format!("{kind} {name}: {other:?}").into()),
+            Err(said) => {
+                let what = format!("expected `{expected}`, found `{said}`");
+                return Err(format!("{kind} {name}: {what}").into());
+            }
+            Ok(_) => return Err(format!("{kind} {name}: expected `{expected}`, it is made").into()),
         }
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! An output is a function of its sources, its settings and its target: every way to make a
-//! bundle gives the same bytes, names and reflection.
+//! An output depends on its sources, its settings and its target only. So every way to make a bundle
+//! gives the same bytes, names and reflection.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,7 +16,7 @@ type Outcome = Result<(), Failed>;
 /// A trial and its name.
 type Case = (&'static str, fn() -> Outcome);
 
-/// Longest wait for `watch`.
+/// The longest wait for `watch`.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 const MANIFEST: &str = r#"
@@ -28,7 +28,8 @@ warm = { values = [false, true] }
 shape = { values = ["point", "spot", "both"] }
 "#;
 
-/// Names that naga's writers use, helpers, and a structure that only some permutations return.
+/// A shader with names that naga's writers use, with helpers that they add, and with a structure that
+/// only some permutations return.
 const SURFACE: &str = "
 import package::light::{falloff, cone};
 struct Pair { @location(0) other: vec4f, @location(1) value: vec2f }
@@ -75,7 +76,7 @@ pub fn trials() -> Vec<Trial> {
 
 struct Package(TempDir);
 
-/// What a bundle gives for a program, a language, an entry point, a key and a target.
+/// The outputs of a bundle, by program, language, entry point, key and target.
 type Meaning = BTreeMap<(String, String, String, String, String), String>;
 
 impl Package {
@@ -106,19 +107,19 @@ impl Package {
         }
     }
 
-    /// Everything that a bundle of the package gives.
+    /// All outputs of a bundle of the package.
     fn meaning(&self, name: &str) -> Result<Meaning, Failed> {
         meaning(&self.0.path().join(name))
     }
 
-    /// What a run without a cache gives.
+    /// The outputs of a run without a cache.
     fn whole(&self) -> Result<Meaning, Failed> {
         self.run(&["gen", "--no-cache", "-o", "whole"])?;
         let whole = self.meaning("whole")?;
         // Six permutations of three entry points in seven targets.
         match whole.len() == 6 * 3 * Target::ALL.len() {
             true => Ok(whole),
-            false => Err(format!("{} outputs", whole.len()).into()),
+            false => Err(format!("found {} outputs, expected 126", whole.len()).into()),
         }
     }
 }
@@ -146,17 +147,21 @@ fn meaning(path: &Path) -> Result<Meaning, Failed> {
     Ok(found)
 }
 
-/// `some` has nothing that `all` has not, and at least so many outputs.
+/// Fails, with the place of the call, unless `all` has every output of `some`, of which there are at
+/// least `least`.
+#[track_caller]
 fn within(some: &Meaning, all: &Meaning, least: usize) -> Outcome {
+    let caller = std::panic::Location::caller();
     if some.len() < least {
-        return Err(format!("only {} outputs", some.len()).into());
+        return Err(format!("{caller}: {} outputs, expected {least}", some.len()).into());
     }
     match some.iter().find(|(place, output)| all.get(*place) != Some(output)) {
-        Some((place, _)) => Err(format!("{place:?} differs").into()),
+        Some((place, _)) => Err(format!("{caller}: differs from the whole run: {place:?}").into()),
         None => Ok(()),
     }
 }
 
+/// `gen --only` gives the outputs of the whole run.
 fn one_permutation() -> Outcome {
     let package = Package::new()?;
     let whole = package.whole()?;
@@ -169,6 +174,7 @@ fn one_permutation() -> Outcome {
     Ok(())
 }
 
+/// `gen --target` gives the outputs of the whole run.
 fn one_target() -> Outcome {
     let package = Package::new()?;
     let whole = package.whole()?;
@@ -179,6 +185,7 @@ fn one_target() -> Outcome {
     Ok(())
 }
 
+/// Shards that are merged give the outputs of the whole run.
 fn shards_merged() -> Outcome {
     let package = Package::new()?;
     let whole = package.whole()?;
@@ -198,10 +205,11 @@ fn shards_merged() -> Outcome {
     within(&package.meaning("merged")?, &whole, whole.len())
 }
 
+/// Runs with a cache that is partly or wholly filled give the outputs of the whole run.
 fn cache() -> Outcome {
     let package = Package::new()?;
     let whole = package.whole()?;
-    // One target is in the cache when the others are asked for; then all of them are.
+    // The second run finds one target in the cache, and the third run finds all of them.
     package.run(&["gen", "--cache", "cache", "--target", "hlsl", "-o", "part"])?;
     package.run(&["gen", "--cache", "cache", "-o", "filled"])?;
     package.run(&["gen", "--cache", "cache", "-o", "hit"])?;
@@ -220,7 +228,7 @@ fn watch() -> Outcome {
     outcome
 }
 
-/// What `watch` makes of an edited file is what a fresh run makes of it.
+/// After an edit, the bundle of `watch` becomes that of a fresh run.
 fn followed(package: &Package) -> Outcome {
     let edited = LIGHT.replace("1.0 + d", "2.0 + d");
     fs::write(package.0.path().join("light.wesl"), edited)?;

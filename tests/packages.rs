@@ -1,5 +1,5 @@
-//! The library as packages of other managers: what `lamplight export` writes is complete, builds,
-//! and composes by the tools it is for.
+//! The library as packages of cargo and npm. The packages that `lamplight export` writes are
+//! complete, can be built, and work with the tools for which they are made.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,7 +22,7 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
-/// The `wesl` crate's own reader finds the modules, and no programs.
+/// The `wesl` crate finds all modules in the library's `wesl.toml`, and no programs.
 fn wesl_toml_is_read() -> Result<(), Failed> {
     let package = wesl::PkgBuilder::new("lamplight").scan_toml(root().join("shaderlib"))?;
     let mut found = Vec::new();
@@ -32,7 +32,10 @@ fn wesl_toml_is_read() -> Result<(), Failed> {
         );
     }
     found.sort();
-    if found == modules() { Ok(()) } else { Err(format!("{found:?}").into()) }
+    match found == modules() {
+        true => Ok(()),
+        false => Err(format!("found {found:?}, expected {:?}", modules()).into()),
+    }
 }
 
 fn export(form: &str, folder: &Path) -> Result<(), Failed> {
@@ -40,13 +43,13 @@ fn export(form: &str, folder: &Path) -> Result<(), Failed> {
         .map(drop)
 }
 
-/// Cargo takes the crate for publishing, and what its build script makes of the shaders links: a
-/// user's shader that calls every function of a module.
+/// Cargo can package the crate for publishing. With the modules that its build script makes, a user's
+/// shader that calls every function of a module links and is valid.
 fn cargo_package_composes() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     export("cargo", folder.path())?;
     let package = folder.path().join("lamplight_wgsl");
-    // The versions that are there already.
+    // With this lock file, cargo needs only versions that are already downloaded.
     std::fs::copy(root().join("Cargo.lock"), package.join("Cargo.lock"))?;
     cargo(&package, &["package", "--quiet", "--offline", "--no-verify", "--allow-dirty"])?;
 
@@ -77,7 +80,7 @@ fn cargo_package_composes() -> Result<(), Failed> {
     Ok(())
 }
 
-/// A module as the build script's constants have it.
+/// A module in the form of the constants that the build script writes.
 fn constant(module: wesl::Module) -> &'static CodegenModule {
     let submodules: Vec<&CodegenModule> = module.submodules.into_iter().map(constant).collect();
     Box::leak(Box::new(CodegenModule {
@@ -87,7 +90,7 @@ fn constant(module: wesl::Module) -> &'static CodegenModule {
     }))
 }
 
-/// The bundle has every module's text, as JSON and as what JavaScript makes of it.
+/// The npm package has the text of every module, read as JSON and as imported by node.
 fn npm_package_is_complete() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let package = folder.path().join("node_modules/lamplight");
@@ -108,11 +111,11 @@ fn npm_package_is_complete() -> Result<(), Failed> {
         .and_then(|rest| rest.split_once(";\n\nexport default"));
     same(&serde_json::from_str(object.ok_or("not a bundle")?.0)?, &expected)?;
     if !exported("types")?.is_file() {
-        return Err("no types".into());
+        return Err("the file that `exports` names for `types` does not exist".into());
     }
     for path in Embedded.list(&["glsl"]) {
         if std::fs::read_to_string(package.join("glsl/lamplight").join(&path))? != text(&path) {
-            return Err(format!("`{path}` differs").into());
+            return Err(format!("`{path}` in the package differs from the library's").into());
         }
     }
 
@@ -133,5 +136,8 @@ fn text(path: &str) -> String {
 }
 
 fn same(found: &serde_json::Value, expected: &serde_json::Value) -> Result<(), Failed> {
-    if found == expected { Ok(()) } else { Err(format!("the bundle is {found:#}").into()) }
+    match found == expected {
+        true => Ok(()),
+        false => Err(format!("the package's bundle is {found:#}, expected {expected:#}").into()),
+    }
 }

@@ -1,7 +1,7 @@
-//! Spaces of permutations. Each folder of `tests/permute/` is a case: `manifest.toml`, perhaps
-//! `keys.txt` (keys to read in the first program, one a line) and `lock.txt` (a lock file to
-//! extend), and `expected.txt`, which `UPDATE_EXPECT=1` rewrites. The modules are laws that must
-//! hold whatever the space.
+//! Spaces of permutations. Each folder of `tests/permute/` is a case with `manifest.toml` and the
+//! expected report `expected.txt`, which `UPDATE_EXPECT=1` rewrites. It may have `keys.txt`, with
+//! keys of the first program, one a line, and `lock.txt`, a lock file to extend. The modules below
+//! are laws that hold for every space.
 
 mod key_laws;
 mod laws;

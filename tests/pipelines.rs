@@ -1,6 +1,6 @@
-//! Reflection proven by use: the bundle is read through the loader, and layouts, vertex buffers
-//! and targets come from the reflection alone. wgpu accepts a pipeline only if they fit its
-//! own reading of the shader.
+//! Tests the reflection by using it, as an engine would. The bundle is read through the loader, and
+//! layouts, vertex buffers and targets come from the reflection alone. wgpu accepts a pipeline only
+//! if they fit what it reads from the shader itself.
 
 mod described;
 
@@ -22,16 +22,18 @@ use pollster::block_on;
 
 use described::{attributes, depth, entry, fill, targets};
 
-/// Set to test every permutation that ships, instead of a covering sample of all pairs.
+/// An environment variable. If it is set, every permutation that ships is tested. Otherwise a set
+/// that covers all pairs of values is.
 const EVERYTHING: &str = "LAMPLIGHT_EVERY_PIPELINE";
 
 const BACKENDS: [(&str, wgpu::Backends); 2] =
     [("vulkan", wgpu::Backends::VULKAN), ("gl", wgpu::Backends::GL)];
 
-/// Pairs of stages that one device is given: drivers keep what pipelines leave until the end.
+/// The number of pairs of stages for one device. Drivers free the memory of pipelines only when the
+/// device is dropped.
 const A_DEVICE: usize = 128;
 
-/// What is wrong with a reflection, whose, and how.
+/// A mistake in a reflection: its description, the pair of stages, and the change.
 type Change<'a> = (&'static str, &'a Pair, &'a dyn Fn(&mut Reflection));
 
 pub fn trials() -> Vec<Trial> {
@@ -41,6 +43,7 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
+/// wgpu creates a pipeline for every pair of stages, on both backends, from WGSL and from SPIR-V.
 fn pipelines() -> Result<(), Failed> {
     let start = Instant::now();
     let bundle = bundle(std::env::var_os(EVERYTHING).is_some())?;
@@ -71,7 +74,7 @@ fn pipelines() -> Result<(), Failed> {
     Ok(())
 }
 
-/// What the first trial relies on: wgpu does refuse layouts that are wrong.
+/// wgpu refuses pipelines whose reflection is wrong. The first trial relies on that.
 fn wrong_reflections() -> Result<(), Failed> {
     let bundle = bundle(false)?;
     let device = Device::open(wgpu::Backends::VULKAN)?;
@@ -104,7 +107,7 @@ fn wrong_reflections() -> Result<(), Failed> {
         let mut pair = pair.clone();
         change(std::sync::Arc::make_mut(&mut pair.vertex.reflection));
         if device.accepts(&pair, false).is_ok() {
-            return Err(format!("{}: {what}, and wgpu took it", pair.title).into());
+            return Err(format!("{}: wgpu should refuse it: {what}", pair.title).into());
         }
     }
     let fragment = shadowed.fragment.as_mut().ok_or("no fragment stage")?;
@@ -114,13 +117,13 @@ fn wrong_reflections() -> Result<(), Failed> {
         .filter(|binding| is_depth(binding))
         .for_each(|binding| "texture_2d<f32>".clone_into(&mut binding.ty));
     if device.accepts(&shadowed, false).is_ok() {
-        Err("a depth texture is called a colour, and wgpu took it".into())
+        Err("wgpu should refuse a depth texture that the reflection calls a colour".into())
     } else {
         Ok(())
     }
 }
 
-/// The bundle of the library: what ships, or a set that has every pair of values of two axes.
+/// The library's bundle: every permutation that ships, or a set that covers all pairs of values.
 fn bundle(everything: bool) -> Result<Bundle, Failed> {
     let (mut sources, mut manifest) = project::library_manifest()
         .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
@@ -142,7 +145,7 @@ fn generated(
     Ok(in_memory(sources, &project::library(), manifest, &Request::default(), &|_| ())?.contents)
 }
 
-/// The program's space with nothing wanted but its covering set.
+/// The program's space, with only its covering set wanted.
 fn covering(program: &Program) -> Space {
     let space = &program.space;
     let include: Vec<Assignment> = cover::pairwise(space).points;
@@ -164,7 +167,7 @@ struct Pair {
     spirv: [Option<Found>; 2],
 }
 
-/// Every permutation whose shaders no other has.
+/// The stages of every permutation. Permutations with the same shaders are taken once.
 fn every_pair(bundle: &Bundle) -> Result<Vec<Pair>, Failed> {
     let mut pairs = Vec::new();
     for name in bundle.programs() {
@@ -211,7 +214,7 @@ fn pairs_of(program: &Loaded<'_>, language: Language, pairs: &mut Vec<Pair>) -> 
 
 struct Device {
     device: wgpu::Device,
-    /// Whether it takes SPIR-V as it is.
+    /// Whether the device accepts SPIR-V without translating it.
     spirv: bool,
 }
 
@@ -222,7 +225,7 @@ impl Device {
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         let mut adapters = block_on(instance.enumerate_adapters(backend));
-        // Other trials have told the loader of SwiftShader.
+        // Other trials of this process add SwiftShader to the Vulkan loader's drivers.
         adapters.retain(|adapter| !adapter.get_info().name.contains("SwiftShader"));
         adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
         let adapter = adapters
@@ -242,7 +245,7 @@ impl Device {
         Ok(Self { device, spirv })
     }
 
-    /// Creates the pipeline; what wgpu has against it.
+    /// Creates the pipeline, or gives the reason why wgpu refuses it.
     fn accepts(&self, pair: &Pair, spirv: bool) -> Result<(), String> {
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
@@ -317,9 +320,9 @@ impl Device {
         Ok(unsafe { self.device.create_shader_module_passthrough(descriptor) })
     }
 
-    /// One layout over all stages, since they share their groups. wgpu numbers the bindings of a
-    /// Vulkan layout without gaps and renumbers those of the shaders it translates itself; where
-    /// SPIR-V passes through, bindings that nobody sees fill the gaps.
+    /// One layout for both stages, since they share their groups. wgpu numbers the bindings of a
+    /// Vulkan layout without gaps, and renumbers those of shaders that it translates itself. For
+    /// SPIR-V, which it does not translate, bindings that no stage can see fill the gaps.
     fn layout<'a>(
         &self,
         stages: impl Iterator<Item = &'a Reflection>,

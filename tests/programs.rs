@@ -1,6 +1,6 @@
-//! Every program of the library, in every permutation that ships and in a covering set of all
-//! pairs of values: valid and written for every target, the same interface in both languages,
-//! no two permutations alike, and outputs that other validators accept.
+//! Every program of the library, in every permutation that ships and in a set that covers all pairs
+//! of values. Each is valid and can be written for every target, has the same interface in both
+//! languages, and differs from all others. External validators accept the outputs.
 
 mod accepted;
 
@@ -21,10 +21,10 @@ use rayon::prelude::*;
 
 use accepted::{glslang_takes_sources, validators};
 
-/// Failures shown of one trial.
+/// How many failures of a trial are printed.
 const SHOWN: usize = 3;
 
-/// Stages, the entry point of each in WESL, and glslang's name of it.
+/// The stages: name, entry point in WESL, and name for glslangValidator.
 const STAGES: [(&str, &str, &str); 2] =
     [("vertex", "vs_main", "vert"), ("fragment", "fs_main", "frag")];
 
@@ -79,7 +79,7 @@ fn glsl_file<'a>(program: &'a Program, stage: &str) -> Option<&'a File> {
     if stage == "vertex" { glsl.vertex.as_ref() } else { glsl.fragment.as_ref() }
 }
 
-/// One stage of a program in both languages, to be composed at will.
+/// The loaded sources of one stage of a program, in both languages.
 struct Sources {
     texts: SourceSet,
     wesl: resolve::wesl::Graph,
@@ -106,7 +106,7 @@ impl Sources {
         Ok(Self { texts, wesl, glsl, entry })
     }
 
-    /// Name of the entry point, and the composer.
+    /// For each language, the name of the entry point and the composer.
     fn languages(&self) -> [(&'static str, Box<Composer<'_>>); 2] {
         let options =
             Options { keep: Keep::Items(vec![self.entry.to_owned()]), ..Options::default() };
@@ -127,9 +127,11 @@ impl Sources {
 
 type Composer<'a> = dyn Fn(&Settings) -> Result<Composed, Diagnostics> + 'a;
 
-/// The distinct texts of the points, each with the first point that has it, and which is whose.
+/// The distinct composed texts of some points.
 struct Texts {
+    /// The texts, each with the first point that has it.
     composed: Vec<(Composed, Assignment)>,
+    /// For each point, the index of its text.
     of: Vec<usize>,
 }
 
@@ -199,7 +201,8 @@ fn report(program: &Program, failures: Vec<(&Assignment, String)>) -> Result<(),
         .iter()
         .take(SHOWN)
         .map(|(point, what)| format!("[{}]\n{what}\n", program.space.key(point)));
-    Err(format!("{} failures\n{}", failures.len(), shown.collect::<String>()).into())
+    let shown = shown.collect::<String>();
+    Err(format!("{}: {} failures, the first are\n{shown}", program.name, failures.len()).into())
 }
 
 fn written(
@@ -220,8 +223,8 @@ fn alone(composed: &Composed, entry: &str) -> Result<Validated, Diagnostics> {
     isolate(&validate(composed)?, entry)
 }
 
-/// What would keep an engine from mixing the two languages. Inputs of a fragment stage need not
-/// be all of the vertex stage's outputs: GLSL declares only those that are used.
+/// The first difference between the interfaces of the two languages, which would keep an engine from
+/// using either. In GLSL the inputs may be fewer, since it declares only those that are used.
 fn difference(wesl: &Option<Reflection>, glsl: &Option<Reflection>) -> Option<String> {
     let (wesl, glsl) = (wesl.as_ref()?, glsl.as_ref()?);
     let lacks = |whole: &[Varying], part: &[Varying]| {
@@ -252,7 +255,8 @@ fn places(varyings: &[Varying]) -> BTreeSet<String> {
         .collect()
 }
 
-/// No two permutations of a program are the same text in all stages.
+/// No two permutations of a program have the same texts in all stages. Otherwise an axis or a value
+/// would have no effect there, and the permutation should not ship.
 fn distinct(program: &Program) -> Result<(), Failed> {
     let points = program.space.enumerate();
     let mut alike: [BTreeMap<Vec<usize>, Vec<&Assignment>>; 2] = Default::default();

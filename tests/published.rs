@@ -1,7 +1,8 @@
-//! Functions that reproduce a published form beside those that are safe: one place each where the
-//! two differ, as their documentation says, in both languages.
+//! The library has functions that reproduce a published form exactly, beside safe functions for the
+//! same purpose. Each pair is evaluated at an input where the two differ, in both languages, as
+//! their documentation says.
 //!
-//! `pcf_random16_hpg` is in `shadow::random_taps_shift`, which needs a map.
+//! `pcf_random16_hpg` is not here, since it needs a shadow map: see `shadow::random_taps_shift`.
 
 use std::process::Command;
 
@@ -9,23 +10,24 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::examples::run;
 
-/// The safe form and its value, the published form and its value.
+/// The safe form and its value, then the published form and its value.
 const FORMS: &[(&str, f64, &str, f64)] = &[
-    // The caller must double the number of the pair; with the plain number the back of one is the front of the next.
+    // In the published form, the caller must double the number of the pair. With the plain number,
+    // the back material of one pair is the front material of the next.
     (
         "lighting::material::material_index(1, false)",
         3.0,
         "lighting::material::material_index_oglpg(1, false)",
         2.0,
     ),
-    // The edge of the cone.
+    // At the edge of the cone, only the safe form is lit.
     (
         "lighting::spot::cone_hard(0.5, 0.5)",
         1.0,
         "lighting::spot::cone_hard_exclusive(0.5, 0.5)",
         0.0,
     ),
-    // A light behind the surface has a highlight.
+    // In the published forms, a light behind the surface has a highlight.
     (
         "brdf::specular::blinn_phong(vec3f(0, 0, 1), vec3f(0.8, 0, -0.6), vec3f(0, 0, 1), 2)",
         0.0,
@@ -38,35 +40,36 @@ const FORMS: &[(&str, f64, &str, f64)] = &[
         "brdf::specular::phong_oglpg_7_21(vec3f(0, 0, 1), vec3f(0.8, 0, -0.6), vec3f(-1, 0, 0), 2)",
         0.64,
     ),
-    // A light on the horizon is reflected.
+    // In the published form, a light on the horizon is reflected.
     (
         "brdf::specular::phong(vec3f(0, 0, 1), vec3f(1, 0, 0), vec3f(-0.8, 0, 0.6), 2)",
         0.0,
         "brdf::specular::phong_igl(vec3f(0, 0, 1), vec3f(1, 0, 0), vec3f(-0.8, 0, 0.6), 2)",
         0.64,
     ),
-    // The highlight is weakened by Lambert's term, 0.6 here.
+    // In the published form, Lambert's term weakens the highlight; it is 0.6 here.
     (
         "0.33 * brdf::specular::blinn_phong(vec3f(0, 0, 1), vec3f(0.8, 0, 0.6), vec3f(-0.8, 0, 0.6), 50)",
         0.33,
         "lighting::classic::shade_ncl(vec3f(0), vec3f(1), vec3f(0, 0, 1), vec3f(0.8, 0, 0.6), vec3f(-0.8, 0, 0.6), 1).x",
         0.198,
     ),
-    // The form the book calls analytic, at 60 degrees, where the cosine form is the quadrature's value.
+    // At 60 degrees. The safe form, with the cosine, has the value of a numeric integral. The book
+    // calls the other form analytic.
     (
         "ambient::hemisphere::hemisphere_weight(vec3f(0.8660254, 0.5, 0), vec3f(0, 1, 0))",
         0.75,
         "ambient::hemisphere::hemisphere_weight_sine(vec3f(0.8660254, 0.5, 0), vec3f(0, 1, 0))",
         0.5669873,
     ),
-    // The pole is a position: beside it the sky is to the side.
+    // In the published form the pole is a position. Beside it, the sky is to the side.
     (
         "ambient::hemisphere::hemisphere(vec3f(0, 1, 0), vec3f(0, 1, 0), vec3f(1), vec3f(0)).x",
         1.0,
         "ambient::hemisphere::hemisphere_oglpg(vec3f(0, 1, 0), vec3f(2, 2, 0), vec3f(0, 2, 0), vec3f(1), vec3f(0)).x",
         0.5,
     ),
-    // A brightness that is not linear in the distance.
+    // The published form gives a brightness that is not linear in the distance.
     (
         "shadow::coord::linearize_depth(0.995, 0.1, 100) / 100",
         0.166_805_67,
@@ -100,5 +103,5 @@ fn forms_differ(language: &str) -> Result<(), Failed> {
     if values.len() == expected.len() && values.iter().zip(&expected).all(near) {
         return Ok(());
     }
-    Err(format!("{values:?}, not {expected:?}").into())
+    Err(format!("found {values:?}, expected {expected:?}, in the order of `FORMS`").into())
 }

@@ -1,5 +1,5 @@
-//! Inputs that once did harm, one file each in `tests/regressions/KIND/`: `cargo xtask fuzz`
-//! found them, or a person did. Each must have one answer, without a panic, in a moment.
+//! Inputs that once caused a failure, one file each in `tests/regressions/KIND/`. `cargo xtask fuzz`
+//! or a person found them. Each must give the same answer twice, without a panic, within seconds.
 
 #[path = "../fuzz/src/kinds.rs"]
 pub mod kinds;
@@ -15,7 +15,8 @@ use std::time::{Duration, Instant};
 use kinds::{KINDS, Kind};
 use libtest_mimic::{Failed, Trial};
 
-/// Generous, since the profile is not for speed and the machine may be busy.
+/// The longest time for one input. It is large, since the build is not optimised and the machine may
+/// be busy.
 const LONGEST: Duration = Duration::from_secs(10);
 
 pub fn trials() -> Vec<Trial> {
@@ -33,27 +34,31 @@ fn all() -> impl Iterator<Item = &'static Kind> {
     KINDS.iter().chain(proofs::KINDS)
 }
 
-/// A kind without valid inputs to start from would be fuzzed in vain.
+/// Every kind of fuzzing has valid inputs to start from, and words to insert. Without them, fuzzing
+/// would hardly get past the first check of an input.
 fn seeded(kind: &Kind) -> Result<(), Failed> {
     let is_there =
         |(folder, _): &&(&str, &str)| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).is_dir();
     match kind.corpus.iter().find(|folder| !is_there(folder)) {
         Some((folder, ending)) => {
-            Err(format!("no folder {folder} with files of `{ending}`").into())
+            let what = format!("the folder {folder} with files `{ending}` does not exist");
+            Err(format!("{}: {what}", kind.name).into())
         }
-        None if kind.words.is_empty() && kind.name != "bundle" => Err("no words".into()),
+        None if kind.words.is_empty() && kind.name != "bundle" => {
+            Err(format!("{} has no words to insert", kind.name).into())
+        }
         None => Ok(()),
     }
 }
 
-/// Mutants of valid inputs that each kind is given, from the same seed each time:
-/// `LAMPLIGHT_FUZZ_INPUTS` and `LAMPLIGHT_FUZZ_SEED` ask for others. The generator is that of
-/// `cargo xtask fuzz`, which tries kinds that need the harness from outside alone.
+/// The number of mutants for each kind. They are made from valid inputs, with the same seed in every
+/// run. `LAMPLIGHT_FUZZ_INPUTS` and `LAMPLIGHT_FUZZ_SEED` set another number and another seed.
+/// `cargo xtask fuzz` uses the same generator.
 const MUTANTS: u64 = 100;
 
 fn mutants(kind: &Kind) -> Result<(), Failed> {
     let number = |name: &str, usual| match std::env::var(name) {
-        Ok(text) => text.parse().map_err(|_| Failed::from(format!("{name} is no number"))),
+        Ok(text) => text.parse().map_err(|_| Failed::from(format!("{name} is not a number"))),
         Err(_) => Ok(usual),
     };
     let count: u64 = number("LAMPLIGHT_FUZZ_INPUTS", MUTANTS)?;
@@ -69,7 +74,7 @@ fn mutants(kind: &Kind) -> Result<(), Failed> {
                 Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.{index}", kind.name));
             let kept = std::fs::write(&path, &input).map(|()| path);
             let reason = failed.message().unwrap_or_default();
-            format!("mutant {index}: {reason}; it is in {kept:?}")
+            format!("{} mutant {index}: {reason}; its input is in {kept:?}", kind.name)
         })?;
     }
     Ok(())
@@ -96,12 +101,16 @@ fn replay(kind: &Kind, file: &Path) -> Result<(), Failed> {
     judge(kind, &std::fs::read(file)?)
 }
 
-/// An input has one answer, soon.
+/// Fails unless an input gives the same answer twice, and soon.
 fn judge(kind: &Kind, input: &[u8]) -> Result<(), Failed> {
     let started = Instant::now();
     let answer = (kind.run)(input);
     if started.elapsed() > LONGEST {
-        return Err(format!("took {:?}", started.elapsed()).into());
+        let took = started.elapsed();
+        return Err(format!("took {took:?}, expected at most {LONGEST:?}").into());
     }
-    if (kind.run)(input) == answer { Ok(()) } else { Err("two answers to one input".into()) }
+    match (kind.run)(input) == answer {
+        true => Ok(()),
+        false => Err("the same input gave two different answers".into()),
+    }
 }

@@ -1,6 +1,7 @@
 //! Finds the declarations at the top level of a module's text, with their doc comments.
 
 use super::{Kind, Member};
+use crate::parse::words::{continues_word, word_at};
 
 /// A declaration without its body.
 pub struct Declaration {
@@ -134,26 +135,24 @@ fn nesting(line: &str) -> i32 {
 
 fn wesl_name(line: &str) -> Option<(Kind, String)> {
     let words = [("fn ", Kind::Function), ("struct ", Kind::Struct), ("const ", Kind::Constant)];
-    words.iter().find_map(|(word, kind)| Some((*kind, identifier(line.strip_prefix(word)?))))
+    words
+        .iter()
+        .find_map(|(word, kind)| Some((*kind, word_at(line.strip_prefix(word)?).to_owned())))
 }
 
 fn glsl_name(line: &str) -> Option<(Kind, String)> {
     if let Some(rest) = line.strip_prefix("struct ") {
-        return Some((Kind::Struct, identifier(rest)));
+        return Some((Kind::Struct, word_at(rest).to_owned()));
     }
     if let Some((_, name)) = line.strip_prefix("const ").and_then(|rest| rest.split_once(' ')) {
-        return Some((Kind::Constant, identifier(name)));
+        return Some((Kind::Constant, word_at(name).to_owned()));
     }
     // An indented line continues the list of parameters.
     let (before, _) = line.split_once('(').filter(|_| !line.starts_with(' '))?;
     let (result, name) = before.rsplit_once(' ')?;
     let plain = |word: &str| {
         !word.is_empty()
-            && word.chars().all(|letter| letter.is_alphanumeric() || "_[] ".contains(letter))
+            && word.chars().all(|letter| continues_word(letter) || "[] ".contains(letter))
     };
     (plain(result) && plain(name)).then(|| (Kind::Function, name.to_owned()))
-}
-
-fn identifier(text: &str) -> String {
-    text.chars().take_while(|letter| letter.is_alphanumeric() || *letter == '_').collect()
 }

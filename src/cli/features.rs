@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use clap::{Args, ValueEnum};
 
+use super::input::plain_name;
 use crate::permute::constant;
 
 /// The option, for every command that composes.
@@ -23,12 +24,7 @@ pub struct Arguments {
 /// A constant as the option has it.
 fn named(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
-    let fits = |c: char| c == '_' || c.is_ascii_alphanumeric();
-    if name.is_empty() || !name.chars().all(fits) || name.starts_with(|c: char| c.is_ascii_digit())
-    {
-        return Err(format!("`{name}` is not a name of letters, digits and `_`"));
-    }
-    Ok((name.to_owned(), constant::parse(value)?))
+    Ok((plain_name(name)?, constant::parse(value)?))
 }
 
 #[derive(Clone, Copy, ValueEnum)]

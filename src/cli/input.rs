@@ -9,6 +9,7 @@ use super::{features, stream};
 use crate::bundle::{Clip, Language, Stage};
 use crate::compose::{self, Composed, Keep, Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
+use crate::parse::words::is_word;
 use crate::permute::manifest::Features;
 use crate::permute::{Assignment, Program, Quoted, Setting, Settings, key};
 use crate::project::{self, Project};
@@ -90,17 +91,16 @@ enum MangleName {
 /// An axis with its value, as an option has it.
 pub fn axis_value(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').ok_or("expected AXIS=VALUE")?;
-    Ok((named(name)?, Setting::parse(value)))
+    Ok((plain_name(name)?, Setting::parse(value)))
 }
 
 fn is_integer(setting: &&(String, Setting)) -> bool {
     matches!(setting.1, Setting::Int(_))
 }
 
-fn named(name: &str) -> Result<String, String> {
-    let fits = name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
-        && !name.starts_with(|c: char| c.is_ascii_digit());
-    if fits && !name.is_empty() {
+/// A name of a feature, an axis or a constant, as an option has it.
+pub fn plain_name(name: &str) -> Result<String, String> {
+    if name.is_ascii() && is_word(name) {
         Ok(name.to_owned())
     } else {
         Err(format!("`{name}` is not a name of letters, digits and `_`"))
@@ -111,7 +111,7 @@ fn named(name: &str) -> Result<String, String> {
 pub fn feature(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').unwrap_or((text, "true"));
     match Setting::parse(value) {
-        value @ Setting::Bool(_) => Ok((named(name)?, value)),
+        value @ Setting::Bool(_) => Ok((plain_name(name)?, value)),
         _ => Err(format!("a feature is `true` or `false`, not `{value}`")),
     }
 }

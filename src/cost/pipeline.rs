@@ -8,6 +8,7 @@ use naga::ScalarKind;
 use crate::bundle::{Binding, Kind, Language, Reflection, Stage, Target, Varying};
 use crate::diagnostic::Diagnostic;
 use crate::emit;
+use crate::emit::spirv;
 use crate::validate::{CAPABILITIES, Validated};
 
 /// A stage in SPIR-V.
@@ -60,10 +61,10 @@ impl Known {
     /// # Errors
     /// They are no words, or the entry point's name has a zero.
     pub fn new(entry: &str, bytes: &[u8], reflection: Reflection) -> Result<Self, String> {
-        let (words, []) = bytes.as_chunks::<4>() else {
+        if !bytes.len().is_multiple_of(4) {
             return Err(format!("{} bytes of SPIR-V are not a whole number of words", bytes.len()));
-        };
-        let words = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        }
+        let words = spirv::words(bytes);
         let entry = CString::new(entry).map_err(|error| error.to_string())?;
         let stage = reflection.stage;
         Ok(Self { words: Words { stage, entry, words, constants: Vec::new() }, reflection })

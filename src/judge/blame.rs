@@ -8,6 +8,7 @@ use crate::bundle::{Contents, Target};
 use crate::compose::{Part, PartKind, code_lines};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::generate::{Named, Permutation, permutation};
+use crate::parse::words::{begins_word, has_word, words};
 use crate::permute::Manifest;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
@@ -106,18 +107,18 @@ fn line(refusal: &Refusal) -> Option<Line> {
 
 /// The name that a line declares. Only lines that begin a declaration are not indented.
 fn declares(line: &str, target: Target) -> Option<String> {
-    if !line.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
+    if !line.starts_with(begins_word) {
         return None;
     }
-    let words = words(line);
-    if let Some(at) = words.iter().position(|word| *word == "struct") {
-        return words.get(at + 1).map(|word| (*word).to_owned());
+    let mut behind = words(line).skip_while(|word| word.text != "struct").skip(1);
+    if has_word(line, "struct") {
+        return behind.next().map(|word| word.text.to_owned());
     }
     let (head, _) = match target {
         Target::WGSL if !line.starts_with("fn ") => return None,
         _ => line.split_once('(')?,
     };
-    self::words(head).last().map(|word| (*word).to_owned())
+    words(head).last().map(|word| word.text.to_owned())
 }
 
 /// Puts the error at the author's line, or at the entry point.
@@ -151,19 +152,14 @@ fn part<'p>(parts: &'p [Part], name: &str) -> Option<&'p Part> {
 /// The line of a declaration that shares most words with a line of the output, since writers keep
 /// the author's names. If no line shares a word, the first line with code.
 fn nearest(text: &str, part: &Part, output: &str) -> Range<usize> {
-    let wanted: BTreeSet<&str> = words(output).into_iter().collect();
+    let wanted: BTreeSet<&str> = words(output).map(|word| word.text).collect();
     let mut best: Option<(usize, Range<usize>)> = None;
     for line in code_lines(text, part.range.clone()) {
-        let words: BTreeSet<&str> = words(&text[line.clone()]).into_iter().collect();
+        let words: BTreeSet<&str> = words(&text[line.clone()]).map(|word| word.text).collect();
         let score = words.intersection(&wanted).count();
         if best.as_ref().is_none_or(|(most, _)| score > *most) {
             best = Some((score, line));
         }
     }
     best.map_or(part.range.clone(), |(_, range)| range)
-}
-
-fn words(text: &str) -> Vec<&str> {
-    let parts = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-    parts.filter(|word| word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')).collect()
 }

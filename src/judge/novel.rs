@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::Output;
+use crate::parse::words::{PieceKind, pieces};
 
 /// The outputs with two neighbouring tokens that no output before them had next to each other. If a
 /// compiler cannot handle some construct in texts of this kind, it fails on one of these outputs
@@ -41,19 +42,6 @@ fn add(line: &str, pairs: &mut HashSet<(String, String)>) -> bool {
 
 /// The tokens of a line: words, other characters, and a common token for all numbers.
 fn tokens(line: &str) -> Vec<&str> {
-    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let (mut rest, mut found) = (line, Vec::new());
-    while let Some(first) = rest.chars().next() {
-        let is_number = first.is_ascii_digit();
-        let length = match is_part(first) {
-            true => rest.find(|c: char| !(is_part(c) || is_number && c == '.')),
-            false => Some(first.len_utf8()),
-        };
-        let (token, after) = rest.split_at(length.unwrap_or(rest.len()));
-        if !token.trim().is_empty() {
-            found.push(if is_number { "0" } else { token });
-        }
-        rest = after;
-    }
-    found
+    let solid = pieces(line).filter(|piece| piece.kind != PieceKind::Blank);
+    solid.map(|piece| if piece.kind == PieceKind::Number { "0" } else { piece.text }).collect()
 }

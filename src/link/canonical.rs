@@ -12,9 +12,9 @@ use naga::ShaderStage;
 use super::outline::{Key, Outline, hash};
 use super::reason::Reason;
 use super::summary::{Place, Shape, Summary};
-use super::words::words;
 use crate::bundle::Language;
 use crate::compose::PartKind;
+use crate::parse::words::words;
 
 /// The name of the entry point that does nothing.
 pub const IDLE: &str = "lamplight_idle";

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::mark::{self, Mark, SCRATCH};
 use super::reason::Reason;
 use super::text::{self, Declared};
-use super::words::words;
+use crate::parse::words::words;
 
 /// What to keep of an output.
 pub struct Wanted<'a> {

@@ -59,7 +59,6 @@ mod text;
 mod texts;
 mod translate;
 mod uses;
-mod words;
 
 pub use compile::{Made, Text, compile, perform};
 pub use module::compile_module;

@@ -8,9 +8,9 @@ use naga::ShaderStage;
 
 use super::mark;
 use super::reason::Reason;
-use super::words::words;
 use crate::bundle::{Language, Stage};
 use crate::compose::{Composed, Part, PartKind};
+use crate::parse::words::words;
 
 /// Identifies content.
 pub type Key = [u8; 16];

@@ -7,8 +7,8 @@ use std::ops::Range;
 use super::cut::Fragment;
 use super::names::{Chosen, Names, Renames};
 use super::reason::Reason;
-use super::words::words;
 use crate::emit::glsl;
+use crate::parse::words::{word_around, words};
 
 /// A text in which every reference has its usual name.
 pub struct Template {
@@ -224,8 +224,6 @@ fn sorted(mut numbers: Vec<u32>) -> Vec<u32> {
 
 /// Finds the identifiers that have references in them.
 fn derived(template: &Template, names: &mut Names) -> Vec<Derived> {
-    let bytes = template.text.as_bytes();
-    let is_part = |byte: &&u8| byte.is_ascii_alphanumeric() || **byte == b'_';
     let mut derived: Vec<Derived> = Vec::new();
     for (index, spot) in template.spots.iter().enumerate() {
         if let Some(last) = derived.last_mut()
@@ -234,11 +232,10 @@ fn derived(template: &Template, names: &mut Names) -> Vec<Derived> {
             last.spots.end = index + 1;
             continue;
         }
-        let start = spot.start - bytes[..spot.start].iter().rev().take_while(is_part).count();
-        let end = spot.end + bytes[spot.end..].iter().take_while(is_part).count();
-        if (start, end) != (spot.start, spot.end) {
-            let word = names.word(&template.text[start..end]);
-            derived.push(Derived { word, place: start..end, spots: index..index + 1 });
+        let place = word_around(&template.text, spot.start..spot.end);
+        if place != (spot.start..spot.end) {
+            let word = names.word(&template.text[place.clone()]);
+            derived.push(Derived { word, place, spots: index..index + 1 });
         }
     }
     derived

@@ -1,7 +1,7 @@
 //! Divides a text that naga wrote into declarations.
 
-use super::words::{begins_word, end, words};
 use crate::emit::is_header_line;
+use crate::parse::words::{PieceKind, piece_at, word_end, words};
 
 /// What a declaration of an output is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -110,9 +110,9 @@ struct Head<'a> {
 fn head(text: &str) -> Head<'_> {
     let bytes = text.as_bytes();
     let (mut at, mut words, mut is_attribute) = (0, Vec::new(), false);
-    while let Some(&byte) = bytes.get(at) {
-        let start = at;
-        at = end(bytes, at);
+    while let Some(piece) = piece_at(text, at) {
+        at = piece.end();
+        let byte = bytes[piece.at];
         match byte {
             b'(' if is_attribute => at += text[at..].find(')').map_or(0, |found| found + 1),
             b'<' => at += text[at..].find('>').map_or(0, |found| found + 1),
@@ -121,14 +121,12 @@ fn head(text: &str) -> Head<'_> {
             // Attributes of WGSL and layouts of GLSL have arguments of their own, which are
             // skipped.
             b'@' => {
-                at += text[at..]
-                    .find(|character: char| !character.is_ascii_alphanumeric() && character != '_')
-                    .unwrap_or(0);
+                at = word_end(text, at);
                 is_attribute = true;
                 continue;
             }
-            _ if begins_word(byte) => words.push(&text[start..at]),
-            _ if byte.is_ascii_whitespace() => continue,
+            _ if piece.kind == PieceKind::Word => words.push(piece.text),
+            _ if piece.kind == PieceKind::Blank => continue,
             _ => {}
         }
         is_attribute = words.last() == Some(&"layout");

@@ -19,6 +19,7 @@ use crate::bundle::Language;
 use crate::bundle::{Clip, Native, Reflection, Target};
 use crate::compose::Composed;
 use crate::emit;
+use crate::emit::spirv::words;
 use crate::validate::{CAPABILITIES, Validated, guard, is_bounded, is_calm, on_large_stack};
 
 /// A unit in every target.
@@ -158,8 +159,7 @@ fn write(
     if target == Target::SPIRV {
         let emitted = emit::emit_for(&parsed.validated, &parsed.entry, target, clip);
         let emitted = emitted.map_err(|_| Reason::Refused)?;
-        let words = emitted.bytes.as_chunks::<4>().0;
-        let words = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        let words = words(&emitted.bytes);
         return Ok(Written::Words { words, native: emitted.native });
     }
     let entry = parsed.marked.module.entry_points.first().map_or(IDLE, |point| &point.name);

@@ -9,6 +9,7 @@ use super::package::{Modules, Symbol};
 use super::place::Lines;
 use super::{Server, told};
 use crate::parse::wesl::{ItemKind, Name, is_keyword};
+use crate::parse::words::is_word;
 use crate::source::Span;
 
 /// Names that a workspace's answer has at most.
@@ -95,9 +96,7 @@ pub fn rename(server: &mut Server, parameters: &Value) -> Result<Value, String> 
     if let Some(reason) = fixed(&modules, symbol) {
         return Err(reason.to_owned());
     }
-    let mut letters = new.chars();
-    let first = letters.next().is_some_and(|c| c == '_' || unicode_ident::is_xid_start(c));
-    if !first || !letters.all(unicode_ident::is_xid_continue) || is_keyword(&new) || new == "_" {
+    if !is_word(&new) || is_keyword(&new) || new == "_" {
         return Err(format!("`{new}` is not a name in WGSL"));
     }
     let declared = modules.declarations(symbol);

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use crate::parse::words::word_around;
+
 /// The address of a file.
 pub fn address(path: &Path) -> String {
     let mut text = "file://".to_owned();
@@ -90,9 +92,6 @@ impl<'t> Lines<'t> {
 
 /// The identifier around a byte.
 pub fn word(text: &str, byte: usize) -> Range<usize> {
-    let is_part = |c: char| c == '_' || unicode_ident::is_xid_continue(c);
     let byte = text.floor_char_boundary(byte.min(text.len()));
-    let before = text[..byte].trim_end_matches(is_part).len();
-    let behind = &text[byte..];
-    before..byte + behind.len() - behind.trim_start_matches(is_part).len()
+    word_around(text, byte..byte)
 }

@@ -1,5 +1,7 @@
 //! Words and signs of a text in MSL, without comments and directives.
 
+use crate::parse::words::piece_at;
+
 /// A word, a number or one sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Token<'t> {
@@ -28,21 +30,13 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
         } else if first.is_whitespace() {
             first.len_utf8()
         } else {
-            let length = word(rest).max(first.len_utf8());
-            found.push(Token { text: &rest[..length], at });
-            length
+            let piece = piece_at(text, at).map_or(rest, |piece| piece.text);
+            found.push(Token { text: piece, at });
+            piece.len()
         };
         at += length;
     }
     found
-}
-
-/// Bytes of the word or the number that the text starts with.
-fn word(text: &str) -> usize {
-    let is_number = text.starts_with(|first: char| first.is_ascii_digit());
-    let part =
-        |letter: char| letter.is_alphanumeric() || letter == '_' || is_number && letter == '.';
-    text.find(|letter: char| !part(letter)).unwrap_or(text.len())
 }
 
 /// Line and column of a byte, both from 1.

@@ -2,19 +2,16 @@
 
 use super::condition::Condition;
 use super::names::{Modules, Place};
-use super::scan::word;
+use super::scan::comment_length;
 use super::tree::{Bytes, Choice, Import, Leaf, Node, Path};
+use crate::parse::words::word_at;
 
 /// The text without its comments, byte for byte.
 pub fn bare(text: &str) -> String {
     let mut bare = String::with_capacity(text.len());
     while bare.len() < text.len() {
         let rest = &text[bare.len()..];
-        let length = match () {
-            () if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
-            () if rest.starts_with("/*") => rest.find("*/").map_or(rest.len(), |end| end + 2),
-            () => 0,
-        };
+        let length = comment_length(rest);
         match rest.chars().next() {
             Some(letter) if length == 0 => bare.push(letter),
             _ => bare.extend(std::iter::repeat_n(' ', length)),
@@ -91,7 +88,7 @@ impl Reader<'_> {
 
     fn word(&mut self) -> Option<String> {
         self.skip();
-        let found = word(&self.bare[self.at..]);
+        let found = word_at(&self.bare[self.at..]);
         self.at += found.len();
         (!found.is_empty()).then(|| found.to_owned())
     }

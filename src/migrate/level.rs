@@ -1,6 +1,7 @@
 //! What lists have, and where one unit of a list ends.
 
 use super::unit::Part;
+use crate::parse::words::begins_word;
 
 /// What a list has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +49,7 @@ impl Unit<'_> {
             ">" => self.angles = self.angles.saturating_sub(1),
             _ => {}
         }
-        let is_word = text.starts_with(|first: char| first == '_' || first.is_alphabetic());
+        let is_word = text.starts_with(begins_word);
         if self.first.is_empty() && is_word && self.before != "@" {
             text.clone_into(&mut self.first);
         }

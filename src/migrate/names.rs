@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::tree::{Leaf, Node, Scanned};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl;
+use crate::parse::words::is_word;
 use crate::source::{SourceId, Span};
 
 /// Every module of the folder.
@@ -181,9 +182,7 @@ fn place_of(path: &str) -> Result<String, String> {
     let bare = path.rsplit_once('.').map_or(path, |(bare, _)| bare);
     let mut place = "package".to_owned();
     for segment in bare.split('/') {
-        let fits = super::scan::word(segment) == segment
-            && !segment.starts_with(|first: char| first.is_ascii_digit())
-            && !wesl::is_keyword(segment);
+        let fits = is_word(segment) && !wesl::is_keyword(segment);
         if !fits {
             return Err(format!("`{segment}` of `{path}` is no name, so nothing can import it"));
         }

@@ -6,6 +6,7 @@ use super::import;
 use super::tree::{Branch, Bytes, Choice, Import, Kind, Line, Node, Scanned, Token};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::wesl::blank::block_comment;
+use crate::parse::words::{begins_word, continues_word, number_end, word_at};
 use crate::source::{LIMITS, SourceId, Span};
 
 /// Cuts up a file. The error is the first thing that cannot be understood.
@@ -109,7 +110,7 @@ impl Scanner<'_> {
         {
             return None;
         }
-        let word = word(self.rest()[1..].trim_start());
+        let word = word_at(self.rest()[1..].trim_start());
         DIRECTIVES.contains(&word).then(|| word.to_owned())
     }
 
@@ -186,7 +187,7 @@ impl Scanner<'_> {
         let kind = words.next().unwrap_or_default();
         let name = words.next().unwrap_or_default();
         let found = match kind {
-            _ if word(name) != name || name.is_empty() => None,
+            _ if word_at(name) != name || name.is_empty() => None,
             "ifdef" => Some(Condition::defined(name)),
             "ifndef" => Some(Condition::defined(name).not()),
             _ => {
@@ -302,10 +303,8 @@ impl Scanner<'_> {
         let length = first.len_utf8();
         let dotted = first == '.' && rest[1..].starts_with(|next: char| next.is_ascii_digit());
         match first {
-            _ if first == '_' || unicode_ident::is_xid_start(first) => {
-                Ok((Kind::Word, word(rest).len()))
-            }
-            _ if first.is_ascii_digit() || dotted => Ok((Kind::Number, number(rest))),
+            _ if begins_word(first) => Ok((Kind::Word, word_at(rest).len())),
+            _ if first.is_ascii_digit() || dotted => Ok((Kind::Number, number_end(rest, 0))),
             ':' if rest.starts_with("::") => Ok((Kind::Path, 2)),
             '#' => self.def(),
             '"' => match rest[1..].find(['"', '\n']) {
@@ -323,18 +322,17 @@ impl Scanner<'_> {
         let after = rest[1..].trim_start();
         let (name, length) = match after.strip_prefix('{') {
             Some(inner) => {
-                let name = word(inner);
+                let name = word_at(inner);
                 let closed = inner[name.len()..].starts_with('}');
                 (if closed { name } else { "" }, rest.len() - inner.len() + name.len() + 1)
             }
-            None => (word(after), rest.len() - after.len() + word(after).len()),
+            None => (word_at(after), rest.len() - after.len() + word_at(after).len()),
         };
         let place = self.at..self.at + length.min(rest.len());
         if name.is_empty() {
             return Err(self.wrong("a `#` that is no directive", self.at..self.at + 1));
         }
-        let fits = |before: char| before == '_' || before.is_alphanumeric();
-        let pasted = self.text[..self.at].ends_with(fits);
+        let pasted = self.text[..self.at].ends_with(continues_word);
         if pasted {
             return Err(self.wrong("a name that is put together from a shader def", place));
         }
@@ -349,36 +347,18 @@ pub fn trivia(text: &str) -> usize {
     let mut at = 0;
     loop {
         let rest = &text[at..];
-        at += match () {
-            () if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
-            () if rest.starts_with("/*") => block_comment(rest).0,
-            () => match rest.len() - rest.trim_start().len() {
-                0 => return at,
-                blank => blank,
-            },
+        at += match comment_length(rest).max(rest.len() - rest.trim_start().len()) {
+            0 => return at,
+            length => length,
         };
     }
 }
 
-/// The word that a text starts with.
-pub fn word(text: &str) -> &str {
-    let fits = |letter: char| letter == '_' || unicode_ident::is_xid_continue(letter);
-    &text[..text.find(|letter| !fits(letter)).unwrap_or(text.len())]
-}
-
-/// Bytes of a number, loosely.
-fn number(text: &str) -> usize {
-    let hexadecimal = text.starts_with("0x") || text.starts_with("0X");
-    let mut before = ' ';
-    let more = |letter: char| {
-        let exponent = if hexadecimal { "pP" } else { "eE" };
-        let signed = "+-".contains(letter) && exponent.contains(before);
-        before = letter;
-        letter.is_ascii_alphanumeric() || letter == '.' || signed
-    };
-    text.find({
-        let mut more = more;
-        move |letter| !more(letter)
-    })
-    .unwrap_or(text.len())
+/// Bytes of the comment that a text starts with.
+pub fn comment_length(text: &str) -> usize {
+    match () {
+        () if text.starts_with("//") => text.find('\n').unwrap_or(text.len()),
+        () if text.starts_with("/*") => block_comment(text).0,
+        () => 0,
+    }
 }

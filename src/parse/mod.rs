@@ -2,3 +2,4 @@
 
 pub mod glsl;
 pub mod wesl;
+pub mod words;

@@ -13,6 +13,7 @@ use std::ops::Range;
 use crate::diagnostic::{Diagnostic, codes, nearest};
 use crate::execute::kernel::Shape;
 use crate::limits::{FORMULA_NESTING, FORMULA_PARTS};
+use crate::parse::words::{begins_word, continues_word, number_end};
 
 /// A formula whose names are resolved to words of a row.
 #[derive(Debug, Clone)]
@@ -213,7 +214,7 @@ impl Parser<'_> {
                 self.expect(')').map(|()| inner)
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
-            Some(c) if c.is_alphabetic() || c == '_' => self.name(),
+            Some(c) if begins_word(c) => self.name(),
             _ => Err((
                 self.at..self.text.len(),
                 "expected a number, a parameter or a function".to_owned(),
@@ -223,28 +224,16 @@ impl Parser<'_> {
     }
 
     fn number(&mut self) -> Parsed {
-        let rest = &self.text[self.at..];
-        let mut end = 0;
-        for (index, c) in rest.char_indices() {
-            let exponent_sign = (c == '-' || c == '+') && rest[..index].ends_with(['e', 'E']);
-            if !(c.is_ascii_alphanumeric() || c == '.' || exponent_sign) {
-                break;
-            }
-            end = index + c.len_utf8();
-        }
-        let range = self.at..self.at + end;
+        let range = self.at..number_end(self.text, self.at);
         self.at = range.end;
-        rest[..end]
-            .parse()
-            .map(Formula::Number)
-            .map_err(|_| (range, format!("`{}` is not a number", &rest[..end])).into())
+        let text = &self.text[range.clone()];
+        let number = text.parse().map(Formula::Number);
+        number.map_err(|_| (range, format!("`{text}` is not a number")).into())
     }
 
     fn name(&mut self) -> Parsed {
         let rest = &self.text[self.at..];
-        let end = rest
-            .find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'))
-            .unwrap_or(rest.len());
+        let end = rest.find(|c: char| !(continues_word(c) || c == '.')).unwrap_or(rest.len());
         let (name, range) = (&rest[..end], self.at..self.at + end);
         self.at += end;
         self.skip();

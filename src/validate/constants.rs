@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use super::limits::Excess;
 use crate::bundle::Language;
 use crate::limits::{CONSTANT_PARTS, CONSTANT_USES};
+use crate::parse::words::{Piece, PieceKind, Word, pieces, words};
 
 /// A constant: its name, the names that it uses, and how many words it has itself.
 struct Constant<'a> {
@@ -36,7 +37,7 @@ pub fn scan(text: &str, language: Language, part: u64) -> Option<Excess> {
         }
     };
     let mut uses = 0u64;
-    for (offset, word) in words(text) {
+    for Word { text: word, at: offset, .. } in words(text) {
         let cost = costs.get(word).copied().unwrap_or(0);
         uses = uses.saturating_add(if cost > 1 { cost } else { 0 });
         if uses > most_uses {
@@ -109,12 +110,12 @@ fn order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<usiz
 }
 
 /// Every constant of a text. Its name is the last word before the `=` that is outside of brackets,
-/// in both languages.
+/// in both languages. Comments are not skipped, which can only make the count larger.
 fn constants(text: &str, language: Language) -> Vec<Constant<'_>> {
     let mut found: Vec<Constant<'_>> = Vec::new();
     let (mut depth, mut open, mut start) = (0usize, None::<Constant<'_>>, 0usize);
     let mut in_value = false;
-    for (offset, word) in tokens(text) {
+    for Piece { kind, text: word, at: offset } in pieces(text) {
         let here = depth.saturating_sub(start);
         match (word, &mut open) {
             ("const", None) => {
@@ -138,7 +139,7 @@ fn constants(text: &str, language: Language) -> Vec<Constant<'_>> {
             // In GLSL a parameter can be `const` too. It ends with the list of parameters.
             (")" | "}", Some(_)) if here == 0 => open = None,
             ("," | "{", Some(_)) if here == 0 && !in_value => open = None,
-            (word, Some(constant)) if is_word(word) => {
+            (word, Some(constant)) if matches!(kind, PieceKind::Word | PieceKind::Number) => {
                 if in_value {
                     constant.own += 1;
                     constant.uses.push(word);
@@ -157,32 +158,4 @@ fn constants(text: &str, language: Language) -> Vec<Constant<'_>> {
     }
     found.retain(|constant| !constant.name.is_empty());
     found
-}
-
-fn is_word(token: &str) -> bool {
-    token.starts_with(|letter: char| letter.is_alphanumeric() || letter == '_')
-}
-
-fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    tokens(text).filter(|(_, token)| is_word(token))
-}
-
-/// Words, numbers and other characters with their places. Comments are not skipped, which can only
-/// make the count larger.
-fn tokens(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut at = 0;
-    std::iter::from_fn(move || {
-        let rest = text.get(at..)?;
-        let skipped = rest.len() - rest.trim_start().len();
-        let rest = &rest[skipped..];
-        let first = rest.chars().next()?;
-        let length = match first.is_alphanumeric() || first == '_' {
-            true => rest.find(|letter: char| !(letter.is_alphanumeric() || letter == '_')),
-            false => Some(first.len_utf8()),
-        };
-        let length = length.unwrap_or(rest.len());
-        let offset = at + skipped;
-        at = offset + length;
-        Some((offset, &rest[..length]))
-    })
 }

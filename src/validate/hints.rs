@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use crate::bundle::Language;
 use crate::compose::{Composed, PartKind};
 use crate::diagnostic::{Diagnostic, nearest};
+use crate::parse::words::word_at;
 use crate::source::{Embedded, Files};
 
 /// Functions and types of both languages that are often misspelt.
@@ -160,7 +161,7 @@ fn library() -> &'static BTreeMap<String, Vec<String>> {
 /// The name that a line at the top of a module declares.
 fn declared(line: &str) -> Option<&str> {
     let rest = ["fn ", "const ", "struct "].iter().find_map(|word| line.strip_prefix(word))?;
-    rest.split(|letter: char| !(letter.is_alphanumeric() || letter == '_')).next()
+    Some(word_at(rest))
 }
 
 /// Adds a note with each declaration of a function, for a call whose arguments fit none of them.

@@ -9,6 +9,7 @@ use super::constants;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::limits;
+use crate::parse::words::is_word_byte;
 
 /// Bounds on what naga is given.
 #[derive(Debug, Clone, Copy)]
@@ -209,7 +210,7 @@ impl Scan<'_> {
     /// Reads an identifier or keyword. Keywords that nest statements without brackets count.
     fn word(&mut self) {
         let start = self.at - 1;
-        while self.peek().is_some_and(|byte| byte.is_ascii_alphanumeric() || byte == b'_') {
+        while self.peek().is_some_and(is_word_byte) {
             self.at += 1;
         }
         let word = &self.bytes[start..self.at];

@@ -1,5 +1,5 @@
-//! The executors in the browser: a shader that is refused or never ends, a browser that ends while
-//! it draws, and no browser at all.
+//! The executors that run in the browser, when something goes wrong: the browser refuses a shader,
+//! a shader never ends, the browser's GPU process ends, or there is no browser at all.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,7 +16,7 @@ use super::Outcome;
 
 const APIS: [Api; 2] = [Api::WebGpu, Api::WebGl2];
 
-/// Enough for a draw, and over soon.
+/// Long enough for a draw, and short enough to wait for a draw that never ends.
 const SHORT: Duration = Duration::from_secs(4);
 
 pub fn trials() -> Vec<Trial> {
@@ -48,14 +48,15 @@ fn doubled() -> Result<kernel::Kernel, Failed> {
 fn doubles(web: &mut Web) -> Outcome {
     match web.run(&doubled()?, &[1, 2, 21]).map_err(|error| error.message)?.as_slice() {
         [2, 4, 42] => Ok(()),
-        other => Err(format!("{other:?}").into()),
+        other => Err(format!("twice 1, 2 and 21: expected [2, 4, 42], found {other:?}").into()),
     }
 }
 
-/// What naga takes and a browser does not is told in the browser's words, and others run.
+/// If naga accepts a shader and the browser refuses it, the error has the browser's own message.
+/// Other shaders still run in the same session.
 fn a_shader_is_refused() -> Outcome {
-    // WGSL: derivatives are taken in uniform control flow. GLSL ES: vertices and fragments have no
-    // room for so many numbers.
+    // In WGSL, derivatives must be in uniform control flow. In GLSL ES, the uniform block is larger
+    // than a stage may have.
     let texts = [
         (
             Api::WebGpu,
@@ -75,16 +76,20 @@ fn a_shader_is_refused() -> Outcome {
         web.prepare(&[&doubled()?, &kernel]);
         match web.run(&kernel, &[0]) {
             Err(error) if error.message.contains(words) => {}
-            other => return Err(format!("{api:?}: {other:?}").into()),
+            other => {
+                let what = format!("{api:?}: expected a refusal with `{words}`, found {other:?}");
+                return Err(what.into());
+            }
         }
         doubles(&mut web)?;
     }
     Ok(())
 }
 
-/// A shader that never ends is given up in time, and the one after it runs in another browser.
+/// A shader that never ends is given up after the time limit, and the next shader runs in a new
+/// browser.
 fn a_shader_never_ends() -> Outcome {
-    // An odd number is never zero.
+    // `y` stays odd, so it never becomes zero and the loop does not end.
     let text = "fn f(x: u32) -> u32 {
         var y = x;
         loop { y = (y + 2u) | 1u; if y == 0u { break; } }
@@ -95,15 +100,18 @@ fn a_shader_never_ends() -> Outcome {
         let started = Instant::now();
         match web.run(&built(text, "f")?, &[2]) {
             Err(error) if error.message.contains("did not answer") => {}
-            found => return Err(format!("{api:?}: {found:?}").into()),
+            found => {
+                return Err(format!("{api:?}: expected `did not answer`, found {found:?}").into());
+            }
         }
-        assert!(started.elapsed() < 3 * SHORT, "{api:?}: {:?}", started.elapsed());
+        let took = started.elapsed();
+        assert!(took < 3 * SHORT, "{api:?}: giving up a shader that never ends took {took:?}");
         doubles(&mut web)?;
     }
     Ok(())
 }
 
-/// Where the process that draws ends, the next draw gets another.
+/// If the browser's GPU process ends, the next draw starts another one.
 fn the_device_is_lost() -> Outcome {
     for api in APIS {
         let known: Arc<Mutex<Weak<Browser>>> = Arc::default();
@@ -116,7 +124,7 @@ fn the_device_is_lost() -> Outcome {
         let mut web = Web::open_in(Box::new(start), api, SHORT)?;
         doubles(&mut web)?;
         let browser = known.lock().unwrap().upgrade().ok_or("the browser is not kept")?;
-        // It has no answer: what would give it is gone.
+        // This command has no answer: the process that would send it has ended.
         let _ = browser.command("Browser.crashGpuProcess", serde_json::json!({}));
         drop(browser);
         doubles(&mut web).map_err(|error| format!("{api:?}: {error:?}"))?;
@@ -130,7 +138,7 @@ fn lamplight(arguments: &[&str]) -> Command {
     command
 }
 
-/// Without a browser the command says what to install.
+/// Without a browser, the command ends with exit code 4 and says what to install.
 fn no_browser() -> Outcome {
     let nothing = tempfile::tempdir()?;
     for executor in ["webgpu", "webgl2"] {
@@ -139,13 +147,13 @@ fn no_browser() -> Outcome {
         let words = String::from_utf8_lossy(&said.stderr);
         assert_eq!(said.status.code(), Some(4), "{words}");
         for expected in ["`chromium` is not installed", "apt-get install chromium"] {
-            assert!(words.contains(expected), "{words}");
+            assert!(words.contains(expected), "{executor}: expected `{expected}` in:\n{words}");
         }
     }
     Ok(())
 }
 
-/// Killed in the middle of its work, the command leaves neither a browser nor its folder behind.
+/// A command that is killed while it works leaves neither a browser nor the browser's folder behind.
 fn nothing_stays() -> Outcome {
     let folder = tempfile::tempdir()?;
     let holds = |what: &str| {
@@ -169,6 +177,6 @@ fn nothing_stays() -> Outcome {
     assert!(within("profile", true), "no browser was started");
     child.kill()?;
     child.wait()?;
-    assert!(within("", false), "something stays in {}", folder.path().display());
+    assert!(within("", false), "the browser's files stay in {}", folder.path().display());
     Ok(())
 }

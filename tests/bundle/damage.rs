@@ -1,10 +1,11 @@
-//! Bundles that are damaged, cut or of another version.
+//! Bundles that are damaged, cut short, or of another version. Loading one must not panic, and
+//! verifying it must notice.
 
 use lamplight::bundle::{Bundle, Error, Target, pack, write_directory};
 
 use super::{Outcome, check, small};
 
-/// A generator good enough to choose positions: xorshift.
+/// A random number below a bound, by xorshift, which is good enough to choose positions.
 fn random(state: &mut u64, below: usize) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -16,16 +17,16 @@ pub fn flips() -> Outcome {
     let packed = pack(&small())?;
     let mut state = 0x1234_5678_9abc_def1;
     for round in 0..2_000 {
-        // The header by every byte, the rest at random.
+        // Every byte of the header, then bytes at random.
         let at = if round < 300 { round } else { random(&mut state, packed.len()) };
         let mut damaged = packed.clone();
         damaged[at] ^= 1 << random(&mut state, 8);
-        use_all(damaged, &format!("byte {at}"))?;
+        use_all(damaged, &format!("a flipped bit in byte {at}"))?;
     }
     Ok(())
 }
 
-/// Loading must not panic, whatever it gives; verifying must notice.
+/// Loads, looks up and reads all of a damaged file. None of these may panic, and `verify` must fail.
 fn use_all(bytes: Vec<u8>, what: &str) -> Outcome {
     let Ok(bundle) = Bundle::from_bytes(bytes) else { return Ok(()) };
     if let Ok(shader) = bundle.program("forward").and_then(|program| program.shader("fs_main")) {
@@ -41,13 +42,14 @@ pub fn truncations() -> Outcome {
     let mut state = 0xdead_beef_0bad_cafe;
     for round in 0..500 {
         let length = if round < 300 { round } else { random(&mut state, packed.len()) };
-        use_all(packed[..length].to_vec(), &format!("cut to {length}"))?;
+        use_all(packed[..length].to_vec(), &format!("cut to {length} bytes"))?;
     }
-    use_all([packed.as_slice(), b"x"].concat(), "one byte more")?;
+    use_all([packed.as_slice(), b"x"].concat(), "one byte was added")?;
     let folder = tempfile::tempdir()?;
     let empty = folder.path().join("empty");
     std::fs::write(&empty, b"")?;
-    check(matches!(Bundle::open(empty), Err(Error::Corrupt { .. })), "an empty file was opened")
+    let opened = Bundle::open(empty);
+    check(matches!(opened, Err(Error::Corrupt { .. })), "an empty file should be corrupt")
 }
 
 pub fn damaged_directories() -> Outcome {
@@ -63,7 +65,8 @@ pub fn damaged_directories() -> Outcome {
             damaged[random(&mut state, manifest.len())] ^= 1 << random(&mut state, 8);
         }
         std::fs::write(folder.path().join("manifest.json"), &damaged)?;
-        check(Bundle::open(folder.path()).is_err(), "damage of the manifest was not noticed")?;
+        let what = format!("round {round}: damage of the manifest was not noticed");
+        check(Bundle::open(folder.path()).is_err(), &what)?;
     }
     std::fs::write(folder.path().join("manifest.json"), &manifest)?;
     let bundle = Bundle::open(folder.path())?;
@@ -83,7 +86,7 @@ pub fn versions() -> Outcome {
     packed[8] = 9;
     check(
         matches!(Bundle::from_bytes(packed), Err(Error::Version { found: 9, known: 1 })),
-        "a file of version 9 was read",
+        "a file of version 9 should be refused with both versions",
     )?;
     let folder = tempfile::tempdir()?;
     std::fs::write(
@@ -92,6 +95,6 @@ pub fn versions() -> Outcome {
     )?;
     check(
         matches!(Bundle::open(folder.path()), Err(Error::Version { found: 9, known: 1 })),
-        "a manifest of version 9 was read",
+        "a manifest of version 9 should be refused with both versions",
     )
 }

@@ -14,12 +14,12 @@ pub fn schema() -> Outcome {
     conforms(&schema, &schema, &manifest, "manifest")
 }
 
-/// The part of JSON Schema that the published schema uses.
+/// Checks a value against a schema, for the part of JSON Schema that the published schema uses.
 pub fn conforms(root: &Value, schema: &Value, value: &Value, place: &str) -> Outcome {
     if let Some(name) = schema["$ref"].as_str() {
         return conforms(
             root,
-            root.pointer(&name[1..]).ok_or("a reference leads nowhere")?,
+            root.pointer(&name[1..]).ok_or_else(|| format!("{place}: no definition `{name}`"))?,
             value,
             place,
         );
@@ -33,17 +33,20 @@ pub fn conforms(root: &Value, schema: &Value, value: &Value, place: &str) -> Out
         _ => true,
     };
     check(is_type, &format!("{place} has the wrong type"))?;
-    check(schema.get("const").is_none_or(|only| only == value), place)?;
+    check(
+        schema.get("const").is_none_or(|only| only == value),
+        &format!("{place} is {value}, the schema allows only {}", schema["const"]),
+    )?;
     check(
         schema["enum"].as_array().is_none_or(|known| known.contains(value)),
-        &format!("{place}: {value}"),
+        &format!("{place} is {value}, the schema allows {}", schema["enum"]),
     )?;
     for name in schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str) {
         check(value.get(name).is_some(), &format!("{place} has no {name}"))?;
     }
     for (name, member) in value.as_object().into_iter().flatten() {
         let known = schema["properties"].get(name).unwrap_or(&schema["additionalProperties"]);
-        check(known != &Value::Bool(false), &format!("{place} has an unknown {name}"))?;
+        check(known != &Value::Bool(false), &format!("{place} has an unknown member {name}"))?;
         conforms(root, known, member, &format!("{place}.{name}"))?;
     }
     value

@@ -1,4 +1,5 @@
-//! Inputs that mean harm: the command ends in good order, soon and without a flood of words.
+//! Hostile inputs: the command ends with an ordinary exit code, within a time limit, and prints a
+//! bounded amount of text.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -17,11 +18,12 @@ pub fn trials() -> impl Iterator<Item = Trial> {
     })
 }
 
-/// The most that a hostile input may take, with room for a slow machine; and the most it may say.
+/// The longest time that a hostile input may take, with room for a slow machine.
 const PATIENCE: Duration = Duration::from_secs(20);
+/// The most bytes that the command may print about it.
 const SAID: usize = 64 << 10;
 
-/// Ends in good order, whatever the answer, soon and without a flood of words.
+/// The command accepts or refuses the input. It does not panic, and is neither slow nor verbose.
 fn survives(file: &str, text: &str) -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     fs::write(folder.path().join(file), text)?;
@@ -36,12 +38,16 @@ fn survives(file: &str, text: &str) -> Result<(), Failed> {
     let code = output.status.code().ok_or("killed by a signal")?;
     let said = String::from_utf8_lossy(&output.stderr);
     if code > 1 || said.contains("panicked") {
-        return Err(
-            format!("exit code {code}: {}", said.chars().take(2000).collect::<String>()).into()
-        );
+        return Err(format!(
+            "{line}: exit code {code}: {}",
+            said.chars().take(2000).collect::<String>()
+        )
+        .into());
     }
     if said.len() > SAID || start.elapsed() > PATIENCE {
-        return Err(format!("{} bytes said, {:?}", said.len(), start.elapsed()).into());
+        let (bytes, took) = (said.len(), start.elapsed());
+        let bounds = format!("at most {SAID} bytes in {PATIENCE:?}");
+        return Err(format!("{line}: printed {bytes} bytes in {took:?}, expected {bounds}").into());
     }
     Ok(())
 }
@@ -50,7 +56,7 @@ fn numbered(count: usize, form: impl Fn(usize) -> String) -> String {
     (0..count).map(form).collect()
 }
 
-/// Expressions, types and blocks within each other.
+/// Expressions, types and blocks that are nested deeply.
 fn nesting() -> Vec<Case> {
     vec![
         ("blocks", "x.wesl", format!("fn a() {}{}", "{".repeat(100_000), "}".repeat(100_000))),
@@ -69,7 +75,7 @@ fn nesting() -> Vec<Case> {
     ]
 }
 
-/// Conditions, of more terms and branches than anyone writes.
+/// Conditions with very many terms or branches.
 fn conditions() -> Vec<Case> {
     vec![
         ("attributes", "x.wesl", format!("fn f() {{{}}}", "@if(a) ".repeat(50_000))),
@@ -117,7 +123,7 @@ fn imports() -> Vec<Case> {
     ]
 }
 
-/// The same, very often.
+/// The same thing repeated very often.
 fn floods() -> Vec<Case> {
     vec![
         ("one long line", "x.wesl", format!("fn f() {{ let x = {}a; }}", "a + ".repeat(150_000))),
@@ -205,7 +211,7 @@ fn packages() -> Vec<Case> {
     ]
 }
 
-/// Each macro twice the one before: 2^40 tokens.
+/// Each macro expands to the previous one twice, which makes 2^39 tokens.
 fn bomb() -> String {
     let doubled: String =
         (1..40).map(|i| format!("#define M{i} M{} M{}\n", i - 1, i - 1)).collect();

@@ -1,7 +1,8 @@
-//! The shader library through the `wesl` crate: whoever uses that composer can use the library.
+//! Composes the shader library with the `wesl` crate too. So users of that composer can use the
+//! library.
 //!
-//! Our conditions over enum axes are an addition to WESL: the crate gets them as one boolean a
-//! value, `shadow == vsm` as `shadow_is_vsm`.
+//! Conditions over enum axes are our addition to WESL. For the crate they are translated to one flag
+//! for each value: `shadow == vsm` becomes `shadow_is_vsm`.
 
 use lamplight::compose::Mangle;
 use lamplight::permute::{Assignment, Program, Setting, Settings, cover};
@@ -12,7 +13,8 @@ use libtest_mimic::{Failed, Trial};
 use super::normal::{normal, normal_functions};
 use super::peer::{Files, Flags, Peer, lamplight_with};
 
-/// Permutations of one program: evenly spread over those that cover all pairs of values.
+/// The number of permutations of one program, taken evenly from those that cover all pairs of
+/// values.
 const POINTS: usize = 48;
 
 pub fn trials() -> Vec<Trial> {
@@ -41,7 +43,7 @@ fn package(name: &str) -> Files {
         .collect()
 }
 
-/// A module as the root: all of its functions must mean the same.
+/// Composes a module as the root. All of its functions must have the same meaning in both texts.
 fn module(path: &str) -> Result<(), Failed> {
     let files = package("");
     let functions: Vec<String> = text(path)
@@ -59,7 +61,8 @@ fn module(path: &str) -> Result<(), Failed> {
     }
 }
 
-/// A program as a user has it: a file of their own that imports from the package `lamplight`.
+/// Composes a program as a user would: a file of their own that imports from the package
+/// `lamplight`.
 fn program(program: &Program) -> Result<(), Failed> {
     let Some(file) = &program.wesl else { return Ok(()) };
     let own = text(&file.path).replace("package::", "lamplight::");
@@ -86,7 +89,7 @@ fn program(program: &Program) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Each comparison within a condition as a flag.
+/// The text, with each comparison in a condition translated to a flag.
 fn booleans(text: &str) -> String {
     let mut output = String::new();
     for (index, part) in text.split("if(").enumerate() {
@@ -96,7 +99,7 @@ fn booleans(text: &str) -> String {
         }
         let end = end_of_condition(part);
         output += "if(";
-        // Not in the runtime's `if (`, which has a blank.
+        // `if (` with a blank is an `if` of the shader, not a condition of WESL.
         output += &comparisons(&part[..end]);
         output += &part[end..];
     }

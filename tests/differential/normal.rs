@@ -1,5 +1,6 @@
-//! One canonical text for all texts of one meaning: declarations in the order of their first use
-//! from an entry point, names given by that order, comments, spans and unused parts gone.
+//! Gives texts of the same meaning the same canonical text. Its declarations are in the order of
+//! their first use from an entry point, and named by that order. Comments and unused parts are left
+//! out.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write as _;
@@ -38,8 +39,8 @@ pub fn normal_functions(text: &str, names: &[String]) -> Result<String, String> 
     }))
 }
 
-/// Takes away braces that are only a scope: names differ in any case once [`rename`] ran, and this
-/// version of `wesl` keeps the braces of `@if(...) { }`, which the specification takes away.
+/// Removes braces that are only a scope. The specification removes the braces of `@if(...) { }`, and
+/// this version of `wesl` keeps them. That is safe here, since [`rename`] makes all names unique.
 fn flatten_all(module: &mut Module) {
     for (_, function) in module.functions.iter_mut() {
         flatten(&mut function.body);
@@ -68,7 +69,7 @@ fn flatten(block: &mut Block) {
         if !matches!(statement, Statement::Block(_)) {
             block.push(statement, span);
         }
-        // What follows is never reached.
+        // Statements after this one are never reached.
         if matches!(
             block.last(),
             Some(
@@ -100,8 +101,8 @@ fn entry(module: &Module, index: usize) -> Result<String, String> {
     Ok(ordered(&text, |declaration| is_entry(declaration).then_some(0)))
 }
 
-/// Names that are unique, so that naga's writer keeps them, and that [`ordered`] knows again.
-/// Members and entry points keep theirs: they are the same in both.
+/// Gives everything a unique name, so that naga's writer keeps it and [`ordered`] recognises it.
+/// Members and entry points keep their names, which are the same in both texts.
 fn rename(module: &mut Module) {
     let named: Vec<_> = module
         .types
@@ -150,13 +151,13 @@ fn global(kind: &str, place: usize) -> String {
     format!("{GLOBAL}{kind}_{}", letters(place))
 }
 
-/// naga's writer adds to names that end in a digit.
+/// The number as letters: naga's writer adds an underscore to names that end in a digit.
 fn letters(number: usize) -> String {
     number.to_string().bytes().map(|digit| char::from(digit - b'0' + b'a')).collect()
 }
 
-/// The declarations of naga's output, from the roots on, names replaced by order of use; `root`
-/// gives a root its place among them.
+/// The declarations of naga's output in the order of use from the roots, with names replaced by that
+/// order. `root` gives the position of a root, and nothing for other declarations.
 fn ordered(text: &str, root: impl Fn(&str) -> Option<usize>) -> String {
     let declarations = declarations(text);
     let mut roots: Vec<(usize, &str)> =
@@ -185,7 +186,7 @@ fn ordered(text: &str, root: impl Fn(&str) -> Option<usize>) -> String {
     output
 }
 
-/// Top-level parts: each ends with the `;` or `}` that closes it.
+/// The top-level declarations. Each ends with the `;` or `}` that closes it.
 fn declarations(text: &str) -> Vec<&str> {
     let (mut found, mut depth, mut start) = (Vec::new(), 0, 0);
     for (at, byte) in text.bytes().enumerate() {
@@ -203,7 +204,7 @@ fn declarations(text: &str) -> Vec<&str> {
     found
 }
 
-/// Words and what is between them, in order.
+/// The text divided into words and what is between them, in order.
 fn pieces(text: &str) -> impl Iterator<Item = &str> {
     let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
     let mut rest = text;
@@ -216,7 +217,7 @@ fn pieces(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The global name that a declaration is of: its first.
+/// The name that a declaration defines: the first global name in it.
 fn defined(declaration: &str) -> Option<&str> {
     pieces(declaration).find(|piece| piece.starts_with(GLOBAL))
 }

@@ -1,4 +1,4 @@
-//! The same tree through both composers.
+//! Composes the same tree with our composer and with the `wesl` crate.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -11,13 +11,13 @@ use lamplight::source::{Memory, Package, SourceSet};
 use wesl::ModulePath;
 use wesl::syntax::PathOrigin;
 
-/// Files by package and path, the author's own package without a name.
+/// Files by package and path. The name of the author's own package is empty.
 pub type Files = BTreeMap<(String, String), String>;
 
 /// Feature flags of a permutation.
 pub type Flags = BTreeMap<String, bool>;
 
-/// Our text, or our diagnostics as people see them.
+/// Our text, or our diagnostics as users see them.
 pub fn lamplight(
     files: &Files,
     root: &str,
@@ -55,18 +55,19 @@ pub fn lamplight_with(
         .map_err(|problems| render(&sources, &problems, Form::Human))
 }
 
-/// The `wesl` crate, set up once for a tree.
+/// The composer of the `wesl` crate, set up once for a tree.
 pub struct Peer {
     compiler: wesl::Wesl<wesl::VirtualResolver<'static>>,
 }
 
 impl Peer {
-    /// All that its documentation calls standard: imports, conditions, stripping, escaped names.
+    /// With the features that its documentation calls standard: imports, conditions, removal of
+    /// unused declarations, escaped names.
     pub fn new(files: &Files) -> Self {
         Self::with(files, wesl::CompileOptions::default())
     }
 
-    /// For modules without entry points.
+    /// Keeps every declaration of the root, for modules without entry points.
     pub fn keeping_root(files: &Files) -> Self {
         Self::with(
             files,
@@ -86,7 +87,7 @@ impl Peer {
         Self { compiler }
     }
 
-    /// Its text, or its error.
+    /// The crate's text, or its error.
     pub fn compose(&mut self, root: &str, flags: &Flags) -> Result<String, String> {
         for (name, on) in flags {
             self.compiler.set_feature(name, *on);

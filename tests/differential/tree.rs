@@ -1,5 +1,5 @@
-//! Generated module trees: packages, every form of import, conditions wherever WESL has them,
-//! colliding and shadowed names. A seed always gives the same tree.
+//! Generates random module trees: packages, every form of import, conditions wherever WESL allows
+//! them, and colliding and shadowed names. A seed always gives the same tree.
 
 mod imports;
 mod random;
@@ -14,12 +14,12 @@ pub use random::Random;
 use imports::Imports;
 use writer::Writer;
 
-/// A tree that both composers should read alike.
+/// A tree that should have the same meaning for both composers.
 pub struct Tree {
     pub files: Files,
     /// Path of the root module.
     pub root: &'static str,
-    /// Permutations to compose.
+    /// The permutations to compose, each as its flags.
     pub flags: Vec<Flags>,
 }
 
@@ -82,7 +82,7 @@ pub fn tree(seed: u64) -> Tree {
     Tree { files, root: ROOT, flags }
 }
 
-/// Number 0 is the root.
+/// Package and path of a module. Number 0 is the root.
 fn file(module: usize) -> (String, String) {
     let (package, path) = if module == 0 { ("", ROOT) } else { MODULES[module - 1] };
     (package.to_owned(), path.to_owned())
@@ -99,7 +99,8 @@ enum Kind {
     Real,
     /// `const NAME = 4`.
     Count,
-    /// A function of that many numbers, perhaps with a structure after them.
+    /// A function of `arity` numbers. If `shape` is set, a structure (that item) is its last
+    /// parameter.
     Function { arity: usize, shape: Option<usize> },
     /// Has a member `b: f32`.
     Structure,
@@ -115,12 +116,13 @@ struct Item {
     module: usize,
     name: &'static str,
     kind: Kind,
-    /// The item exists, and may be used, only where this holds.
+    /// The item exists, and may be used, only if this condition holds.
     guard: Option<String>,
     id: usize,
 }
 
-/// Each may use those before it, whatever module they are in: modules import each other in circles.
+/// Random items. Each may use the items before it, in whatever module they are, so modules import
+/// each other in cycles.
 fn items(random: &mut Random, modules: usize) -> Vec<Item> {
     let mut taken: BTreeSet<(usize, &str)> = BTreeSet::new();
     let mut items: Vec<Item> = Vec::new();
@@ -148,7 +150,8 @@ fn items(random: &mut Random, modules: usize) -> Vec<Item> {
     items
 }
 
-/// The root's package may import the others; they import themselves.
+/// Whether a module may import another. The root's package may import all packages, and any other
+/// package only itself.
 fn reaches(from: usize, to: usize) -> bool {
     let (from, to) = (file(from).0, file(to).0);
     from == to || from.is_empty()

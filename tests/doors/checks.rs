@@ -1,4 +1,5 @@
-//! What `check` says of a function that is off, and of one that nobody checks.
+//! What `check` says of a function with wrong results, of wrong cases, and of functions without a
+//! case.
 
 use std::fs;
 
@@ -28,7 +29,8 @@ fn package(cases: &[&str]) -> Result<Package, libtest_mimic::Failed> {
     Package::new(&[("below/light.wesl", MODULE), ("below/light.toml", &cases.concat())])
 }
 
-/// File and line of the case, a code, a message of one line; in every form and every report.
+/// A failure has the file and line of its case, a code, and a message of one line. This holds for
+/// every form of diagnostics and every report, so that editors and CI can show the place.
 fn places() -> Outcome {
     let package = package(&[LAW, CASE])?;
     let human = package.run("check below/light.toml --report out")?.ends(3)?;
@@ -51,6 +53,7 @@ fn places() -> Outcome {
     equal(junit.contains("file=\"below/light.toml\" line=\"7\""), true)
 }
 
+/// A broken law is told with the input and the result, and not with values of our own types.
 fn laws() -> Outcome {
     let run = package(&[LAW])?.run("check below/light.toml")?.ends(3)?;
     let words = ["the law `range` is broken 7 times: x = 0.4000000059604645 gives 1.2"];
@@ -58,7 +61,8 @@ fn laws() -> Outcome {
     Ok(())
 }
 
-/// The tolerance grows with x, so the input nearest to its tolerance is not the one furthest off.
+/// The report has the largest error as well as the error that is worst against its tolerance. They
+/// belong to different inputs here, since the tolerance grows with x.
 fn worst_error() -> Outcome {
     let module = "fn off(x: f32) -> f32 { return x + select(1e-6, 1e-4, x > 50.0); }\n";
     let case = "[[case]]\nfunction = \"off\"\nformula = \"x\"\ntolerance = { scaled = { by = \"x*x\", ulp = 4 }, abs = 1e-5 }\n\
@@ -75,6 +79,7 @@ fn worst_error() -> Outcome {
     Ok(())
 }
 
+/// Failures come first on the page of a report, whatever the names of the functions.
 fn page() -> Outcome {
     let more = "[[case]]\nfunction = \"a_fine_one\"\noracle = \"eval\"\ninputs = { x = 1 }\n";
     let package = Package::new(&[
@@ -83,7 +88,7 @@ fn page() -> Outcome {
     ])?;
     package.run("check light.toml --report out")?.ends(3)?;
     let page = fs::read_to_string(package.path("out/index.html"))?;
-    let at = |text: &str| page.find(text).ok_or_else(|| format!("no `{text}`"));
+    let at = |text: &str| page.find(text).ok_or_else(|| format!("the page has no `{text}`"));
     let order = [
         "<b class=\"bad\">fails</b> <a href=\"#light::half\">",
         "<section id=\"light::half\">",
@@ -99,7 +104,9 @@ fn page() -> Outcome {
     Ok(())
 }
 
-/// `[[1, 2]]` would be two vectors; whoever writes it means one.
+/// A list of numbers gives a vector parameter one vector for each number, with equal components.
+/// `[[1, 2]]` is ambiguous, since its author means one vector of two components. It is refused with
+/// both ways to write it.
 fn vectors() -> Outcome {
     let module = "fn sum(v: vec2f) -> f32 { return v.x + v.y; }\n";
     let case = |domain: &str| {
@@ -128,7 +135,7 @@ fn vectors() -> Outcome {
     Ok(())
 }
 
-/// Each function of WGSL that formulas have gives what WGSL gives.
+/// Each function that formulas share with WGSL gives the same results as WGSL.
 fn formulas() -> Outcome {
     let functions = [
         ("acos(x)", "acos(x)"),
@@ -176,7 +183,8 @@ fn formulas() -> Outcome {
     Ok(())
 }
 
-/// Helpers of a function that is checked are checked with it.
+/// `check` names functions that no case runs. A helper that a checked function calls is not named,
+/// since the case runs it too.
 fn untested() -> Outcome {
     let module = "fn inner(x: f32) -> f32 { return 2.0 * x; }
 fn outer(x: f32) -> f32 { return inner(x); }
@@ -205,14 +213,16 @@ float inner(float x) { return TWICE(x); }\n";
     Ok(())
 }
 
+/// A misspelt module gives the nearest name.
 fn names_of_modules() -> Outcome {
     let run = Package::new(&[])?.run("check lighting::spto")?.ends(1)?;
     run.says(&["did you mean `lighting::spot`?"])?;
     Ok(())
 }
 
-/// Stores to a matrix of two rows within a structure arrive, whole, by column and by number, in
-/// every target's own text.
+/// A store to a matrix of two rows within a structure is not lost in any target's text, whether the
+/// whole matrix, a column or one number is stored. HLSL has no such matrices in structures, so naga
+/// writes them as separate columns.
 fn narrow_matrices() -> Outcome {
     let module = "struct Held { before: f32, narrow: mat3x2f, after: f32 }
 fn held(x: f32) -> Held { var h: Held; h.before = x; h.after = x; return h; }

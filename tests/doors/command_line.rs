@@ -1,4 +1,4 @@
-//! What people expect of a command line.
+//! What users expect of `compose` and `compile`: files, pipes, entry points, depfiles, features.
 
 use std::fs;
 
@@ -25,7 +25,7 @@ const BOTH: &str = "import package::half::half;
 @fragment fn fs_main() -> @location(0) vec4f { return vec4f(half(2.0)); }\n";
 const HALF: &str = "fn half(x: f32) -> f32 { return 0.5 * x; }\n";
 
-/// One stage does not overwrite the other, in any target.
+/// Two stages of one name are written to different files, in every target.
 fn stages() -> Outcome {
     let package = Package::new(&[("lit.frag", FRAG), ("lit.vert", VERT)])?;
     package.run("compile lit.frag --target all -o out")?.ends(0)?;
@@ -41,7 +41,8 @@ fn is_output(entry: &fs::DirEntry) -> bool {
     entry.file_name().to_string_lossy().starts_with("lit.")
 }
 
-/// Several files in one run; what is wrong with one does not hide what is wrong with the next.
+/// Several files are compiled in one run. Errors in one do not hide those in the next, and then
+/// nothing is written.
 fn several_inputs() -> Outcome {
     let package = Package::new(&[
         ("lit.frag", FRAG),
@@ -59,6 +60,7 @@ fn several_inputs() -> Outcome {
     equal(package.path("wrong").exists(), false)
 }
 
+/// `--entry` selects an entry point, and an unknown one is refused with the names that exist.
 fn entry_points() -> Outcome {
     let package = Package::new(&[("both.wesl", BOTH), ("half.wesl", HALF)])?;
     let all = package.run("compile both.wesl --target wgsl -o out")?.ends(0)?;
@@ -70,7 +72,7 @@ fn entry_points() -> Outcome {
     Ok(())
 }
 
-/// What an engine needs comes as JSON, with or without a target.
+/// `--reflection` gives what an engine needs as JSON, with or without a target.
 fn reflection() -> Outcome {
     let package = Package::new(&[("both.wesl", BOTH), ("half.wesl", HALF)])?;
     let run = package.run("compile both.wesl --reflection --entry vs_main")?.ends(0)?;
@@ -82,7 +84,7 @@ fn reflection() -> Outcome {
     equal(json["targets"]["msl"]["entry_name"].is_string(), true)
 }
 
-/// The rule names every file that was read and every output, and make reads it.
+/// The rule of `--depfile` names every output and every file that was read, in the syntax of make.
 fn depfile() -> Outcome {
     let package = Package::new(&[
         ("my both.wesl", BOTH),
@@ -95,12 +97,13 @@ fn depfile() -> Outcome {
     let rule = fs::read_to_string(package.path("rule.d"))?;
     let expected = "out/my\\ both.vs_main.vert.wgsl out/my\\ both.fs_main.frag.wgsl: \\\n  half.wesl \\\n  my\\ both.wesl \\\n  wesl.toml\n";
     equal(rule.as_str(), expected)?;
-    // A second run may replace its own rule, and nobody else's file.
+    // A second run replaces the rule that the first wrote, but not a file that it did not write.
     equal(command.status()?.code(), Some(0))?;
     package.write("rule.d", "all: clean\n")?;
     equal(command.status()?.code(), Some(1))
 }
 
+/// `-` reads the shader from standard input. The language, and for GLSL the stage, must be given.
 fn standard_input() -> Outcome {
     let package = Package::new(&[("half.wesl", HALF)])?;
     let run = package.fed("compile - --lang wesl --target wgsl -o out", BOTH)?.ends(0)?;
@@ -115,7 +118,7 @@ fn standard_input() -> Outcome {
     Ok(())
 }
 
-/// A pipe is read like standard input: `<(...)` of a shell, `/dev/stdin`.
+/// A pipe with a path is read like standard input: `/dev/stdin`, or `<(...)` of a shell.
 fn pipes() -> Outcome {
     let package = Package::new(&[("half.wesl", HALF)])?;
     package.fed("compose /dev/stdin --lang wesl", BOTH)?.ends(0)?.says(&["fn half(x: f32)"])?;
@@ -128,7 +131,8 @@ const FLAG: &str = "@fragment fn m() -> @location(0) vec4f {
 }\n";
 const MACRO: &str = "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() {\n#if FOG\nc = vec4(0.5);\n#else\nc = vec4(1.0);\n#endif\n}\n";
 
-/// What an undeclared feature is, in both languages; an error where nobody says.
+/// `--features-default` says what an undeclared feature is, in both languages. Without it, and
+/// without a value for the feature, the feature is an error.
 fn features_default() -> Outcome {
     let package = Package::new(&[("a.wesl", FLAG), ("b.frag", MACRO)])?;
     for file in ["a.wesl", "b.frag"] {
@@ -143,14 +147,14 @@ fn features_default() -> Outcome {
         package.run(&format!("compose {file} --features-default error"))?.ends(1)?;
         package.run(&format!("compose {file}"))?.ends(1)?;
     }
-    // What is chosen is chosen.
+    // A value that is given for a feature goes before the default.
     let run =
         package.run("compile a.wesl --target wgsl --features-default on --feature fog=false")?;
     run.ends(0)?.is_silent_of(&["0.5"])?;
     Ok(())
 }
 
-/// The manifest says the same with a key, which options go before.
+/// The manifest has a key for the same. The option goes before the key.
 fn manifest_features() -> Outcome {
     let manifest =
         "[program.p]\nwesl = \"a.wesl\"\ntargets = [\"wgsl\"]\nfeatures_default = \"off\"\n";

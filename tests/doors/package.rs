@@ -1,7 +1,8 @@
-//! A folder with files, and the command run in it.
+//! A folder with files in which the command is run.
 
 use std::fs;
 use std::io::Write;
+use std::panic::Location;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -10,11 +11,12 @@ use tempfile::TempDir;
 
 use super::Outcome;
 
-/// Files in a folder of their own.
+/// Files in a temporary folder.
 pub struct Package(TempDir);
 
-/// What a command did.
+/// The result of a command.
 pub struct Run {
+    /// The exit code; -1 if a signal ended the command.
     pub code: i32,
     pub out: String,
     pub err: String,
@@ -78,36 +80,47 @@ impl From<Output> for Run {
 }
 
 impl Run {
-    /// It ended with that exit code.
+    /// Fails unless the command ended with this exit code.
+    #[track_caller]
     pub fn ends(self, code: i32) -> Result<Self, Failed> {
         if self.code == code {
             return Ok(self);
         }
-        Err(format!("exit code {}, expected {code}:\n{}{}", self.code, self.out, self.err).into())
+        let place = Location::caller();
+        let found = format!("exit code {}, expected {code}", self.code);
+        Err(format!("{place}: {found}:\n{}{}", self.out, self.err).into())
     }
 
-    /// It said all of these words, on either stream.
+    /// Fails unless the command printed all of these words, on either stream.
+    #[track_caller]
     pub fn says(self, words: &[&str]) -> Result<Self, Failed> {
+        let place = Location::caller();
         let all = format!("{}{}", self.out, self.err);
         match words.iter().find(|word| !all.contains(**word)) {
-            Some(word) => Err(format!("`{word}` is not said:\n{all}").into()),
+            Some(word) => Err(format!("{place}: expected `{word}` in the output:\n{all}").into()),
             None => Ok(self),
         }
     }
 
-    /// It said none of these words.
+    /// Fails if the command printed any of these words, on either stream.
+    #[track_caller]
     pub fn is_silent_of(self, words: &[&str]) -> Result<Self, Failed> {
+        let place = Location::caller();
         let all = format!("{}{}", self.out, self.err);
         match words.iter().find(|word| all.contains(**word)) {
-            Some(word) => Err(format!("`{word}` is said:\n{all}").into()),
+            Some(word) => {
+                Err(format!("{place}: expected no `{word}` in the output:\n{all}").into())
+            }
             None => Ok(self),
         }
     }
 }
 
+/// Fails, with the place of the call, unless two values are equal.
+#[track_caller]
 pub fn equal<T: PartialEq + std::fmt::Debug>(found: T, expected: T) -> Outcome {
     if found == expected {
         return Ok(());
     }
-    Err(format!("found {found:?}, expected {expected:?}").into())
+    Err(format!("{}: found {found:?}, expected {expected:?}", Location::caller()).into())
 }

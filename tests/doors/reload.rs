@@ -23,7 +23,8 @@ fn shader(clear: &str, foggy: &str) -> String {
     )
 }
 
-/// The loader says what changed, a reader keeps its generation, and an error changes nothing.
+/// `reload` says which permutations changed. Another reader that has the bundle open keeps the older
+/// bytes. A reload that fails changes nothing.
 fn reloads(out: &str) -> Outcome {
     let package =
         Package::new(&[("lamplight.toml", MANIFEST), ("p.wesl", &shader("0.5", "0.25"))])?;
@@ -41,10 +42,10 @@ fn reloads(out: &str) -> Outcome {
     equal(keys, vec![("fog", "changed")])?;
     equal(changed.permutations[0].parts.clone(), vec!["glsl330".to_owned(), "wgsl".to_owned()])?;
     equal(text(&bundle, "fog")?.contains("0.125"), true)?;
-    // The older generation is whole: all of it is there for one that reads on.
+    // A reader that does not reload still finds all of the older bundle.
     equal(text(&reader, "fog")?.contains("0.25"), true)?;
     equal(text(&reader, "default")?.contains("0.5"), true)?;
-    // A key that comes and one that goes.
+    // A permutation that is excluded is removed.
     package.write(
         "lamplight.toml",
         &MANIFEST.replace("[program.p.axis]", "exclude = [{ fog = true }]\n[program.p.axis]"),
@@ -55,7 +56,7 @@ fn reloads(out: &str) -> Outcome {
     damaged(&package, out, &mut bundle)
 }
 
-/// What cannot be read is no generation.
+/// A bundle that cannot be read is not loaded, and the one in memory stays.
 fn damaged(package: &Package, out: &str, bundle: &mut Bundle) -> Outcome {
     let path = package.path(out);
     let file = if path.is_dir() { path.join("manifest.json") } else { path };
@@ -73,7 +74,7 @@ fn text(bundle: &Bundle, key: &str) -> Result<String, libtest_mimic::Failed> {
     Ok(String::from_utf8(found.bytes)?)
 }
 
-/// The crate that is published has no tests, snapshots and pictures, and all that it is built of.
+/// The published crate has everything that it is built from, and no tests, snapshots or pictures.
 fn package_is_light() -> Outcome {
     let root = crate::snapshot::root();
     let output = std::process::Command::new(env!("CARGO"))

@@ -1,4 +1,4 @@
-//! Which package a file belongs to, whatever command asks and from wherever.
+//! A file belongs to the same package for every command, in whichever folder the command is run.
 
 use super::package::{Package, equal};
 use super::{Case, Outcome};
@@ -39,7 +39,7 @@ fn package(more: &[(&str, &str)]) -> Result<Package, libtest_mimic::Failed> {
     Package::new(&[&files, more].concat())
 }
 
-/// The package is found from a folder below its root, and files keep short names.
+/// The package is found from a folder below its root, and messages name files without `..`.
 fn from_inside() -> Outcome {
     let package = package(&[])?;
     let composed = package.run_in("shaders/light", "compose one.wesl")?.ends(0)?;
@@ -54,7 +54,8 @@ fn from_inside() -> Outcome {
     Ok(())
 }
 
-/// The root that `wesl.toml` declares counts for a manifest beside it, and its axes for `compile`.
+/// `gen` uses the root that `wesl.toml` declares beside the manifest, and `compile` uses the axes of
+/// that manifest. So both give the same text.
 fn beside_the_manifest() -> Outcome {
     let package = package(&[])?;
     package.run("gen --no-cache")?.ends(0)?.says(&["surface: 2 permutations"])?;
@@ -79,7 +80,7 @@ fn without_wesl_toml() -> Outcome {
     equal(shipped.ends(0)?.out, alone.ends(0)?.out)
 }
 
-/// A manifest cannot name what lies outside of the root.
+/// A manifest cannot name a file outside of the package's root.
 fn outside() -> Outcome {
     let package = package(&[("lamplight.toml", &MANIFEST.replace("shaders/", ""))])?;
     let run = package.run("gen --no-cache")?.ends(1)?;
@@ -87,7 +88,7 @@ fn outside() -> Outcome {
     Ok(())
 }
 
-/// Commands over a manifest take the nearest one, and not the library's where there is one.
+/// Commands that need a manifest take the nearest one of the user's, and not the library's own.
 fn nearest_manifest() -> Outcome {
     let package = package(&[])?;
     for command in ["variants", "keys --lang rust", "gen --no-cache -o /dev/null/no"] {
@@ -102,7 +103,7 @@ fn nearest_manifest() -> Outcome {
     Ok(())
 }
 
-/// Files have the names that an editor opens, those of dependencies too.
+/// Messages name files, also those of dependencies, by paths that an editor can open.
 fn names_of_files() -> Outcome {
     let package = Package::new(&[
         (

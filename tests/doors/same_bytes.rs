@@ -1,4 +1,5 @@
-//! `compile` gives the very bytes that `gen` ships for the same settings.
+//! `compile` gives exactly the bytes that `gen` ships for the same settings. Otherwise, what a user
+//! looks at with `compile` would not be what the engine loads.
 
 use std::path::Path;
 use std::process::Command;
@@ -16,7 +17,7 @@ use crate::snapshot;
 
 pub const CASES: &[Case] = &[("compile_is_gen", compile_is_gen)];
 
-/// Permutations of the library's programs.
+/// The programs of the library, and permutations that are compared.
 const PERMUTATIONS: &[(&str, &str)] = &[
     ("forward", "default"),
     ("forward", "frequency=vertex,lights=point,max_lights=1"),
@@ -28,7 +29,7 @@ const PERMUTATIONS: &[(&str, &str)] = &[
     ("moments", "default"),
 ];
 
-/// Root modules in a file name's stem, with the stage of GLSL's.
+/// The name of a stage, and the end of a GLSL root file's name for it.
 const STAGES: &[(&str, &str)] = &[("vert", ".vert.glsl"), ("frag", ".frag.glsl")];
 
 fn compile_is_gen() -> Outcome {
@@ -40,7 +41,8 @@ fn compile_is_gen() -> Outcome {
         glsl += found.1;
     }
     if outputs < 100 || glsl < 40 {
-        return Err(format!("only {outputs} outputs, {glsl} of them from GLSL").into());
+        let what = format!("compared {outputs} outputs, {glsl} of them from GLSL");
+        return Err(format!("{what}: expected at least 100 and 40").into());
     }
     Ok(())
 }
@@ -62,8 +64,8 @@ fn generated(program: &str, key: &str) -> Result<Bundle, Failed> {
     Ok(Bundle::from_bytes(pack(&made.contents)?)?)
 }
 
-/// Compiles the files of the program and looks up every output; how many there were, of which of
-/// GLSL.
+/// Compiles the files of a program and compares every output with the bundle's. Gives the number of
+/// outputs, and the number of those from GLSL.
 fn compare(bundle: &Bundle, program: &str, key: &str) -> Result<(usize, usize), Failed> {
     let folder = tempfile::tempdir()?;
     let known = bundle.program(program)?;
@@ -130,7 +132,7 @@ fn compile(file: &str, key: &str, entry: &str, out: &Path) -> Outcome {
     Err(String::from_utf8_lossy(&output.stderr).into_owned().into())
 }
 
-/// The bytes of the file for a target.
+/// The bytes of the file that `compile` wrote for a target.
 fn output(
     folder: &Path,
     file: &str,

@@ -1,4 +1,5 @@
-//! What shader authors slip on: conditions, versions, names, marks at the start of files.
+//! Mistakes that shader authors make: in conditions, versions and names, and marks that editors
+//! put at the start of files.
 
 use super::package::Package;
 use super::{Case, Outcome};
@@ -23,7 +24,8 @@ fn shader(condition: &str) -> String {
     format!("{HEAD}{condition}\nc = vec4(0.5);\n#else\nc = vec4(1.0);\n#endif\n}}\n")
 }
 
-/// `#ifdef FOG` holds in every permutation, since a setting that is off is 0.
+/// `#ifdef FOG` holds in every permutation, since a setting that is off is defined as 0. A warning
+/// says so and shows the condition that was meant.
 fn always_defined() -> Outcome {
     let package = Package::new(&[("lamplight.toml", GLSL)])?;
     let told = [
@@ -48,7 +50,8 @@ fn always_defined() -> Outcome {
     Ok(())
 }
 
-/// A file may give a setting a value for compilers that know of none, and ask for its value.
+/// A file may define a default for compilers that do not know the setting, and may ask for the
+/// setting's value. Neither gives a warning.
 fn defaults() -> Outcome {
     let conditions =
         ["#ifndef FOG\n#define FOG 0\n#endif\n#if FOG", "#if FOG", "#if defined(FOG) && FOG"];
@@ -61,7 +64,8 @@ fn defaults() -> Outcome {
     Ok(())
 }
 
-/// Other compilers read a shader without `#version` as GLSL 1.10.
+/// A shader without `#version` gives a warning, since other compilers take it for GLSL 1.10. An
+/// included file does not need one.
 fn versions() -> Outcome {
     let package = Package::new(&[
         ("p.frag", "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(1.0); }\n"),
@@ -73,7 +77,8 @@ fn versions() -> Outcome {
     Ok(())
 }
 
-/// Editors of Windows put a mark before the text, in both languages and in manifests.
+/// Editors on Windows put a byte order mark before the text. It is accepted in both languages and in
+/// manifests, and does not move the places of messages.
 fn marks() -> Outcome {
     let wesl = "\u{feff}@fragment fn m() -> @location(0) vec4f { return vec4f(nothing); }\n";
     let manifest = format!("\u{feff}{GLSL}");
@@ -88,7 +93,8 @@ fn marks() -> Outcome {
     Ok(())
 }
 
-/// `linear_to_srgb` is called from the other end here, and its inverse has the nearer name.
+/// The library names conversions `RESULT_from_SOURCE`. For `linear_to_srgb`, the suggestion is
+/// `srgb_from_linear`, although the inverse function has the more similar name.
 fn conversions() -> Outcome {
     let text = "import lamplight::color::transfer::linear_to_srgb;
 @fragment fn m() -> @location(0) vec4f { return vec4f(linear_to_srgb(0.5)); }\n";
@@ -97,7 +103,8 @@ fn conversions() -> Outcome {
     Ok(())
 }
 
-/// The wrong name is underlined, once.
+/// A misspelt package or module is reported once, at the wrong name, although two names are imported
+/// from it.
 fn packages() -> Outcome {
     let use_it = "@fragment fn m() -> @location(0) vec4f { return vec4f(a() + b()); }\n";
     let wrong = [
@@ -114,7 +121,7 @@ fn packages() -> Outcome {
         let run =
             package.run("compose a.wesl --diagnostics short")?.ends(1)?.says(&[place, meant])?;
         if run.err.lines().count() != 1 {
-            return Err(run.err.into());
+            return Err(format!("`{import}`: expected one line, found:\n{}", run.err).into());
         }
     }
     Ok(())
@@ -122,7 +129,8 @@ fn packages() -> Outcome {
 
 const WESL: &str = "[program.p]\nwesl = \"p.wesl\"\ntargets = [\"wgsl\"]\n";
 
-/// A `spec` axis that is read as a constant is asked for: that is what such an axis is for.
+/// A `spec` axis that the shader reads as a constant does not give the warning that nothing reads
+/// it.
 fn spec_axes() -> Outcome {
     let package = Package::new(&[
         (
@@ -140,7 +148,8 @@ fn spec_axes() -> Outcome {
     Ok(())
 }
 
-/// A condition that the manifest's lists settle decides something as soon as they are longer.
+/// If only the manifest's lists make a condition constant, there is no warning about it: the
+/// condition matters as soon as the lists name more permutations.
 fn settled() -> Outcome {
     let text = "@fragment fn m(@location(0) x: f32) -> @location(0) vec4f {\n    @if(wrap) { return vec4f(fract(x)); }\n    return vec4f(x);\n}\n";
     let axis = "[program.p.axis]\nwrap = { values = [false, true] }\n";

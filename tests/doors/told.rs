@@ -1,4 +1,4 @@
-//! Nothing that matters happens without a word.
+//! Things that users must know of are reported, even if the command succeeds.
 
 use super::package::Package;
 use super::{Case, Outcome};
@@ -21,7 +21,7 @@ fn manifest(more: &str) -> String {
     )
 }
 
-/// `gen` says what the manifest's own lints say, again when there is nothing to do.
+/// `gen` reports the lints of the manifest, also in a second run that has nothing to do.
 fn manifest_warnings() -> Outcome {
     let always = manifest("") + "[[program.surface.constraint]]\nrequire = \"wrap || !wrap\"\n";
     let package = Package::new(&[("lamplight.toml", &always), ("main.wesl", MAIN)])?;
@@ -31,7 +31,8 @@ fn manifest_warnings() -> Outcome {
     Ok(())
 }
 
-/// An empty program is told as such, and nothing is said that only follows from it.
+/// A program without permutations gives a warning. Lints that only follow from its being empty are
+/// not reported.
 fn empty_programs() -> Outcome {
     let never = manifest("") + "[[program.surface.constraint]]\nrequire = \"wrap && !wrap\"\n";
     let package = Package::new(&[("lamplight.toml", &never), ("main.wesl", MAIN)])?;
@@ -48,7 +49,7 @@ fn empty_programs() -> Outcome {
     Ok(())
 }
 
-/// A usage list may name programs that the manifest has not: that is told once.
+/// A usage list that names a program which the manifest does not have gives one warning.
 fn unknown_usage() -> Outcome {
     let list = "surface wrap\nsurfaces wrap\nsurfaces default\n";
     let package = Package::new(&[
@@ -61,7 +62,7 @@ fn unknown_usage() -> Outcome {
         let words = ["warning[unknown-program]", "asked.txt:2:1", "did you mean `surface`?"];
         let run = run.says(&words)?;
         if run.err.matches("unknown-program").count() != 1 {
-            return Err(run.err.into());
+            return Err(format!("{command}: expected one warning, found:\n{}", run.err).into());
         }
     }
     Ok(())

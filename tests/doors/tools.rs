@@ -1,4 +1,4 @@
-//! Commands beside those that compile: a package to start from, lints, help, search.
+//! Commands that do not compile: `init`, `lint`, help, `list`, `show`, `export`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ pub const CASES: &[Case] = &[
     ("stores_of_this_build", stores),
 ];
 
-/// The package that `init` writes has nothing to complain about.
+/// The package that `init` writes passes `lint`, `check` and `gen` without a warning.
 fn init() -> Outcome {
     let package = Package::new(&[])?;
     package.run("init lamps")?.ends(0)?.says(&["lamps/lamplight.toml", "cd lamps"])?;
@@ -41,6 +41,7 @@ fn init() -> Outcome {
     equal(wesl.contains("name = \"lamps\""), true)
 }
 
+/// `init` writes nothing if one of its files exists already.
 fn init_twice() -> Outcome {
     let package = Package::new(&[("shaders/lamp.wesl", "// mine\n")])?;
     package.run("init")?.ends(1)?.says(&["`./shaders/lamp.wesl` is there already"])?;
@@ -50,7 +51,7 @@ fn init_twice() -> Outcome {
 
 const ROOT: &str = "[package]\nname = \"p\"\nedition = \"2026_pre\"\nroot = \".\"\n";
 
-/// Several mistakes in a run, none of which anything reaches.
+/// `lint` reports several mistakes in one run, also in modules and functions that nothing uses.
 fn lint_unreached() -> Outcome {
     let broken = "fn one() -> f32 { return nonsense; }
 fn two() -> f32 { return vec3f(1.0) + 2i; }
@@ -77,7 +78,7 @@ fn twice() {}\n";
     ];
     let run = run.says(&places)?.says(&["4 modules"])?.is_silent_of(&["fine.wesl:"])?;
     equal(run.err.lines().count() >= 5, true)?;
-    // One module, one folder, and the same from inside.
+    // `lint` of one module, of one folder, and of the package from a folder within it.
     package.run("lint fine.wesl")?.ends(0)?.says(&["1 module, 0 errors"])?;
     package.run("lint below --diagnostics short")?.ends(1)?.is_silent_of(&["main.wesl"])?;
     package.run_in("below", "lint --diagnostics short")?.ends(1)?.says(&["main.wesl:2:23"])?;
@@ -86,7 +87,7 @@ fn twice() {}\n";
     Ok(())
 }
 
-/// A flag that nothing declares is told, though nothing asks for it.
+/// A flag that nothing declares is an error, even in a function that no entry point calls.
 fn lint_flags() -> Outcome {
     let text = "fn f() -> f32 { @if(fgo) { return 1.0; } return 0.0; }\n";
     let package = Package::new(&[("wesl.toml", ROOT), ("a.wesl", text)])?;
@@ -101,7 +102,8 @@ fn lint_flags() -> Outcome {
     Ok(())
 }
 
-/// Types are looked at in every pair of values that a module may ask for.
+/// `lint` checks types in permutations that cover every pair of values that a module asks for. The
+/// mistake here exists only for one pair.
 fn lint_permutations() -> Outcome {
     let manifest = "[program.p]\nwesl = \"m.wesl\"\n[program.p.axis]\n\
         fog = { values = [false, true] }\nkind = { values = [\"none\", \"soft\"] }\n";
@@ -117,7 +119,8 @@ fn lint_permutations() -> Outcome {
     Ok(())
 }
 
-/// Files that others include are seen there, with what they leave to the includer.
+/// A file that others include is checked where it is included, with the macros that the including
+/// file defines.
 fn lint_glsl() -> Outcome {
     let package = Package::new(&[
         ("wesl.toml", ROOT),
@@ -146,7 +149,7 @@ fn examples() -> Outcome {
         .skip_while(|line| *line != "Commands:")
         .skip(1)
         .take_while(|line| !line.is_empty())
-        // Deeper lines go on with a description.
+        // Lines that are indented further continue a description.
         .filter_map(|line| line.strip_prefix("  ").filter(|line| !line.starts_with(' ')))
         .filter_map(|line| line.split_whitespace().next())
         .filter(|name| *name != "help")
@@ -169,7 +172,7 @@ fn examples() -> Outcome {
     Ok(())
 }
 
-/// Those that do not end, take too long for a trial that runs all of them, or need a driver.
+/// Whether an example does not end, takes too long for this trial, or needs a driver.
 fn is_slow(example: &str) -> bool {
     ["watch", "catalogue", "render", "cost"].iter().any(|slow| example.contains(slow))
 }
@@ -190,6 +193,7 @@ fn works(package: &Package, example: &str) -> Outcome {
     Err(format!("`{example}`: {}", String::from_utf8_lossy(&output.stderr)).into())
 }
 
+/// There are completions for five shells, and a manual page for each command.
 fn completions() -> Outcome {
     let package = Package::new(&[])?;
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
@@ -205,7 +209,7 @@ fn completions() -> Outcome {
     Ok(())
 }
 
-/// Colours where they are asked for, and in no file or pipe.
+/// Colours are printed if they are asked for, and otherwise not to a file or a pipe.
 fn colours() -> Outcome {
     let package = Package::new(&[("a.wesl", "fn f() { let a = ; }\n")])?;
     let escape = "\u{1b}[";
@@ -223,7 +227,7 @@ fn colours() -> Outcome {
     Ok(())
 }
 
-/// `eval`, `list` and `show` know the user's own package beside the library.
+/// `eval`, `list` and `show` know the user's own package as well as the library.
 fn own() -> Outcome {
     let package = Package::new(&[])?;
     package.run("init .")?.ends(0)?;
@@ -255,7 +259,7 @@ fn own() -> Outcome {
     Ok(())
 }
 
-/// A function with conditions is checked under the settings that are chosen.
+/// A function with conditions is checked with the features that the command line chooses.
 fn settings() -> Outcome {
     let case = "[[case]]\nfunction = \"f\"\nformula = \"2*x\"\ntolerance = { abs = 1e-6 }\n[case.inputs]\nx = [0, 1, 2]\n";
     let text = "fn f(x: f32) -> f32 {\n@if(double) { return 2.0 * x; }\n@else { return x; }\n}\n";
@@ -267,7 +271,7 @@ fn settings() -> Outcome {
     Ok(())
 }
 
-/// `show` searches for what is no path.
+/// `show` searches if its argument is not a path.
 fn search() -> Outcome {
     let package = Package::new(&[])?;
     let words = ["brdf::fresnel::f_schlick", "function", "module"];
@@ -279,7 +283,7 @@ fn search() -> Outcome {
     Ok(())
 }
 
-/// What is said to be JSON is JSON.
+/// `variants --keys --json` prints JSON.
 fn keys_as_json() -> Outcome {
     let package = Package::new(&[])?;
     package.run("init .")?.ends(0)?;
@@ -288,7 +292,8 @@ fn keys_as_json() -> Outcome {
     equal(json, serde_json::json!(["default", "fog"]))
 }
 
-/// What is wrong with one program, or with one function, does not hide what else is wrong.
+/// Errors in one program do not hide those in another, and errors in one function do not hide those
+/// in the next.
 fn all_programs() -> Outcome {
     let manifest = "[program.a]\nwesl = \"a.wesl\"\n[program.b]\nwesl = \"b.wesl\"\n";
     let package = Package::new(&[
@@ -306,8 +311,8 @@ fn all_programs() -> Outcome {
     Ok(())
 }
 
-/// A machine without a window system is nothing to complain about: Mesa's layers look for Wayland
-/// and would print errors of their own.
+/// Without a window system, checks on drivers pass and print nothing on standard error. Mesa's
+/// layers look for Wayland, and would print errors of their own.
 fn without_window() -> Outcome {
     let package = Package::new(&[
         ("half.wesl", "fn half(x: f32) -> f32 { return 0.5 * x; }\n"),
@@ -332,8 +337,8 @@ fn without_window() -> Outcome {
     Ok(())
 }
 
-/// Tools take the first condition that they know, so `types` comes before `import`; what is
-/// installed has its licence and its version.
+/// In an npm package, tools take the first condition of `exports` that they know. So `types` must be
+/// before `import`, or TypeScript finds no types. What is exported has its licence and version.
 fn npm_exports() -> Outcome {
     let package = Package::new(&[])?;
     package.run("export --form npm out")?.ends(0)?;
@@ -360,7 +365,7 @@ fn walk(folder: &Path) -> Result<Vec<PathBuf>, libtest_mimic::Failed> {
     Ok(files)
 }
 
-/// Help names the stores that the build has, and no others.
+/// The help names the stores that this build has, and no others.
 fn stores() -> Outcome {
     let package = Package::new(&[])?;
     package.run("gen --help")?.ends(0)?.says(&[lamplight::store::HELP])?;

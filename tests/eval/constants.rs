@@ -1,10 +1,11 @@
-//! Against naga's own constant evaluator: an expression as a constant, and computed at run time.
+//! Compares the evaluator with naga's constant evaluator. Each expression is written as a constant,
+//! which naga computes, and as a function, which the evaluator computes.
 
 use super::{near, program};
 use lamplight::eval::Machine;
 use libtest_mimic::{Failed, Trial};
 
-/// Result type, parameters, and an expression of them with the arguments it is tried on.
+/// The result's type, the parameter, an expression of it, and arguments.
 const CASES: &[(&str, &str, &str, &[&str])] = &[
     ("u32", "x: u32", "countOneBits(x)", &["0xf0f0u", "0u", "4294967295u"]),
     ("u32", "x: u32", "countLeadingZeros(x)", &["0xf0f0u", "0u", "1u"]),

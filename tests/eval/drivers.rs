@@ -1,5 +1,6 @@
-//! The evaluator against the drivers: over a sweep of every built-in, what a driver returns lies
-//! within the bound that value plus error gives.
+//! Compares the drivers with the evaluator. For a sweep of arguments of every built-in function, the
+//! driver's result must lie within the evaluator's error bound. If it does not, the bounds are wrong,
+//! and with them every verdict of `check`; or the driver is.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use libtest_mimic::{Failed, Trial};
 /// Steps of a sweep.
 const STEPS: u32 = 200;
 
-/// Further expressions of x in `sin(x)`'s manner, for which Rust has no function of its own.
+/// Further expressions of x. Rust has no function for them, so their meaning is not used.
 const MORE: &[One] = &[
     ("cross(vec3f(x, 1.0, 2.0), vec3f(2.0, x, -1.0)).z", |_| 0.0, -5.0, 5.0),
     ("reflect(vec2f(x, -1.0), vec2f(0.6, 0.8)).x", |_| 0.0, -5.0, 5.0),
@@ -39,7 +40,7 @@ const MORE: &[One] = &[
     ),
     ("f32(extractBits(u32(x), 2u, 5u) + insertBits(u32(x), 9u, 3u, 4u))", |_| 0.0, 0.0, 500.0),
     ("f32(i32(x) / 3 + (i32(x) << 2u) + (i32(x) >> 1u))", |_| 0.0, -500.0, 500.0),
-    // Of negative numbers GLSL leaves it open, and naga passes that on.
+    // GLSL does not define the remainder of negative numbers, and naga writes the operator as it is.
     ("f32(i32(x) % 4)", |_| 0.0, 0.0, 500.0),
     ("unpack2x16float(pack2x16float(vec2f(x, 1.0))).x", |_| 0.0, -5.0, 5.0),
     ("f32(pack4x8unorm(vec4f(x, 0.0, 0.0, 0.0)))", |_| 0.0, -0.5, 1.5),
@@ -61,7 +62,7 @@ const MORE: &[One] = &[
     ("f32(dot4I8Packed(u32(x) * 9999u, 67305985u))", |_| 0.0, 0.0, 500.0),
 ];
 
-/// The numeric built-ins of WGSL: each is in a sweep.
+/// The numeric built-in functions of WGSL. Each must be in a sweep.
 const BUILT_INS: &[&str] = &[
     "abs",
     "acos",
@@ -140,14 +141,14 @@ const BUILT_INS: &[&str] = &[
     "unpack4x8unorm",
 ];
 
-/// Where a driver strays further than the specification lets it: expression, executor, and the
-/// absolute error it may have on top. Mesa's arc sine is one polynomial over the whole range.
+/// Drivers with larger errors than the specification allows: expression, executor, and the absolute
+/// error that is allowed in addition. Mesa's arc sine is one polynomial over the whole range.
 const WAIVERS: &[(&str, &str, f64)] = &[("asin(x)", "gl", 4e-4)];
 
-/// What an executor of emitted files cannot be given: expression, executor, and why.
+/// What an executor cannot run: the start of the expression, the executor, and the reason.
 const LACKING: &[(&str, &str, &str)] =
     &[("quantizeToF16(x)", "msl", HALF), ("unpack2x16float(pack2x16float", "msl", HALF)];
-const HALF: &str = "numbers of 16 bits are no capability of modules that ship";
+const HALF: &str = "16-bit floats are not a capability of modules that ship";
 
 pub fn trials() -> Vec<Trial> {
     let drivers = executors::ALL
@@ -173,7 +174,7 @@ fn every_built_in() -> Result<(), Failed> {
     }
 }
 
-/// Sessions are opened, used and dropped on a thread of their own.
+/// Runs all sweeps on an executor. Its session is opened, used and dropped on a thread of its own.
 fn run(executor: &'static executors::Entry) -> Result<(), Failed> {
     let outcome = on_thread(|| {
         let mut session = executor.start()?;

@@ -1,5 +1,5 @@
-//! Every function of the shader library runs, and its f32 result stays inside of the bound that
-//! value plus error gives.
+//! The evaluator can run every function of the shader library, and the f32 result lies within the
+//! evaluator's error bound.
 
 use super::program;
 use lamplight::compose::{Keep, Options, wesl::compose};
@@ -9,7 +9,7 @@ use lamplight::resolve::{Packages, wesl::load};
 use lamplight::source::{Embedded, Files as _, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
-/// Inputs tried of each function.
+/// The number of inputs for each function.
 const INPUTS: u32 = 200;
 
 pub fn trials() -> Vec<Trial> {
@@ -45,7 +45,7 @@ fn check(path: &str) -> Result<(), Failed> {
     if failures.is_empty() { Ok(()) } else { Err(failures.into()) }
 }
 
-/// Runs the function on seeded inputs in f32 and in value plus error.
+/// Runs a function on pseudo-random inputs, in f32 and with error bounds, and compares.
 fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
     let function = program.signature(id).ok_or("no function")?;
     let (mut single, mut bound) =
@@ -74,7 +74,7 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
             if !inside {
                 let inputs: Vec<f32> = words.iter().map(|word| f32::from_bits(*word)).collect();
                 return Err(format!(
-                    "{inputs:?} gives {}, wanted {wanted:?}",
+                    "{inputs:?} gives {} in f32, outside of the bound {wanted:?}",
                     f32::from_bits(*found)
                 )
                 .into());

@@ -1,4 +1,5 @@
-//! The machine: coverage, places of findings, bounds of errors, GLSL, and what it refuses.
+//! The evaluator's machine: coverage, places of findings, error bounds, GLSL, and calls that it
+//! refuses.
 
 use super::program;
 use lamplight::eval::{Bounded, Branch, FindingKind, Machine, Number, Program};
@@ -15,6 +16,7 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
+/// Each branch counts how often it was taken, and has its place in the text.
 fn coverage() -> Result<(), Failed> {
     let text = "fn f(x: f32) -> f32 {\n if x > 0.0 {\n return 1.0;\n } else {\n return 2.0;\n }\n }\nfn g() {}";
     let program = program(text)?;
@@ -40,17 +42,19 @@ fn coverage() -> Result<(), Failed> {
         program.points().iter().find(|point| point.branch == Branch::Accept).ok_or("accept")?;
     assert_eq!(&text[accept.span.to_range().ok_or("span")?], "return 1.0;");
     machine.forget();
-    assert!(machine.hits().iter().all(|hits| *hits == 0));
+    assert!(machine.hits().iter().all(|hits| *hits == 0), "`forget` left {:?}", machine.hits());
     Ok(())
 }
 
+/// The sanitizer finds nothing until it is turned on, and then gives each finding once, with its
+/// place and how often it happened.
 fn places() -> Result<(), Failed> {
     let text = "fn f(x: f32) -> f32 { let y = x + 1.0; return 1.0 / (y - 1.0) + sqrt(y - 2.0); }";
     let program = program(text)?;
     let mut machine = Machine::<f64>::new(&program)?;
     let f = program.function("f").ok_or("f")?;
     machine.call(f, &[0.0])?;
-    assert!(machine.findings().is_empty());
+    assert!(machine.findings().is_empty(), "the sanitizer is off: {:?}", machine.findings());
     machine.sanitize(true);
     machine.call(f, &[0.0])?;
     machine.call(f, &[0.0])?;
@@ -59,7 +63,7 @@ fn places() -> Result<(), Failed> {
         .iter()
         .map(|finding| (finding.kind, &text[finding.span.to_range().unwrap()], finding.count))
         .collect();
-    // naga places a call at the name of what is called.
+    // naga gives a call of a built-in the place of its name.
     assert_eq!(
         found,
         [(FindingKind::DivisionByZero, "1.0 / (y - 1.0)", 2), (FindingKind::Domain, "sqrt", 2)]
@@ -67,7 +71,8 @@ fn places() -> Result<(), Failed> {
     Ok(())
 }
 
-/// What the specification allows `pow`: its own formula, worked out by hand.
+/// The bound of `pow` is the one that the specification allows, worked out by hand from its formula.
+/// Results without an error have the bound zero.
 fn bounds() -> Result<(), Failed> {
     let program = program(
         "fn f(x: f32, s: f32) -> f32 { return pow(x, s); }\nfn g(a: f32, b: f32) -> f32 { return a + b; }",
@@ -93,13 +98,15 @@ fn bounds() -> Result<(), Failed> {
             by_hand(x, s)
         );
     }
-    assert!(relative(0.9999, 4096.0)? > 1e-3);
+    let large = relative(0.9999, 4096.0)?;
+    assert!(large > 1e-3, "pow(0.9999, 4096): the relative bound {large:e} is too small");
     let g = program.function("g").ok_or("g")?;
     let sum = machine.call(g, &[Bounded::from_f64(0.5), Bounded::from_f64(0.25)])?[0];
     assert_eq!((sum.value(), sum.error()), (0.75, 0.0));
     Ok(())
 }
 
+/// A GLSL shader runs: functions, `inout` parameters, and `main` once its uniform is bound.
 fn glsl() -> Result<(), Failed> {
     let text = "#version 450
         layout(set = 0, binding = 0) uniform Block { vec4 tint; } block;
@@ -139,6 +146,8 @@ fn glsl() -> Result<(), Failed> {
     Ok(())
 }
 
+/// Calls with the wrong number of arguments, without a resource that is read, or with arrays that
+/// are too large each give an error and no panic.
 fn refusals() -> Result<(), Failed> {
     let program = program(
         "@group(0) @binding(0) var<uniform> u: vec4f;
@@ -177,6 +186,8 @@ fn refusals() -> Result<(), Failed> {
     Ok(())
 }
 
+/// The trips of loops are counted, and a call that exceeds the limit is stopped. The next call is
+/// not affected.
 fn loop_trips() -> Result<(), Failed> {
     let program = program(
         "fn f(n: i32) -> i32 { var s = 0; for (var i = 0; i < n; i++) { for (var j = 0; j < 3; j++) { s++; } } return s; }",
@@ -185,7 +196,7 @@ fn loop_trips() -> Result<(), Failed> {
     let f = program.function("f").ok_or("f")?;
     let mut result = Vec::new();
     machine.call_words(f, &[5], &mut result)?;
-    // Five trips and the one that ends the loop; four for each of the five inner loops.
+    // The outer loop has five trips and the one that ends it. Each of the five inner loops has four.
     assert_eq!((result.as_slice(), machine.trips()), ([15].as_slice(), 26));
     machine.loop_limit = 20;
     let stopped = machine.call_words(f, &[5], &mut result).map_err(|error| error.code.name);

@@ -1,4 +1,5 @@
-//! How many calls a second: not a test, run by `--ignored eval/speed`.
+//! Measures how many calls a second the evaluator makes. This is not a test: `--ignored eval/speed`
+//! runs it.
 
 use super::program;
 use lamplight::eval::{Bounded, Machine, Number};
@@ -35,6 +36,6 @@ fn rate<N: Number>(machine: &mut Machine<N>) -> Result<f64, Failed> {
         arguments[3] = N::from_f64(f64::from(step) / f64::from(CALLS));
         sum += machine.call(blinn_phong, &arguments)?[0].value();
     }
-    assert!(sum > 0.0);
+    assert!(sum > 0.0, "`blinn_phong` gave nothing but zeros");
     Ok(f64::from(CALLS) / start.elapsed().as_secs_f64())
 }

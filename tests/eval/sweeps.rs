@@ -1,13 +1,14 @@
-//! Built-ins over a sweep of arguments, against Rust's own functions, and the f32 run inside of
-//! the bound that value plus error gives.
+//! Compares built-in functions with Rust's own over a sweep of arguments. The f32 result must lie
+//! within the evaluator's error bound.
 
 use super::program;
 use lamplight::eval::{Bounded, Machine, Number};
 use libtest_mimic::{Failed, Trial};
 
+/// An expression of x, its meaning as a function of Rust, and the range of x.
 pub type One = (&'static str, fn(f64) -> f64, f64, f64);
 
-/// An expression of x, its meaning, and the range swept.
+/// The expressions that are swept.
 pub const ONE: &[One] = &[
     ("-x", |x| -x, -10.0, 10.0),
     ("abs(x)", f64::abs, -10.0, 10.0),
@@ -90,7 +91,7 @@ fn sweep((expression, meaning, low, high): &One) -> Result<(), Failed> {
             && (found - wanted).abs() > 1e-13 * wanted.abs().max(1.0)
             && !(found.is_nan() && wanted.is_nan())
         {
-            return Err(format!("at {x}: {found}, wanted {wanted}").into());
+            return Err(format!("at {x}: f64 gives {found}, wanted {wanted}").into());
         }
         let found = f64::from(single.call(f, &[x])?[0]);
         let bound = bounded.call(f, &[Bounded::from_f64(f64::from(x))])?[0];
@@ -117,7 +118,7 @@ fn fraction(x: f64) -> f64 {
     x / (x.log2().floor() + 1.0).exp2()
 }
 
-/// Eleven significant bits, above the subnormals of f16.
+/// A number rounded to the eleven significant bits of f16. It is above the subnormals of f16.
 fn quantized(x: f64) -> f64 {
     if x == 0.0 {
         return x;

@@ -1,4 +1,4 @@
-//! Textures against values computed by hand.
+//! Compares lookups in textures and buffers with values that were computed by hand.
 
 use super::program;
 use lamplight::eval::{
@@ -47,7 +47,7 @@ struct Out { @builtin(position) p: vec4f, @location(0) n: vec3f }
 }
 ";
 
-/// Function, linear, repeat, arguments, result.
+/// The function, whether filtering is linear, whether addresses repeat, the arguments, the result.
 type Case = (&'static str, bool, bool, &'static [f64], &'static [f64]);
 
 const CASES: &[Case] = &[
@@ -74,9 +74,9 @@ const CASES: &[Case] = &[
     ("side", false, false, &[0.1, -2.0, 0.3], &[3.0]),
     ("side", false, false, &[0.1, 0.2, 0.3], &[4.0]),
     ("side", false, false, &[0.1, 0.2, -0.3], &[5.0]),
-    // Halfway between +x and +z: the mean of both faces.
+    // Halfway between +x and +z, the result is the mean of both faces.
     ("side", true, false, &[1.0, 0.0, 1.0], &[2.0]),
-    // At a corner three faces meet: their mean.
+    // At a corner, where three faces meet, the result is their mean.
     ("side", true, false, &[1.0, 1.0, 1.0], &[2.0]),
     ("side", true, false, &[-1.0, -1.0, -1.0], &[3.0]),
     ("uniforms", false, false, &[], &[1.0, 7.0, 14.0, 28.0]),
@@ -129,7 +129,7 @@ fn resources(linear: bool, repeat: bool) -> Resources {
     let faces: Vec<f64> = (0..6).flat_map(|face| [f64::from(face); 16]).collect();
     let bytes =
         |count: u16| (0..count).flat_map(|word| f32::from(word).to_le_bytes()).collect::<Vec<u8>>();
-    // The uniform's words are 1, 2, 3, ... so that a value names its offset.
+    // The words of the uniform buffer are 1, 2, 3 and so on, so that a value tells its offset.
     let counted = (1..=28u16).flat_map(|word| f32::from(word).to_le_bytes()).collect::<Vec<u8>>();
     Resources {
         buffers: [((0, 7), counted), ((0, 8), bytes(12))].into(),
@@ -157,9 +157,11 @@ fn check((name, linear, repeat, arguments, wanted): &Case) -> Result<(), Failed>
     let found = machine.call(program.function(name).ok_or("function")?, arguments)?;
     let near = found.len() == wanted.len()
         && found.iter().zip(*wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-9);
-    if near { Ok(()) } else { Err(format!("{found:?}, wanted {wanted:?}").into()) }
+    if near { Ok(()) } else { Err(format!("found {found:?}, wanted {wanted:?}").into()) }
 }
 
+/// Functions called with words: loads of exact values, and a load out of bounds, which is clamped
+/// and gives a finding. A texture that is not bound is an error.
 fn words() -> Result<(), Failed> {
     let program = program(SHADER)?;
     let mut machine = Machine::<f32>::new(&program)?;
@@ -185,7 +187,8 @@ fn words() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Steps of half the texture over four texels are two texels: level 1.
+/// The level of detail comes from the differences within a quad. A step of half the texture is two
+/// of its four texels, which gives level 1. A call of one lane has no differences, so level 0.
 fn quad() -> Result<(), Failed> {
     let program = program(SHADER)?;
     let mut machine = Machine::<f64>::new(&program)?;
@@ -200,6 +203,7 @@ fn quad() -> Result<(), Failed> {
     Ok(())
 }
 
+/// Entry points: the locations of inputs and outputs, the results, and `discard`.
 fn entries() -> Result<(), Failed> {
     let program = program(SHADER)?;
     let mut machine = Machine::<f64>::new(&program)?;
@@ -222,8 +226,8 @@ fn entries() -> Result<(), Failed> {
     assert_eq!(machine.call(vs, &[index, 4.0, 5.0, 6.0])?, &[4.0, 5.0, 6.0, 3.0, 4.0, 5.0, 6.0]);
     let front = <f64 as lamplight::eval::Number>::from_word(1);
     assert_eq!(machine.call(fs, &[1.0, 2.0, 3.0, front])?, &[1.0, 2.0, 3.0, 1.0]);
-    assert!(!machine.discarded());
+    assert!(!machine.discarded(), "a fragment of a front face is kept");
     machine.call(fs, &[1.0, 2.0, 3.0, 0.0])?;
-    assert!(machine.discarded());
+    assert!(machine.discarded(), "a fragment of a back face is discarded");
     Ok(())
 }

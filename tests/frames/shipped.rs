@@ -1,10 +1,10 @@
-//! Permutations of `forward`, drawn from the very bytes that a bundle holds of each target, and
-//! sampled fragments computed again by the evaluator from the composed text.
+//! Draws permutations of `forward` from exactly the bytes that a bundle holds for each target, and
+//! computes a sample of the fragments again with the evaluator, from the composed text.
 //!
-//! Each is drawn twice with its vertex stage: once with a fragment stage that only tells what it
-//! is given, and once with its own. So the evaluator starts where the driver's fragments did, and
-//! a vertex stage that is wrong shows where its numbers leave the picture or the tolerance.
-//! `metal::frames` does the same for MSL, whose stages are compiled many at a time.
+//! Each permutation is drawn twice with its vertex stage: with its own fragment stage, and with one
+//! that only writes its inputs. The evaluator starts from these inputs, so a wrong vertex stage is
+//! noticed only if it leaves too few fragments covered, or too many open. `metal::frames` does the
+//! same for MSL, with many stages in one compilation.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -22,19 +22,19 @@ use libtest_mimic::{Failed, Trial};
 use super::{Scene, Sources, bundle, points};
 use crate::fragments::{self, Tally, Watched};
 
-/// Permutations of each language, with all pairs of values among them.
+/// The number of permutations of each language. All pairs of values are among them.
 const LEAST_POINTS: usize = 200;
-/// So many of them are drawn where nothing else is asked for: `cargo xtask frames` draws all.
+/// How many of them the tests draw. `cargo xtask frames` draws all.
 const DRAWN_POINTS: usize = 12;
-/// Pixels from left to right, and from top to bottom.
+/// The size of a frame in pixels.
 const SIZE: [u32; 2] = [96, 48];
-/// One quad in so many is computed again.
+/// Every 29th quad is computed again.
 const STEP: usize = 29;
-/// Least fragments of a permutation.
+/// The least number of fragments of a permutation that must be compared.
 const LEAST: usize = 80;
-/// Largest share of open fragments of a permutation.
+/// The largest share of a permutation's fragments that may be open (see [`crate::fragments`]).
 const OPEN: f64 = 0.01;
-/// What fails with everything is told a few times.
+/// How many failures of a driver are printed.
 const MOST_FAILURES: usize = 20;
 
 pub fn trials() -> Vec<Trial> {
@@ -49,7 +49,7 @@ pub fn trials() -> Vec<Trial> {
     drawn.into_iter().chain([others]).collect()
 }
 
-/// Those of the environment, or all but MSL.
+/// The targets that the environment names, or all except MSL.
 fn targets() -> Result<Vec<Target>, String> {
     let Ok(names) = std::env::var("LAMPLIGHT_FRAMES_TARGETS") else {
         return Ok(Target::ALL.iter().copied().filter(|one| *one != Target::MSL).collect());
@@ -58,7 +58,7 @@ fn targets() -> Result<Vec<Target>, String> {
     names.split(',').map(target).collect()
 }
 
-/// Everything that draws the files of some targets: one driver, or one and a browser.
+/// Every driver and browser that draws the files of some targets.
 fn drivers(targets: &[Target]) -> Result<Vec<Driver>, String> {
     let mut drivers = Vec::new();
     for target in targets {
@@ -71,7 +71,7 @@ fn drivers(targets: &[Target]) -> Result<Vec<Driver>, String> {
     Ok(drivers)
 }
 
-/// How many permutations are drawn: of the environment, or as many as the tests have time for.
+/// How many permutations are drawn: the number in the environment, or [`DRAWN_POINTS`].
 fn most_points() -> Result<usize, String> {
     match std::env::var("LAMPLIGHT_FRAMES_PERMUTATIONS") {
         Ok(text) => text.parse().map_err(|_| format!("`{text}` is not a number")),
@@ -95,13 +95,14 @@ fn drawn(language: Language) -> Result<(), String> {
     for driver in &drivers {
         println!("{language:?} {driver}");
         failures.extend(driver.failures.iter().take(MOST_FAILURES).cloned());
-        // Nothing may be left out unnoticed: all that is listed can be drawn today.
+        // A permutation that cannot be drawn is a failure, since today all can be.
         failures.extend(driver.lacks.keys().map(|reason| format!("{}: {reason}", driver.name)));
     }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
 
-/// The bytes of another permutation, whose surfaces scatter otherwise, are not taken for right.
+/// The comparison fails if the bytes of another permutation, with another diffuse term, are drawn.
+/// Otherwise it would prove nothing.
 fn others_are_noticed() -> Result<(), String> {
     let sources = Sources::load(Language::Wesl)?;
     let space = &sources.space;
@@ -124,27 +125,25 @@ fn others_are_noticed() -> Result<(), String> {
             fragments::resources(scene.buffers.clone(), &scene.fixtures, &BTreeMap::new());
         let found = fragments::recompute_each(&scene.fragment, resources, &watched, STEP)?;
         if found.iter().any(|found| found.is_ok() != is_right) {
-            return Err(format!(
-                "[{key}] is taken for {}",
-                if is_right { "wrong" } else { "right" }
-            ));
+            let [found, expected] = if is_right { ["wrong", "right"] } else { ["right", "wrong"] };
+            return Err(format!("[{key}] is judged {found}, expected {expected}"));
         }
     }
     Ok(())
 }
 
-/// What draws the files of a target, and what became of them.
+/// A driver that draws the files of a target, with the results so far.
 struct Driver {
-    /// The executor's.
+    /// The name of the executor.
     name: &'static str,
     target: Target,
     session: Box<dyn Session>,
     drawn: usize,
     tally: Tally,
     failures: Vec<String>,
-    /// What could not be drawn, by the reason.
+    /// How many permutations could not be drawn, for each reason.
     lacks: BTreeMap<String, usize>,
-    /// Fragment stages that tell, by what they tell: most permutations share theirs.
+    /// Fragment stages that write their inputs, by these inputs. Most permutations share one.
     telling: BTreeMap<String, Shipped>,
     time: Duration,
 }
@@ -157,7 +156,7 @@ impl Driver {
         Ok(Self { name, target, session, drawn: 0, tally, failures, lacks, telling, time })
     }
 
-    /// The targets of both draws, the fragment stage's own first.
+    /// The targets of both draws: the colours first, then the inputs.
     fn frame(
         &mut self,
         bundle: &Bundle,
@@ -167,7 +166,7 @@ impl Driver {
     ) -> Result<Vec<Vec<u32>>, Diagnostic> {
         let stages = ["vertex", "fragment"].map(|stage| {
             let entry = match (language, stage) {
-                // The entry points of GLSL are all called `main`: a bundle calls them by their stage.
+                // Entry points of GLSL are all called `main`, so a bundle names them by their stage.
                 (Language::Glsl, _) => stage,
                 (_, "vertex") => scene.vertex.entry,
                 _ => scene.fragment.entry,
@@ -182,7 +181,7 @@ impl Driver {
         Ok(targets)
     }
 
-    /// The fragment stage that tells what one is given.
+    /// The fragment stage that writes its inputs.
     fn tells(&mut self, scene: &Scene) -> Result<Shipped, Diagnostic> {
         let stage = &scene.fragment;
         let inputs = format!("{:?}", stage.reflection.inputs);
@@ -190,7 +189,7 @@ impl Driver {
             return Ok(known.clone());
         }
         let told = probe::told(&stage.validated.module, stage.entry)
-            .ok_or_else(|| lost("the fragment stage is not one".to_owned()))?;
+            .ok_or_else(|| lost(format!("`{}` is not a fragment stage", stage.entry)))?;
         let point = EntryPoint { module: &told.module, entry: probe::TELLS };
         let made = Shipped::of(point, self.target)?;
         self.telling.insert(inputs, made.clone());
@@ -224,12 +223,13 @@ impl Driver {
     fn count(&mut self, key: &str, found: Result<Tally, String>) {
         match found {
             Ok(tally) if tally.tried < LEAST => {
-                let text = format!("{} [{key}] only {} fragments", self.name, tally.tried);
+                let what = format!("{} fragments, expected at least {LEAST}", tally.tried);
+                let text = format!("{} [{key}] compared {what}", self.name);
                 self.failures.push(text);
             }
             Ok(tally) if tally.open as f64 > OPEN * tally.tried as f64 => {
                 let Tally { tried, open, .. } = tally;
-                let text = format!("{} [{key}] {open} of {tried} are open", self.name);
+                let text = format!("{} [{key}] {open} of {tried} fragments are open", self.name);
                 self.failures.push(text);
             }
             Ok(tally) => self.tally.add(&tally),
@@ -251,7 +251,8 @@ impl std::fmt::Display for Driver {
     }
 }
 
-/// Draws one permutation on every driver, and computes it once for all that were given the same.
+/// Draws one permutation on every driver. The evaluator computes quads with the same inputs once for
+/// all drivers.
 fn permutation(
     bundle: &Bundle,
     language: Language,
@@ -288,7 +289,7 @@ fn permutation(
     Ok(())
 }
 
-/// One stage as the bundle holds it.
+/// One stage, with the bytes that the bundle holds for a target.
 fn shipped(
     bundle: &Bundle,
     language: Language,

@@ -1,14 +1,15 @@
-//! A manifest made in parts, by several processes.
+//! A bundle that several processes make in shards, and that `merge` puts together.
 
 use std::fs;
 use std::process::{Command, Stdio};
 
 use super::{Outcome, Package, TINT, ensure, equal};
 
+/// Shards merge to the same bytes as one run, in whatever order they are named.
 pub fn shards() -> Outcome {
     let package = Package::new()?;
     package.generate(&["-o", "whole"])?;
-    // Each in a process of its own, as under GNU parallel or in an array of jobs.
+    // Each shard is made by a process of its own, as under GNU parallel or in an array of jobs.
     let names: Vec<(String, String)> =
         (1..=5).map(|index| (format!("{index}/5"), format!("shard-{index}"))).collect();
     let children = names.iter().map(|(shard, out)| {
@@ -18,7 +19,7 @@ pub fn shards() -> Outcome {
             .spawn()
     });
     for mut child in children.collect::<Result<Vec<_>, _>>()? {
-        ensure(child.wait()?.success(), "a shard failed")?;
+        ensure(child.wait()?.success(), "the process of a shard failed")?;
     }
     for order in [[1, 2, 3, 4, 5], [4, 1, 5, 3, 2]] {
         let shards: Vec<String> = order.iter().map(|index| format!("shard-{index}")).collect();
@@ -32,7 +33,7 @@ pub fn shards() -> Outcome {
     Ok(())
 }
 
-/// The command of `docs/many-machines.md`.
+/// The command line that the documentation shows for GNU parallel gives the same bytes as one run.
 pub fn parallel() -> Outcome {
     let package = Package::new()?;
     package.generate(&["-o", "whole"])?;
@@ -59,6 +60,7 @@ pub fn parallel() -> Outcome {
     equal(package.files("merged")?, package.files("whole")?)
 }
 
+/// `merge` refuses shards that are incomplete, belong to other sources, or are damaged.
 pub fn wrong_shards() -> Outcome {
     let package = Package::new()?;
     for (shard, out) in [("1/2", "one"), ("2/2", "two")] {

@@ -1,4 +1,4 @@
-//! Caches that several machines share.
+//! Caches that several machines share: a folder, and a Redis server.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -10,19 +10,19 @@ pub fn shared_folder() -> Outcome {
     shared(&format!("fs:{}", tempfile::tempdir()?.path().display()))
 }
 
-/// What one machine made, another one takes; a third without a cache of its own too.
+/// Another machine, which has an empty cache, takes everything from the store and compiles nothing.
 fn shared(store: &str) -> Outcome {
     let package = Package::new()?;
     package.generate(&["--store", store, "-o", "one"])?;
     fs::rename(package.path().join("cache"), package.path().join("cache of another machine"))?;
     equal(compiled(&package.generate(&["--store", store, "-o", "two"])?), 0)?;
     equal(package.files("one")?, package.files("two")?)?;
-    // What came from the store is near from now on.
+    // Records that came from the store are now in the machine's own cache.
     equal(compiled(&package.generate(&["-o", "three"])?), 0)
 }
 
-/// With the feature `store` against a server that is started here; without, only that the
-/// command says what is missing.
+/// Starts a Redis server and shares it. Without the feature `store`, the command must say that the
+/// feature is missing, and no server is started.
 pub fn shared_server() -> Outcome {
     let package = Package::new()?;
     let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();

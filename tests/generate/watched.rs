@@ -1,4 +1,4 @@
-//! Edits of a manifest are followed.
+//! `watch` follows edits of the sources.
 
 use std::fs;
 use std::process::Stdio;
@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::{Outcome, Package, TINT, ensure, equal};
 
+/// `watch` brings the bundle up to date after each edit, also after an edit with an error.
 pub fn watch() -> Outcome {
     let package = Package::new()?;
     package.generate(&[])?;
@@ -27,13 +28,14 @@ fn followed(package: &Package) -> Outcome {
         let before = manifest()?;
         package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", text))?;
         if text == "nonsense" {
-            // It goes on watching.
+            // This text has an error. The next edit shows that `watch` still runs.
             std::thread::sleep(Duration::from_millis(300));
             continue;
         }
         let start = Instant::now();
         while manifest()? == before || package.generate(&["--check"]).is_err() {
-            ensure(start.elapsed() < Duration::from_secs(20), "the bundle did not change")?;
+            let what = format!("20 s after the edit `{text}`, the bundle is not up to date");
+            ensure(start.elapsed() < Duration::from_secs(20), what)?;
             std::thread::sleep(Duration::from_millis(50));
         }
     }

@@ -1,9 +1,9 @@
-//! The fenced blocks of a page.
+//! Reads the fenced blocks of a page.
 //!
 //! | info string | the block is |
 //! |---|---|
 //! | `LANGUAGE file=PATH` | a file that the commands after it find at that path |
-//! | `LANGUAGE made=PATH` | what a command before it wrote to that path |
+//! | `LANGUAGE made=PATH` | the file that a command before it wrote to that path |
 //! | `console` | commands after `$ ` (continued after `> `), each with its output |
 //! | `console exit=N` | the same; the last command ends with that exit code |
 //! | `text` | text that is not run: a grammar, a diagram |
@@ -12,21 +12,21 @@ use std::ops::Range;
 
 use libtest_mimic::Failed;
 
-/// A block and the lines of the page between its fences.
+/// A block: its kind, and the lines between its fences.
 pub struct Block {
     pub kind: Kind,
-    /// Lines of the page, from 0.
+    /// The lines of the page, counted from 0.
     pub lines: Range<usize>,
 }
 
 pub enum Kind {
-    /// To be written before the commands after it.
+    /// A file with this path, which is written before the commands after the block.
     File(String),
-    /// To be compared with what the commands before it wrote.
+    /// A file with this path, which is compared with the one that earlier commands wrote.
     Made(String),
-    /// The exit code of the last command, and all commands.
+    /// Commands, with the exit code of the last one.
     Console(i32, Vec<Command>),
-    /// Not run.
+    /// A text that is not run.
     Text,
 }
 
@@ -61,7 +61,7 @@ pub fn read(lines: &[&str]) -> Result<Vec<Block>, Failed> {
     Ok(blocks)
 }
 
-/// The info string of a line that opens a block. Four backticks allow three of them within.
+/// The info string, if the line opens a block. A block with four backticks may contain three.
 fn opening(line: &str) -> Option<&str> {
     line.starts_with(FENCE).then(|| line.trim_start_matches('`'))
 }
@@ -75,18 +75,18 @@ fn kind(info: &str, lines: &[&str], inner: Range<usize>) -> Result<Kind, String>
         ("text", []) => Ok(Kind::Text),
         ("console", []) => Ok(Kind::Console(0, commands(lines, inner)?)),
         ("console", [("exit", code)]) => {
-            let code = code.parse().map_err(|_| format!("`{code}` is no exit code"))?;
+            let code = code.parse().map_err(|_| format!("`{code}` is not an exit code"))?;
             Ok(Kind::Console(code, commands(lines, inner)?))
         }
         (_, [("file", path)]) => Ok(Kind::File((*path).to_owned())),
         (_, [("made", path)]) => Ok(Kind::Made((*path).to_owned())),
         _ => Err(format!(
-            "`{info}` is no form of a block: use `console`, `file=PATH`, `made=PATH` or `text`"
+            "`{info}` is not a form of a block: use `console`, `file=PATH`, `made=PATH` or `text`"
         )),
     }
 }
 
-/// A reader does not see the info string: the text above a file tells its name.
+/// Fails unless the text above a file names it. Readers do not see the info string.
 fn named(kind: Kind, above: &[&str]) -> Result<Kind, String> {
     let (Kind::File(path) | Kind::Made(path)) = &kind else { return Ok(kind) };
     let name = format!("`{path}`");
@@ -109,8 +109,11 @@ fn commands(lines: &[&str], inner: Range<usize>) -> Result<Vec<Command>, String>
                 last.output = at + 1..at + 1;
             }
             (None, Some(last)) => last.output.end = at + 1,
-            (None, None) => return Err("a console block starts with `$ `".to_owned()),
+            (None, None) => return Err("a console block must start with `$ `".to_owned()),
         }
     }
-    if commands.is_empty() { Err("a console block has a command".to_owned()) } else { Ok(commands) }
+    match commands.is_empty() {
+        true => Err("a console block must have a command".to_owned()),
+        false => Ok(commands),
+    }
 }

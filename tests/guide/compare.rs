@@ -1,5 +1,5 @@
-//! What a page says of an output, against the output: `...` stands for what changes from run to
-//! run, or for what is left out. Within a line it is any text, a line of its own any lines.
+//! Compares the output that a page shows with a real output. `...` within a line stands for any
+//! text, and a line `...` for any lines: those that change from run to run or are left out.
 
 use libtest_mimic::{Failed, Trial};
 
@@ -11,7 +11,7 @@ pub fn trials() -> Vec<Trial> {
 
 /// Whether the lines of a page describe the lines of an output.
 pub fn matches(page: &[&str], output: &[&str]) -> bool {
-    // Whether the page's lines so far describe the first `n` lines of the output.
+    // `reach[n]`: whether the page's lines so far describe the first `n` lines of the output.
     let mut reach = vec![false; output.len() + 1];
     reach[0] = true;
     for pattern in page {
@@ -39,7 +39,7 @@ fn line_matches(pattern: &str, line: &str) -> bool {
     left.ends_with(last)
 }
 
-/// What a page should say: its own lines where they still hold, else the output's.
+/// The lines that a page should show: its own lines where they still hold, else the output's.
 pub fn merged(page: &[&str], output: &[&str]) -> Vec<String> {
     let mut lines = Vec::new();
     let (mut of_page, mut of_output) = (0, 0);
@@ -52,7 +52,8 @@ pub fn merged(page: &[&str], output: &[&str]) -> Vec<String> {
     lines
 }
 
-/// Lines between two that were found again: still left out, or written as they are now.
+/// Writes the lines between two that still hold. A single `...` stays, and anything else becomes
+/// the lines of the output.
 fn gap(page: &[&str], output: &[&str], lines: &mut Vec<String>) {
     match page {
         [only] if only.trim() == ANY && !output.is_empty() => lines.push((*only).to_owned()),
@@ -60,7 +61,7 @@ fn gap(page: &[&str], output: &[&str], lines: &mut Vec<String>) {
     }
 }
 
-/// The longest run of pairs, in order, of a line of the page and one that it describes.
+/// The longest common subsequence: pairs of a line of the page and a line that it describes.
 fn aligned(page: &[&str], output: &[&str]) -> Vec<(usize, usize)> {
     let fits = |i: usize, j: usize| page[i].trim() != ANY && line_matches(page[i], output[j]);
     let mut best = vec![vec![0; output.len() + 1]; page.len() + 1];
@@ -86,7 +87,7 @@ fn aligned(page: &[&str], output: &[&str]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// A line without what is known to change from run to run: times and speeds.
+/// A line with `...` for times and speeds, which change from run to run.
 fn settled(line: &str) -> String {
     let words: Vec<&str> = line.split(' ').collect();
     let is_measured = |at: usize| {
@@ -98,7 +99,8 @@ fn settled(line: &str) -> String {
     settled.collect::<Vec<_>>().join(" ")
 }
 
-/// A difference is found, an elision is kept, and what changes from run to run is left out.
+/// Differences are found, `...` is kept in a page that is updated, and times become `...`. Without
+/// this trial, a comparison that accepts everything would make all trials of pages pass.
 fn compares() -> Result<(), Failed> {
     let output = ["one", "two 2", "three", "done in 0.25 s, 12 a second"];
     let cases: [(&[&str], bool); 7] = [
@@ -112,17 +114,17 @@ fn compares() -> Result<(), Failed> {
     ];
     for (page, expected) in cases {
         if matches(page, &output) != expected {
-            return Err(format!("{page:?} against {output:?} is not {expected}").into());
+            return Err(format!("{page:?} matches {output:?}: expected {expected}").into());
         }
     }
     let merged = merged(&["zero", "two ...", "..."], &output);
     let expected = ["one", "two ...", "..."];
     if merged != expected {
-        return Err(format!("{merged:?}, not {expected:?}").into());
+        return Err(format!("merged to {merged:?}, expected {expected:?}").into());
     }
     let settled = settled(output[3]);
     if settled != "done in ... s, ... a second" {
-        return Err(settled.into());
+        return Err(format!("times should become `...`: `{settled}`").into());
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The page that is made from the explanations of diagnostics.
+//! The page that is generated from the explanations of diagnostics.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,12 +10,12 @@ use super::{ACCEPT, accepts, stem};
 
 const PAGE: &str = "troubleshooting";
 
-/// Whether a page is written here, so that nothing in it is run.
+/// Whether a page is generated. Nothing in such a page is run.
 pub fn is_generated(page: &Path) -> bool {
     stem(page) == PAGE
 }
 
-/// Compares the page with what it should be; accepts or tells a difference.
+/// Compares the page with the generated text. A difference is written or reported.
 pub fn check(path: &Path) -> Result<(), Failed> {
     let text = text();
     match (std::fs::read_to_string(path).is_ok_and(|known| known == text), accepts()) {
@@ -45,7 +45,7 @@ fn text() -> String {
     text
 }
 
-/// Codes that no other page explains are explained here.
+/// The heading above a page's codes. Codes that belong to no other page belong to this one.
 fn heading(page: &guide::Page) -> String {
     match page.file.strip_suffix(".md") {
         Some(PAGE) => "Data of the library".to_owned(),
@@ -57,7 +57,7 @@ fn section(text: &mut String, code: &Code) {
     let _ = write!(text, "\n### {}\n\n**{}.** {}\n", code.name, code.title, code.explanation);
 }
 
-/// Codes without a page.
+/// The codes that name no page.
 pub fn homeless() -> Vec<&'static str> {
     let missing = codes::ALL.iter().filter(|code| guide::page_of(code).is_none());
     missing.map(|code| code.name).collect()

@@ -1,4 +1,5 @@
-//! The files that the guide shows, with mistakes put in: whatever comes of them is an answer.
+//! Puts mistakes into the files that the guide shows. Users make such mistakes when they copy a
+//! file, and the command that reads it must then end with an ordinary exit code.
 
 use std::fs;
 use std::path::Path;
@@ -10,9 +11,9 @@ use libtest_mimic::{Failed, Trial};
 use super::block::{self, Kind};
 use super::{generated, pages, stem};
 
-/// Mistakes put into each file, one at a time.
+/// The number of mistakes for each file. They are put in one at a time.
 const MISTAKES: u64 = 4;
-/// The most that one command may take, on a busy machine.
+/// The longest time that one command may take, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 pub fn trials() -> Vec<Trial> {
@@ -64,7 +65,7 @@ fn put(folder: &Path, path: &str, text: &str) -> Result<(), Failed> {
     Ok(fs::write(path, text)?)
 }
 
-/// What reads a file.
+/// The arguments of the command that reads a file.
 fn command(path: &str, shown: &[Shown]) -> Option<Vec<String>> {
     let words = |words: &[&str]| Some(words.iter().map(|word| (*word).to_owned()).collect());
     let shader = || shown.iter().find(|(path, _)| path.ends_with(".wesl")).map(|(path, _)| path);
@@ -79,7 +80,7 @@ fn command(path: &str, shown: &[Shown]) -> Option<Vec<String>> {
     }
 }
 
-/// What is wrong with how a command ended.
+/// What is wrong with how a command ended: a signal, a panic, an unknown exit code, or a long time.
 fn problem(folder: &Path, arguments: &[String]) -> Result<Option<String>, Failed> {
     let start = Instant::now();
     let output = Command::new(env!("CARGO_BIN_EXE_lamplight"))
@@ -97,10 +98,10 @@ fn problem(folder: &Path, arguments: &[String]) -> Result<Option<String>, Failed
     Ok(problem)
 }
 
-/// Signs that mean something in some file.
+/// Characters that have a meaning in one of the languages.
 const SIGNS: &[&str] = &["{", "}", "(", ")", "[", "]", "\"", "=", ";", ",", "@if(", "#", "0", "é"];
 
-/// The text with one mistake: a part left out, a part twice, or a sign put in.
+/// The text with one mistake: a part is left out, a part is repeated, or one of [`SIGNS`] is put in.
 fn mistaken(text: &str, seed: u64) -> String {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ text.len() as u64;
     let mut below = |limit: usize| {

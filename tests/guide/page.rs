@@ -1,4 +1,4 @@
-//! One page: its session, and what it says of it.
+//! Runs one page as a session, and compares the results with the page.
 
 use std::fs;
 use std::ops::Range;
@@ -10,13 +10,13 @@ use super::block::{self, Block, Kind};
 use super::session::{Outcome, Session, Step};
 use super::{ACCEPT, accepts, compare, generated};
 
-/// Lines of the page that should be others.
+/// Lines of the page that should be replaced.
 struct Change {
     lines: Range<usize>,
     becomes: Vec<String>,
 }
 
-/// Runs the page; accepts what differs, or tells it.
+/// Runs the page. Differences are written into it or reported.
 pub fn check(path: &Path) -> Result<(), Failed> {
     if generated::is_generated(path) {
         return generated::check(path);
@@ -57,7 +57,7 @@ fn steps<'a>(lines: &[&str], blocks: &'a [Block]) -> Vec<Step<'a>> {
     steps
 }
 
-/// Where the page and the session differ.
+/// The differences between the page and the session.
 fn changes(lines: &[&str], blocks: &[Block], session: &Session) -> Result<Vec<Change>, Failed> {
     let mut outcomes = session.outcomes.iter();
     let mut changes = Vec::new();
@@ -89,7 +89,8 @@ fn change(lines: &[&str], shown: Range<usize>, found: &[&str]) -> Option<Change>
     (!same).then(|| Change { lines: shown, becomes: compare::merged(page, found) })
 }
 
-/// The info string of a console block whose last command ended otherwise.
+/// The change of a console block's info string, if its last command ended with another exit code.
+/// An earlier command must end with 0, since the info string has only one code.
 fn exit(
     lines: &[&str],
     block: &Block,
@@ -100,7 +101,7 @@ fn exit(
     let Some((last, earlier)) = ran.split_last() else { return Ok(None) };
     if let Some(failed) = earlier.iter().find(|outcome| outcome.code != 0) {
         let place =
-            format!("line {}: exit code {}, not of the last command", fence + 1, failed.code);
+            format!("line {}: a command before the last ended with {}", fence + 1, failed.code);
         return Err(format!("{place}\n{}", failed.lines.join("\n")).into());
     }
     if last.code == code {

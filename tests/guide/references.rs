@@ -1,4 +1,4 @@
-//! What the guide and the crate say of each other: titles, links, lists of keys.
+//! The guide and the crate agree where they name each other: titles, links, lists of keys, limits.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -46,7 +46,7 @@ fn contents() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Relative links name pages and headings that there are.
+/// Relative links lead to pages and headings that exist.
 fn links() -> Result<(), Failed> {
     let texts = texts()?;
     let mut broken = Vec::new();
@@ -57,19 +57,19 @@ fn links() -> Result<(), Failed> {
             }
             let (page, anchor) = target.split_once('#').unwrap_or((&target, ""));
             let page = if page.is_empty() { file } else { page };
-            let there = match texts.get(page) {
+            let exists = match texts.get(page) {
                 Some(text) => anchor.is_empty() || anchors(text).contains(anchor),
                 None => anchor.is_empty() && folder().join(page).is_file(),
             };
-            if !there {
-                broken.push(format!("{file}: {target}"));
+            if !exists {
+                broken.push(format!("{file}: the link `{target}` leads nowhere"));
             }
         }
     }
     if broken.is_empty() { Ok(()) } else { Err(broken.join("\n").into()) }
 }
 
-/// Label and target of each Markdown link outside of code.
+/// The label and the target of each Markdown link outside of code.
 fn targets(text: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut in_code = false;
@@ -86,7 +86,7 @@ fn targets(text: &str) -> Vec<(String, String)> {
     found
 }
 
-/// What headings are called in links, as mdBook and forges make it.
+/// The anchors of a page's headings, as mdBook and forges form them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings = text.lines().filter(|line| line.starts_with('#'));
     headings
@@ -98,13 +98,14 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// Every code has a page, and the page has the title that the table says.
+/// Every code names a page, every page has the title that the crate's table says, and `explain`
+/// prints it.
 fn codes() -> Result<(), Failed> {
     let homeless = generated::homeless();
     if !homeless.is_empty() {
         let message = format!(
             "the files of {homeless:?} in src/diagnostic/codes/ name no page: write `Page: NAME` \
-             below the title, one of src/diagnostic/guide.rs"
+             below the title, with a page of src/diagnostic/guide.rs"
         );
         return Err(message.into());
     }
@@ -116,7 +117,10 @@ fn codes() -> Result<(), Failed> {
     }
     let told = lamplight(&["explain", "unknown-axis"])?;
     let ending = "\nGuide: Axes, constraints and the manifest\n";
-    if told.ends_with(ending) { Ok(()) } else { Err(told.into()) }
+    match told.ends_with(ending) {
+        true => Ok(()),
+        false => Err(format!("`explain` should end with{ending}found:\n{told}").into()),
+    }
 }
 
 /// Each command's help ends with the title of a page.
@@ -127,7 +131,7 @@ fn commands() -> Result<(), Failed> {
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let names: Vec<&str> = listed
         .take_while(|line| !line.is_empty())
-        // A line that is moved in further continues the one above.
+        // A line that is indented further continues the one above.
         .filter_map(|line| line.strip_prefix("  ").filter(|line| !line.starts_with(' ')))
         .filter_map(|line| line.split_whitespace().next())
         .filter(|name| *name != "help")
@@ -136,28 +140,34 @@ fn commands() -> Result<(), Failed> {
         let help = lamplight(&[name, "--help"])?;
         let named = help.lines().rev().find_map(|line| line.strip_prefix("Guide: "));
         if !named.is_some_and(|named| titles.contains(&named)) {
-            return Err(format!("`lamplight {name} --help` names {named:?}").into());
+            let what = "which is not the title of a page";
+            return Err(format!("`lamplight {name} --help` names {named:?}, {what}").into());
         }
     }
     Ok(())
 }
 
-/// A person at a terminal is told what to read; a program is not.
+/// On a terminal, an error names the page of the guide to read. Through a pipe it does not, since a
+/// program reads it.
 fn errors() -> Result<(), Failed> {
     let line = "more: lamplight explain unreadable; guide: A package of your own";
     let arguments = ["compose", "missing.wesl"];
     let piped = run(Path::new("."), &arguments)?;
     if String::from_utf8_lossy(&piped.stderr).contains("guide:") {
-        return Err("a program is told to read the guide".into());
+        return Err("an error through a pipe names the guide".into());
     }
     // `script` gives its command a terminal.
     let command = [&[env!("CARGO_BIN_EXE_lamplight")], &arguments[..]].concat().join(" ");
     let output = Command::new("script").args(["-qec", &command, "/dev/null"]).output()?;
     let told = String::from_utf8_lossy(&output.stdout);
-    if told.lines().any(|told| told == line) { Ok(()) } else { Err(told.into_owned().into()) }
+    match told.lines().any(|told| told == line) {
+        true => Ok(()),
+        false => Err(format!("on a terminal, expected the line `{line}` in:\n{told}").into()),
+    }
 }
 
-/// What the crate knows by name stands in the page that explains it.
+/// Every name of the crate's own lists is in the page that explains it: functions of formulas, laws,
+/// tolerances, targets, keys of files, columns.
 fn lists() -> Result<(), Failed> {
     let names = |names: &[&'static str]| names.iter().map(|name| (*name).to_owned()).collect();
     let functions: Vec<&str> = formula::FUNCTIONS.iter().map(|function| function.name).collect();
@@ -182,7 +192,7 @@ fn lists() -> Result<(), Failed> {
     for (page, names) in known {
         let text = fs::read_to_string(folder().join(page))?;
         if names.is_empty() {
-            return Err(format!("{page}: nothing to look for").into());
+            return Err(format!("{page}: a list of names that it should have is empty").into());
         }
         let lacks = |name: &&String| !text.contains(&format!("`{name}`"));
         missing.extend(names.iter().filter(lacks).map(|name| format!("{page} lacks `{name}`")));
@@ -190,7 +200,7 @@ fn lists() -> Result<(), Failed> {
     if missing.is_empty() { Ok(()) } else { Err(missing.join("\n").into()) }
 }
 
-/// The page of limits is the crate's own table, line by line.
+/// The table in the page of limits is the crate's own, line by line.
 fn limits() -> Result<(), Failed> {
     let rows = lamplight::limits::ALL.iter().map(|limit| {
         let value = limit.written();
@@ -199,7 +209,10 @@ fn limits() -> Result<(), Failed> {
     let wanted: Vec<String> = rows.collect();
     let text = fs::read_to_string(folder().join("limits.md"))?;
     let found: Vec<&str> = text.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
-    if wanted == found { Ok(()) } else { Err(wanted.join("\n").into()) }
+    match wanted == found {
+        true => Ok(()),
+        false => Err(format!("the table in limits.md should be:\n{}", wanted.join("\n")).into()),
+    }
 }
 
 const AXIS: &str = "[program.a]\nwesl = \"a.wesl\"\n[program.a.axis]\nb = { x = 1, values = [1] }";
@@ -227,10 +240,10 @@ fn noted(file: &str, text: &str, line: &str) -> Result<Vec<String>, Failed> {
             }
         }
     }
-    Err(format!("`{line}` lists nothing: {told}").into())
+    Err(format!("no note of `{line}` has a list of names: {told}").into())
 }
 
-/// The columns of a check's table.
+/// The columns of the table that `check` prints.
 fn columns() -> Result<Vec<String>, Failed> {
     let table = lamplight(&["check", "lighting::spot"])?;
     let head = table.lines().next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! One shell session over the files and commands of a page.
+//! Runs the files and commands of a page as one shell session.
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -11,13 +11,13 @@ use libtest_mimic::Failed;
 
 use crate::snapshot;
 
-/// The most that the commands of one page may take together, on a busy machine.
+/// The longest time that the commands of one page may take together, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(600);
 
-/// Starts the line that ends a command's output.
+/// The start of the line that the session prints after each command's output.
 const MARK: &str = "guide-command-ended-with";
 
-/// What one step of the session is.
+/// One step of the session.
 pub enum Step<'a> {
     /// Writes a file.
     File { path: &'a str, text: String },
@@ -25,17 +25,17 @@ pub enum Step<'a> {
     Command(&'a str),
 }
 
-/// What one command did.
+/// The result of one command.
 pub struct Outcome {
-    /// Both streams, as a terminal shows them, without blanks at the ends of lines.
+    /// The lines of both streams in their order, without blanks at the ends of lines.
     pub lines: Vec<String>,
     pub code: i32,
 }
 
-/// A session that is over.
+/// A session that has ended.
 pub struct Session {
     stage: tempfile::TempDir,
-    /// One for each command.
+    /// The result of each command.
     pub outcomes: Vec<Outcome>,
 }
 
@@ -48,7 +48,8 @@ impl Session {
         let outcomes = outcomes(&printed)?;
         let commands = steps.iter().filter(|step| matches!(step, Step::Command(_))).count();
         if outcomes.len() != commands {
-            return Err(format!("the shell stopped early:\n{printed}").into());
+            let ran = outcomes.len();
+            return Err(format!("the shell ended after {ran} of {commands}:\n{printed}").into());
         }
         Ok(Self { stage, outcomes })
     }
@@ -65,7 +66,8 @@ fn work(stage: &Path) -> PathBuf {
     stage.join("work")
 }
 
-/// Writes the files of the steps aside, and a script that puts them in place and runs the commands.
+/// Writes the files of the steps to folders of their own. The script copies them to the session's
+/// folder, in order, and runs the commands.
 fn script(stage: &Path, steps: &[Step<'_>]) -> Result<String, Failed> {
     fs::create_dir_all(work(stage))?;
     let mut script = String::from("exec 2>&1\n");
@@ -88,8 +90,8 @@ fn script(stage: &Path, steps: &[Step<'_>]) -> Result<String, Failed> {
     Ok(script)
 }
 
-/// What the shell printed. To a file: a command that is left in the background must not hold a
-/// pipe open.
+/// Runs the script and gives what it printed. The output goes to a file, because a command that is
+/// left in the background would hold a pipe open.
 fn execute(stage: &Path, script: &str) -> Result<String, Failed> {
     let (path, printed) = (stage.join("script.sh"), stage.join("printed"));
     fs::write(&path, script)?;
@@ -102,7 +104,8 @@ fn execute(stage: &Path, script: &str) -> Result<String, Failed> {
     Ok(String::from_utf8_lossy(&fs::read(&printed)?).into_owned())
 }
 
-/// The same on every machine: no colours, a narrow terminal, nothing of the user's.
+/// Sets an environment that is the same on every machine: no colours, a narrow terminal, no cache of
+/// the user's.
 fn environment(command: &mut Command, stage: &Path) {
     let binaries = Path::new(env!("CARGO_BIN_EXE_lamplight")).parent().map(Path::to_path_buf);
     let known = std::env::var_os("PATH").unwrap_or_default();
@@ -112,7 +115,7 @@ fn environment(command: &mut Command, stage: &Path) {
     command.env("COLUMNS", "80").env("NO_COLOR", "1").env("LC_ALL", "C.UTF-8");
 }
 
-/// Pages that use cargo find this repository in place of the registry, and need no network.
+/// Makes cargo use this repository in place of the registry, so that pages need no network.
 fn cargo_config(stage: &Path) -> Result<(), Failed> {
     let root = snapshot::root();
     let target = root.join("target/tmp/guide");
@@ -131,14 +134,14 @@ fn wait(mut child: Child) -> Result<(), Failed> {
         if start.elapsed() > PATIENCE {
             child.kill()?;
             child.wait()?;
-            return Err(format!("the page takes more than {PATIENCE:?}").into());
+            return Err(format!("the commands of the page take more than {PATIENCE:?}").into());
         }
         std::thread::sleep(Duration::from_millis(5));
     }
     Ok(())
 }
 
-/// Cuts what the shell printed into what each command printed.
+/// Divides what the shell printed into the results of the commands.
 fn outcomes(printed: &str) -> Result<Vec<Outcome>, Failed> {
     let (mut outcomes, mut lines) = (Vec::new(), Vec::new());
     for line in printed.lines() {

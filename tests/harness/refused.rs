@@ -1,4 +1,4 @@
-//! What is wrong with expressions, cases and functions is told, and where.
+//! Errors in expressions and cases, and functions with wrong results, are reported with their place.
 
 use std::sync::{Arc, Mutex};
 
@@ -11,7 +11,7 @@ use libtest_mimic::Failed;
 
 use super::{failed, opened, render};
 
-/// Errors of expressions stand in the expression.
+/// Wrong expressions, and the start of the diagnostic, which has a place in the expression.
 const EXPRESSION_ERRORS: &[(&str, Language, &str)] = &[
     ("1.0 +", Language::Wesl, "<expression>:1:"),
     ("vec3f(1.0) * nothing", Language::Wesl, "<expression>:1:14: error["),
@@ -34,7 +34,7 @@ pub fn expression_errors() -> Result<(), Failed> {
                 Form::Short,
             );
             if !found.starts_with(expected) {
-                return Err(format!("{text}: {found}, not {expected}").into());
+                return Err(format!("{text}: found {found}, expected {expected}").into());
             }
         }
         Ok(())
@@ -43,7 +43,7 @@ pub fn expression_errors() -> Result<(), Failed> {
 
 const USER_MODULE: &str = "fn half(x: f32) -> f32 { return 0.5 * x; }\nfn wrong(x: f32) -> f32 { return select(x, x + 1.0, x > 3.0); }";
 
-/// A case file of a user's module, and the place and words of what is wrong with it.
+/// A wrong case file of a user's module, and the start of the diagnostic.
 const CASE_ERRORS: &[(&str, &str)] = &[
     ("[[case]\n", "mine.toml:1:"),
     (
@@ -106,13 +106,14 @@ pub fn case_errors() -> Result<(), Failed> {
         let found =
             lamplight::diagnostic::render::render(&sources.lock().unwrap(), &errors, Form::Short);
         if !found.starts_with(expected) {
-            wrong += &format!("{text}: {found}not {expected}\n");
+            wrong += &format!("{text}: expected {expected}, found {found}\n");
         }
     }
     if wrong.is_empty() { Ok(()) } else { Err(wrong.into()) }
 }
 
-/// A function that is off fails with its smallest input.
+/// A function with wrong results fails with its smallest wrong input, the broken law, and a row that
+/// can be pasted into the case file.
 pub fn wrong_function() -> Result<(), Failed> {
     let cases = "[[case]]\nfunction = \"wrong\"\nformula = \"x\"\nlaws = { falling = \"x\" }\ninputs = { x = { random = [0, 10], count = 500 } }\n";
     opened(|open| {
@@ -128,7 +129,7 @@ pub fn wrong_function() -> Result<(), Failed> {
             "rows = [{ x = [4.0], expect = [4.0] }]",
         ] {
             if !text.contains(expected) {
-                return Err(format!("{expected} is missing in\n{text}").into());
+                return Err(format!("expected `{expected}` in\n{text}").into());
             }
         }
         Ok(())

@@ -1,4 +1,5 @@
-//! Runs beside each other: one that waits says so, and a reader always finds a whole bundle.
+//! Two commands at the same time over one bundle. A run that waits for another says so, and a reader
+//! always finds a whole bundle.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -18,7 +19,7 @@ pub fn trials() -> Vec<Trial> {
     cases.into_iter().map(trial).collect()
 }
 
-/// Runs of a bundle while it is verified.
+/// How often the bundle is written while it is verified.
 const ROUNDS: usize = 12;
 const GEN: [&str; 5] = ["gen", "--cache", "cache", "-o", "out"];
 
@@ -40,7 +41,8 @@ fn change(folder: &TempDir, number: usize) -> Outcome {
     Ok(fs::write(folder.path().join("s.wesl"), shader)?)
 }
 
-/// A run whose turn it is not says what it waits for, and goes on afterwards.
+/// A run that finds the bundle locked says that it waits for another run, and continues when the
+/// lock is released.
 fn told() -> Outcome {
     let folder = package()?;
     change(&folder, 1)?;
@@ -61,10 +63,11 @@ fn told() -> Outcome {
     let status = waiting.wait()?;
     match status.success() && line.contains("another run") {
         true => Ok(()),
-        false => Err(format!("{status}: {line:?}").into()),
+        false => Err(format!("expected `another run` and success: {line:?}, {status}").into()),
     }
 }
 
+/// A bundle can be verified at any time while runs replace it.
 fn verified() -> Outcome {
     let folder = package()?;
     thread::scope(|scope| {

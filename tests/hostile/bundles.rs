@@ -1,4 +1,5 @@
-//! Bundles and cache records that were made by hand, with checksums that are right.
+//! Bundles and cache records that an attacker made. Their checksums are right, so checksums do not
+//! protect the reader.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -37,10 +38,10 @@ const READERS: [&[&str]; 4] = [
     &["merge", "merged", "b.lamplight", "good.lamplight"],
 ];
 
-/// Address space that is enough for every honest bundle of this size, in KiB.
+/// An address space that is enough for every ordinary bundle of this size, in KiB.
 const LITTLE_KIB: u64 = 1 << 20;
 
-/// A package of 300 permutations, each with a text of its own, and its bundle.
+/// A package with 300 permutations that all have different texts, and its bundle.
 fn package() -> Result<TempDir, Failed> {
     let folder = tempfile::tempdir()?;
     let list = |count: usize| (0..count).map(|i| i.to_string()).collect::<Vec<_>>().join(",");
@@ -65,7 +66,7 @@ fn generate(folder: &TempDir, out: &str) -> Outcome {
 fn pipe(path: &Path) -> Outcome {
     match Command::new("mkfifo").arg(path).status()?.success() {
         true => Ok(()),
-        false => Err("mkfifo".into()),
+        false => Err(format!("`mkfifo {}` failed", path.display()).into()),
     }
 }
 
@@ -73,17 +74,19 @@ fn pipe(path: &Path) -> Outcome {
 fn refused(folder: &TempDir, words: &str) -> Outcome {
     for arguments in READERS {
         let output = run_within(LITTLE_KIB, folder, arguments)?;
-        // What can be opened and is then found damaged is a check that failed.
+        // 1 is a bundle that cannot be opened. 3 is a failed check: the bundle was opened, and its
+        // damage was found later.
         let code = if output.status.code() == Some(3) { 3 } else { 1 };
         fails(&output, code, words).map_err(|error| format!("{arguments:?}: {error:?}"))?;
     }
     let is_there = |name: &str| folder.path().join(name).exists();
     match is_there("packed.lamplight") || is_there("merged/manifest.json") {
-        true => Err("something was written of it".into()),
+        true => Err("a command wrote an output from the bundle, although it refused it".into()),
         false => Ok(()),
     }
 }
 
+/// A pipe or a device in the place of a bundle is refused. Reading it would never end.
 fn no_file() -> Outcome {
     let folder = package()?;
     let place = folder.path().join("b.lamplight");
@@ -98,6 +101,7 @@ fn no_file() -> Outcome {
     refused(&folder, "is a pipe or a device")
 }
 
+/// A pipe in the place of a blob is refused.
 fn pipe_for_a_blob() -> Outcome {
     let folder = package()?;
     generate(&folder, "b.lamplight.dir")?;
@@ -122,7 +126,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, Failed> {
     Ok(found)
 }
 
-/// The contents with other bytes for the first artifact.
+/// The contents, with other bytes for the first artifact.
 fn with_artifact(mut contents: Contents, bytes: Vec<u8>) -> Result<Contents, Failed> {
     let program = contents.programs.values_mut().next().ok_or("no program")?;
     let entries = program.languages.values_mut().next().ok_or("no language")?;
@@ -138,7 +142,7 @@ fn with_artifact(mut contents: Contents, bytes: Vec<u8>) -> Result<Contents, Fai
     Ok(contents)
 }
 
-/// Where the table of blobs is, and how many there are.
+/// The offset of the table of blobs, and the number of blobs.
 fn blobs(packed: &[u8]) -> Result<(usize, usize), Failed> {
     let number = |at: usize| -> Result<usize, Failed> {
         let bytes = packed.get(at..at + 8).and_then(|bytes| bytes.try_into().ok());
@@ -149,7 +153,8 @@ fn blobs(packed: &[u8]) -> Result<(usize, usize), Failed> {
     Ok((number(24 + 4 * 32)?, meta["blobs"].as_u64().ok_or("no count")? as usize))
 }
 
-/// Each blob says that it is a part of the one that is large, beginning elsewhere.
+/// Each record of a blob points into one large compressed blob, each at another offset. A reader
+/// that extracted every blob would need much memory for a small file.
 fn overlapping() -> Outcome {
     const LARGE: usize = 1 << 20;
     let folder = package()?;
@@ -172,13 +177,13 @@ fn overlapping() -> Outcome {
     }
     let packed = seal::bundle(&packed);
     if packed.len() > 100_000 {
-        return Err(format!("{} bytes are no small file", packed.len()).into());
+        return Err(format!("the file should be small, it has {} bytes", packed.len()).into());
     }
     fs::write(folder.path().join("b.lamplight"), packed)?;
     refused(&folder, "is damaged")
 }
 
-/// A blob with the wrong checksum, below checksums that are right.
+/// A blob has a wrong checksum, but the checksums of the tables above it are right.
 fn mended() -> Outcome {
     let folder = package()?;
     let mut packed = fs::read(folder.path().join("good.lamplight"))?;
@@ -188,7 +193,7 @@ fn mended() -> Outcome {
     refused(&folder, "checksum")
 }
 
-/// A name that would clear the screen.
+/// A name with control characters, which would clear a terminal, is refused and never printed.
 fn names() -> Outcome {
     let folder = package()?;
     let packed = fs::read(folder.path().join("good.lamplight"))?;
@@ -200,7 +205,7 @@ fn names() -> Outcome {
         let output = run(&folder, arguments)?;
         fails(&output, 1, "").map_err(|error| format!("{arguments:?}: {error:?}"))?;
         if [output.stdout, output.stderr].concat().contains(&0x1b) {
-            return Err(format!("{arguments:?} prints it").into());
+            return Err(format!("{arguments:?} prints the name's escape character").into());
         }
     }
     Ok(())
@@ -213,15 +218,19 @@ fn records(folder: &TempDir) -> Result<Vec<PathBuf>, Failed> {
     Ok(found.into_iter().filter(is_unit).collect())
 }
 
-/// After the records were changed, a run computes what it computed before.
+/// A run over the changed cache records gives the same bundle as before, in limited memory.
 fn same(folder: &TempDir) -> Outcome {
     let limited = ["gen", "--cache", "cache", "-o", "again.lamplight"];
     fails(&run_within(2 << 20, folder, &limited)?, 0, "")?;
     let [one, other] =
         ["good.lamplight", "again.lamplight"].map(|name| fs::read(folder.path().join(name)));
-    if one? == other? { Ok(()) } else { Err("another bundle".into()) }
+    match one? == other? {
+        true => Ok(()),
+        false => Err("the changed cache records gave another bundle".into()),
+    }
 }
 
+/// Records of the cache are exchanged with each other, so each is valid and in the wrong place.
 fn swapped() -> Outcome {
     let folder = package()?;
     let records = records(&folder)?;
@@ -233,14 +242,14 @@ fn swapped() -> Outcome {
     same(&folder)
 }
 
-/// Records that say that they hold two gigabytes, or do.
+/// Compressed records that claim to hold two gigabytes. One of them really extracts to that much.
 fn growing() -> Outcome {
     let folder = package()?;
     for (number, path) in records(&folder)?.into_iter().enumerate() {
         let name = path.strip_prefix(folder.path().join("cache"))?.to_string_lossy().into_owned();
         let name =
             name.split_once("units/").map_or(name.clone(), |(_, rest)| format!("units/{rest}"));
-        // A match that repeats the byte before it: one byte of LZ4 for each 255.
+        // An LZ4 match that repeats the previous byte: each byte of input gives 255 of output.
         let length = if number == 0 { 8 << 20 } else { 16 };
         let packed = [&0x7fff_ff00_u32.to_le_bytes()[..], &[0x1f, 0, 1, 0], &vec![255; length]];
         fs::write(&path, seal::record(&name, &packed.concat()))?;
@@ -248,6 +257,7 @@ fn growing() -> Outcome {
     same(&folder)
 }
 
+/// Pipes in the place of cache records are not waited for.
 fn pipes() -> Outcome {
     let folder = package()?;
     for path in records(&folder)? {

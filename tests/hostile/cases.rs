@@ -1,4 +1,4 @@
-//! Case files.
+//! Case files that ask for too much, or for nothing.
 
 use super::Hostile;
 
@@ -16,7 +16,7 @@ fn over(case: &str) -> Vec<(&'static str, String)> {
     vec![("m.wesl", MODULE.to_owned()), ("m.toml", format!("[[case]]\n{case}\n"))]
 }
 
-/// A function that calls another twice, and so on: 2^60 calls without a loop.
+/// Functions that each call the next one twice: 2^60 calls without a loop.
 fn call_tree() -> Vec<(&'static str, String)> {
     let mut module = "fn g0(x: f32) -> f32 { return x + 1.0; }\n".to_owned();
     for level in 1..=60 {

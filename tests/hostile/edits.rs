@@ -1,4 +1,4 @@
-//! Messages to the language server that ask for much.
+//! Messages to the language server that ask for much work.
 
 use lamplight::lsp::Server;
 use libtest_mimic::Trial;
@@ -11,7 +11,7 @@ pub fn trials() -> Vec<Trial> {
 }
 
 const URI: &str = "file:///no/such/folder/lamp.wesl";
-/// A document and edits of it that read and move more bytes than one message may.
+/// The size of the document. This many edits of it move more bytes than one message may.
 const BYTES: usize = 1 << 20;
 const EDITS: usize = 300;
 
@@ -20,7 +20,8 @@ fn edit() -> Value {
     json!({ "range": { "start": place, "end": place }, "text": "x" })
 }
 
-/// The user is told, and nothing is answered about a text that is another one in the editor.
+/// A message with too many edits is not applied, and the user is told. The server then gives no
+/// answers about the document, since its text differs from the editor's.
 fn many() -> Outcome {
     let mut server = Server::new(Box::new(|_| None));
     let document = json!({ "uri": URI, "version": 1, "text": "x".repeat(BYTES) });
@@ -31,7 +32,10 @@ fn many() -> Outcome {
     let told = many.iter().any(|message| message["method"] == "window/showMessage");
     match (few.is_empty(), told) {
         (true, true) => Ok(()),
-        _ => Err(format!("{few:?}, {many:?}").into()),
+        _ => {
+            let what = format!("10 edits should give no message: {few:?}");
+            Err(format!("{what}; {EDITS} should give `showMessage`: {many:?}").into())
+        }
     }
 }
 

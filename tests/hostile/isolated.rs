@@ -1,5 +1,5 @@
-//! Shaders that are within every limit and still end naga's process, or take it too long: each is
-//! an error of its own, and nothing else is lost.
+//! Shaders that are within every limit and still exhaust naga: it takes too long or too much memory.
+//! naga runs in a process of its own for them. Each gives an error, and other shaders are compiled.
 
 use std::fs;
 use std::io::Write as _;
@@ -14,7 +14,7 @@ type Case = (&'static str, fn() -> Outcome);
 
 const CALM: &str = "@fragment fn calm() -> @location(0) vec4f { return vec4f(); }\n";
 
-/// Address space of a run in which naga finds too little for an array of many values, in KiB.
+/// An address space in which naga has too little memory for an array of many values, in KiB.
 const LITTLE_KIB: u64 = 700 << 10;
 
 pub fn trials() -> Vec<Trial> {
@@ -28,7 +28,7 @@ pub fn trials() -> Vec<Trial> {
     cases.into_iter().map(trial).collect()
 }
 
-/// Functions of thousands of statements, each with an index that naga's writers check.
+/// Functions with thousands of statements. Each has an index for which naga's writers add a check.
 fn indices(functions: usize, statements: usize) -> String {
     let body: String = (0..statements).map(|i| format!("s += m[i][{}];\n", i % 4)).collect();
     let function = |f| format!("fn g{f}(i: i32) -> f32 {{ var s = 0.0;\n{body}return s; }}\n");
@@ -42,7 +42,7 @@ fn indices(functions: usize, statements: usize) -> String {
     )
 }
 
-/// An array of so many values.
+/// A shader with an array of `count` values.
 fn values(count: usize) -> String {
     format!(
         "@fragment fn large(@location(0) @interpolate(flat) i: i32) -> @location(0) vec4f {{\n\
@@ -65,17 +65,18 @@ fn refused(large: &str, kib: u64, words: &str) -> Outcome {
     fails(&alone, 0, "SV_Target0")
 }
 
-/// Of time or of memory: which of the two ends first depends on the machine.
+/// naga takes more time or memory than it may have. Which of the two depends on the machine.
 fn too_long() -> Outcome {
     refused(&indices(9, 8000), 4 << 20, "naga takes more")
 }
 
+/// naga takes more memory than it may have.
 fn too_much() -> Outcome {
     refused(&values(500_000), LITTLE_KIB, "naga takes more memory than it may have")
 }
 
-/// Texts that nest without end in every way that naga's readers recurse: a rehearsal has the same
-/// limits as a run, so that none of them reaches naga's stack, and nothing dies.
+/// Texts nest deeply in every way in which naga's parsers recurse. The process in which naga is tried
+/// has the same limits as an ordinary run, so it refuses them and its stack does not overflow.
 fn nested() -> Outcome {
     const DEPTH: usize = 100_000;
     let around = |before: &str, open: &str, inner: &str, close: &str, after: &str| {
@@ -100,13 +101,16 @@ fn nested() -> Outcome {
         let output = rehearsed(&job.to_string())?;
         if !output.status.success() || !output.stderr.is_empty() {
             let words = String::from_utf8_lossy(&output.stderr);
-            return Err(format!("{}: {} {words}", &text[..60], output.status).into());
+            let start = &text[..60];
+            return Err(
+                format!("`{start}...`: expected success, {}: {words}", output.status).into()
+            );
         }
     }
     Ok(())
 }
 
-/// The process of a rehearsal over a job.
+/// Runs the process in which naga is tried, with a job on its standard input.
 fn rehearsed(job: &str) -> Result<Output, Failed> {
     let mut rehearsal = Command::new(env!("CARGO_BIN_EXE_lamplight"))
         .args(["rehearse", "naga"])
@@ -120,7 +124,7 @@ fn rehearsed(job: &str) -> Result<Output, Failed> {
     Ok(rehearsal.wait_with_output()?)
 }
 
-/// What is beyond the calm part of a limit and within reason is compiled, as `gen` does too.
+/// A large text that is tried in another process first, and that naga can compile, is compiled.
 fn large() -> Outcome {
     let folder = tempfile::tempdir()?;
     fs::write(folder.path().join("large.wgsl"), indices(1, 1100))?;

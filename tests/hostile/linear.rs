@@ -1,5 +1,6 @@
-//! Ten times the input takes about ten times the steps, or a limit of ours comes first. Steps are
-//! counted where the loops are (`lamplight::limits::taken`), so that no machine is too slow for this.
+//! Ten times the input takes about ten times the steps, or one of our limits ends it. If a loop took
+//! quadratic time, a small file could occupy the tool for hours. The loops count their steps
+//! (`lamplight::limits::taken`). These do not depend on the speed of the machine, as times would.
 
 use lamplight::bundle::Language;
 use lamplight::compose::{self, Options};
@@ -13,7 +14,7 @@ use libtest_mimic::Trial;
 
 use super::Outcome;
 
-/// Files by path, the root first.
+/// Paths and texts of files. The first is the root.
 type Files = Vec<(String, String)>;
 
 struct Case {
@@ -36,7 +37,7 @@ pub fn trials() -> Vec<Trial> {
     rows.chain([names]).collect()
 }
 
-/// Steps for each of ten parts may be so much more than for one, in percent.
+/// How many percent more than ten times the steps are allowed for ten times the input.
 const SLACK: u64 = 20;
 
 fn is_linear(case: &Case) -> Outcome {
@@ -44,12 +45,18 @@ fn is_linear(case: &Case) -> Outcome {
     let most = 10 * one + 10 * one * SLACK / 100;
     match (one as usize > case.size / 2, ten <= most) {
         (true, true) => Ok(()),
-        (false, _) => Err(format!("only {one} steps are counted").into()),
-        (_, false) => Err(format!("{one} steps for {}, and {ten} for ten times", case.size).into()),
+        (false, _) => {
+            let what = format!("only {one} steps are counted for {} parts", case.size);
+            Err(format!("{what}: a loop of this input counts no steps").into())
+        }
+        (_, false) => {
+            let what = format!("{one} steps for {} parts, {ten} for ten times as many", case.size);
+            Err(format!("{what}, expected at most {most}").into())
+        }
     }
 }
 
-/// What composing or reading the first file takes, whether it succeeds or not.
+/// The steps of reading and composing the first file, whether that succeeds or not.
 fn steps(files: &Files) -> u64 {
     let before = limits::taken();
     let _ = outcome(files);
@@ -236,7 +243,8 @@ const CASES: &[Case] = &[
     },
 ];
 
-/// Each path leads through many imports of many names: few bytes, many steps.
+/// Each path in the shader leads through a chain of imports to a name with many meanings. That is
+/// a small text with very many steps, so it must give the error of the limit, with a place.
 fn many_meanings() -> Outcome {
     let chain = lines(60, |i| format!("import a{i}::b as a{};\n", i + 1));
     let last = lines(64, |i| format!("@if(f{i}) import a60::c{i} as z;\n"));
@@ -245,11 +253,14 @@ fn many_meanings() -> Outcome {
     match outcome(&alone(WESL, text)) {
         Err(errors) if errors.len() == 1 && errors[0].code == codes::LIMIT_EXCEEDED => {
             match errors[0].labels.is_empty() {
-                true => Err("the error has no place".into()),
+                true => Err("the error `limit-exceeded` has no place".into()),
                 false => Ok(()),
             }
         }
-        Err(errors) => Err(format!("{} errors, {:?}", errors.len(), errors.first()).into()),
-        Ok(()) => Err("it is composed".into()),
+        Err(errors) => {
+            let found = format!("{} errors, the first is {:?}", errors.len(), errors.first());
+            Err(format!("expected only `limit-exceeded`, found {found}").into())
+        }
+        Ok(()) => Err("the text was composed, expected `limit-exceeded`".into()),
     }
 }

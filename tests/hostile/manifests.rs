@@ -1,4 +1,4 @@
-//! Manifests, and packages of others.
+//! Manifests that ask for too much, and a dependency that claims files outside of its folder.
 
 use super::Hostile;
 
@@ -6,7 +6,7 @@ type Files = Vec<(&'static str, String)>;
 
 const SHADER: &str = "@fragment fn m() -> @location(0) vec4f { return vec4f(); }\n";
 
-/// A program with so many axes of so many values, and constraints.
+/// A program with `axes` axes of `values` values each, and constraints.
 fn program(axes: usize, values: usize, constraints: impl Iterator<Item = String>) -> Files {
     let values: Vec<String> = (0..values).map(|value| value.to_string()).collect();
     let axis = |axis| format!("a{axis} = {{ values = [{}] }}\n", values.join(","));
@@ -18,7 +18,7 @@ fn program(axes: usize, values: usize, constraints: impl Iterator<Item = String>
     vec![("lamplight.toml", manifest), ("s.wesl", SHADER.to_owned())]
 }
 
-/// Constraints between many axes, each between others.
+/// Constraints that each connect three of many axes, so that the axes cannot be counted apart.
 fn entangled(count: usize) -> impl Iterator<Item = String> {
     (0..count).map(|i| {
         let (a, b, c) = (i % 120, (i * 7 + 3) % 120, (i * 13 + 1) % 120);
@@ -26,7 +26,7 @@ fn entangled(count: usize) -> impl Iterator<Item = String> {
     })
 }
 
-/// A dependency that says that its modules are somewhere else.
+/// A dependency that declares a root outside of its own folder.
 fn foreign_root() -> Files {
     let declared = |name: &str, rest: &str| {
         format!("[package]\nname = \"{name}\"\nedition = \"unstable_2025\"\n{rest}")

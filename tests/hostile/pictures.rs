@@ -1,4 +1,4 @@
-//! Environments.
+//! Environment maps of `render` that are too large, empty, or not files.
 
 use super::Hostile;
 
@@ -22,7 +22,7 @@ const fn sized(
 pub const CASES: &[Hostile] = &[
     sized("picture_of_ten_gigapixels", "pixels are more than", || header("-Y 100000 +X 100000")),
     sized("picture_of_the_largest_size", "too large", || header("-Y 4294967295 +X 4294967295")),
-    // Near the bound, so that it is decoded in a process of its own first.
+    // The size is near the limit, so the file is first decoded in a process of its own.
     sized("picture_without_pixels", "`e.hdr`", || header("-Y 4000 +X 4000")),
     picture(
         "picture_from_a_device",

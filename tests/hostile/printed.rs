@@ -1,4 +1,4 @@
-//! Names and messages from elsewhere, on their way to a terminal.
+//! Names and texts of others do not control the user's terminal when the command prints them.
 
 use std::fs;
 
@@ -6,7 +6,8 @@ use libtest_mimic::Trial;
 
 use super::{Outcome, run};
 
-/// Clears the screen, in seven and in eight bits, and turns writing around.
+/// Escape sequences that clear a screen, in their 7-bit and 8-bit forms, and the character that
+/// reverses the direction of text.
 const EVIL: &str = "a\u{1b}[2J\u{9b}2J\u{202e}b";
 
 type Case = (&'static str, fn() -> Outcome);
@@ -18,7 +19,7 @@ pub fn trials() -> Vec<Trial> {
     cases.into_iter().map(trial).collect()
 }
 
-/// Neither stream has anything that a terminal obeys.
+/// Fails if the command prints a control character, on either stream, in any form of diagnostics.
 fn harmless(arguments: &[&str], file: &str) -> Outcome {
     for form in ["human", "short", "json"] {
         let folder = tempfile::tempdir()?;
@@ -53,11 +54,14 @@ fn messages() -> Outcome {
     )
 }
 
-/// A pipe gets the bytes as they are.
+/// A composed text that goes to a pipe is not changed.
 fn composed() -> Outcome {
     let folder = tempfile::tempdir()?;
     fs::write(folder.path().join("m.wesl"), format!("// {EVIL}\nfn f() {{}}\n"))?;
     let output = run(&folder, &["compose", "m.wesl"])?;
     let text = String::from_utf8(output.stdout)?;
-    if text.contains(EVIL) { Ok(()) } else { Err(text.into()) }
+    match text.contains(EVIL) {
+        true => Ok(()),
+        false => Err(format!("the comment {EVIL:?} should be as it was in: {text:?}").into()),
+    }
 }

@@ -1,4 +1,4 @@
-//! Shader sources.
+//! Shaders that are small and make naga or a driver need much memory or time.
 
 use super::Hostile;
 
@@ -13,7 +13,7 @@ fn repeated(count: usize, one: impl Fn(usize) -> String) -> String {
     (0..count).map(one).collect()
 }
 
-/// Declarations of `n0`, `n1` and so on, all of them used.
+/// A shader with the declarations `n0`, `n1` and so on, all of which it uses.
 fn summed(count: usize, one: impl Fn(usize) -> String) -> Files {
     let sum = repeated(count, |i| format!("s += n{i};\n"));
     let main = format!(
@@ -22,7 +22,7 @@ fn summed(count: usize, one: impl Fn(usize) -> String) -> Files {
     vec![("m.wgsl", repeated(count, one) + &main)]
 }
 
-/// Constants each of which holds the one before twice.
+/// Constants that each contain the previous one twice.
 fn doubling_constants() -> Files {
     let more = repeated(24, |i| format!("const c{} = array(c{i}, c{i});\n", i + 1));
     let main = format!(

@@ -1,5 +1,5 @@
-//! Shared stores whose server is dead, late, silent, rude or wrong: the bundle is the same, the run
-//! ends soon, and its user is told.
+//! Shared stores whose server fails in different ways. The bundle must be the same as without a
+//! store, the run must end soon, and the user must be told of the failure.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,7 +16,7 @@ use tempfile::TempDir;
 
 use super::{Outcome, fails, run_within};
 
-/// What a server does to those who ask, once it answered when it was opened.
+/// How a server answers, after it has answered the first request as it should.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Manner {
     /// Answers as it should.
@@ -29,19 +29,20 @@ enum Manner {
     Interrupted,
     /// Answers with bytes that mean nothing.
     Garbled,
-    /// Says that it has no memory left.
+    /// Answers that it has no memory left.
     Full,
     /// Answers with the record of another name.
     Mixed,
-    /// Says that a record is longer than any may be, and goes on sending it.
+    /// Announces a record that is longer than any may be, and sends it.
     Endless,
 }
 
-/// Requests that are answered as they should be: those of opening.
+/// How many requests are answered as they should be. They are those with which a run opens the
+/// store.
 const OPENING: usize = 1;
-/// A run with a server that fails ends before this.
+/// The longest time of a run whose server fails.
 const SOON: Duration = Duration::from_secs(30);
-/// Address space of a run, in KiB.
+/// The address space of a run, in KiB.
 const LITTLE_KIB: u64 = 1 << 20;
 
 pub fn trials() -> Vec<Trial> {
@@ -52,7 +53,7 @@ pub fn trials() -> Vec<Trial> {
         ("interrupted", Manner::Interrupted, true),
         ("garbled", Manner::Garbled, true),
         ("full", Manner::Full, true),
-        // What is not the record of its name counts as absent.
+        // A record that does not belong to its name counts as absent, which is not an error.
         ("mixed", Manner::Mixed, false),
         ("endless", Manner::Endless, true),
     ];
@@ -62,7 +63,7 @@ pub fn trials() -> Vec<Trial> {
     let dead = Trial::test("hostile::store_that_is_dead", dead);
     let mute = Trial::test("hostile::store_that_never_answers", mute);
     let all = served.into_iter().chain([dead, mute]);
-    // A command without the feature has no servers to ask: the trials are told as ignored.
+    // Without the feature `store` the command cannot use servers, so these trials are ignored.
     all.map(|trial| trial.with_ignored_flag(cfg!(not(feature = "store")))).collect()
 }
 
@@ -77,7 +78,7 @@ fn package() -> Result<TempDir, Failed> {
     Ok(folder)
 }
 
-/// A run with an empty cache of its own and the store.
+/// A run with an empty cache of its own and a shared store.
 fn generate(folder: &TempDir, name: &str, address: &str) -> Result<Output, Failed> {
     let (out, cache) = (format!("{name}.lamplight"), format!("{name} cache"));
     let arguments = ["gen", "--store", address, "--cache", &cache, "-o", &out];
@@ -100,23 +101,27 @@ fn serves(manner: Manner, is_told: bool) -> Outcome {
     fails(&second, 0, "12 permutations")?;
     for name in ["first", "second"] {
         if fs::read(folder.path().join(name).with_extension("lamplight"))? != expected {
-            return Err(format!("the bundle `{name}` is another one").into());
+            let what = "differs from the bundle without a store";
+            return Err(format!("{manner:?}: the bundle `{name}` {what}").into());
         }
     }
     if elapsed > SOON {
-        return Err(format!("the run took {elapsed:?}").into());
+        return Err(format!("{manner:?}: the run took {elapsed:?}, at most {SOON:?}").into());
     }
     if server.asked.load(Ordering::Relaxed) <= OPENING {
-        return Err("the server was not asked".into());
+        return Err(format!("{manner:?}: the second run asked the server nothing").into());
     }
     let told = String::from_utf8_lossy(&second.stderr).contains("the cache or the store refused");
     match told == is_told {
         true => Ok(()),
-        false => Err(format!("told: {told}, expected: {is_told}").into()),
+        false => {
+            let what = format!("the user was told: {told}, expected: {is_told}");
+            Err(format!("{manner:?}: {what}").into())
+        }
     }
 }
 
-/// Nobody listens at the port.
+/// Nothing listens at the port, so the run ends with exit code 4.
 fn dead() -> Outcome {
     let folder = package()?;
     let port = TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
@@ -124,7 +129,7 @@ fn dead() -> Outcome {
     fails(&output, 4, "the store `redis://127.0.0.1")
 }
 
-/// Somebody listens and takes no connection.
+/// Something listens at the port and never accepts a connection. The run gives up after its limit.
 fn mute() -> Outcome {
     let folder = package()?;
     let listener = TcpListener::bind("127.0.0.1:0")?;
@@ -134,17 +139,17 @@ fn mute() -> Outcome {
     fails(&output, 4, "does not answer within 5 s")?;
     match start.elapsed() < SOON {
         true => Ok(()),
-        false => Err(format!("the run took {:?}", start.elapsed()).into()),
+        false => Err(format!("the run took {:?}, at most {SOON:?}", start.elapsed()).into()),
     }
 }
 
 type Records = BTreeMap<Vec<u8>, Vec<u8>>;
 
-/// A server that understands what is asked of a store, in the protocol of Redis.
+/// A server that understands the requests of a store, in the protocol of Redis.
 struct Server {
     port: u16,
     manner: Arc<Mutex<Manner>>,
-    /// Questions about records since the manner changed.
+    /// The number of requests about records since the manner was set.
     asked: Arc<AtomicUsize>,
 }
 
@@ -162,7 +167,7 @@ impl Server {
                     asked: Arc::clone(&asked),
                     records: Arc::clone(&records),
                 };
-                // The guest leaves, or is made to: either ends the conversation.
+                // The result is not needed: an error ends the connection just as the client does.
                 thread::spawn(move || guest.serve(stream));
             }
         });
@@ -175,7 +180,7 @@ impl Server {
     }
 }
 
-/// One connection.
+/// One connection of a client.
 struct Guest {
     manner: Arc<Mutex<Manner>>,
     asked: Arc<AtomicUsize>,
@@ -237,7 +242,7 @@ impl Guest {
     }
 }
 
-/// A record of 16 GiB.
+/// Answers as if every record had 16 GiB.
 fn endless(command: &[u8], answers: &mut TcpStream) -> std::io::Result<()> {
     const BYTES: u64 = 16 << 30;
     match command {
@@ -252,7 +257,7 @@ fn endless(command: &[u8], answers: &mut TcpStream) -> std::io::Result<()> {
     }
 }
 
-/// A request: an array of strings, each with its length.
+/// Reads a request: an array of strings, each with its length. `None` at the end.
 fn request(requests: &mut BufReader<TcpStream>) -> std::io::Result<Option<Vec<Vec<u8>>>> {
     let Some(count) = length(requests)? else { return Ok(None) };
     let mut words = Vec::new();
@@ -266,7 +271,7 @@ fn request(requests: &mut BufReader<TcpStream>) -> std::io::Result<Option<Vec<Ve
     Ok(Some(words))
 }
 
-/// The number after `*` or `$`; `None` at the end.
+/// Reads the number after `*` or `$`. `None` at the end.
 fn length(requests: &mut BufReader<TcpStream>) -> std::io::Result<Option<usize>> {
     let mut line = String::new();
     requests.read_line(&mut line)?;

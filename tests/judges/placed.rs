@@ -1,4 +1,4 @@
-//! What an output is refused for is told in the author's line.
+//! The refusal of an output is told at the line of the author's that causes it.
 
 use std::fs;
 
@@ -6,10 +6,10 @@ use lamplight::bundle::Bundle;
 
 use super::{COUNTED, COUNTED_MANIFEST, Outcome, Package, expect};
 
-/// A judge's refusal is told in the author's line, with permutation and target; the older bundle
-/// stays as it was, in both forms.
+/// A judge's refusal is told at the author's line, with the permutation and the target. The older
+/// bundle stays as it was, as a folder and as a file.
 pub fn refusals_are_placed() -> Outcome {
-    // naga writes the mask of samples as one number where GLSL has an array.
+    // naga writes the sample mask as one number, but GLSL has an array.
     let masked = "@fragment fn fs_main(
     @location(0) at: vec2f,
     @if(bits) @builtin(sample_mask) mask: u32,
@@ -35,13 +35,14 @@ pub fn refusals_are_placed() -> Outcome {
         let bundle = Bundle::open(package.path(out))?;
         bundle.verify()?;
         if bundle.contents()? != before {
-            return Err(format!("{out} was replaced").into());
+            return Err(format!("{out} was replaced although an output was refused").into());
         }
     }
     Ok(())
 }
 
-/// What a writer has no words for is told in the author's function, with permutation and target.
+/// If naga's writer cannot write a function for a target, the error is at the author's function,
+/// with the permutation and the target.
 pub fn writers_are_placed() -> Outcome {
     let cubes = "
 @group(0) @binding(0) var cubes: texture_cube_array<f32>;
@@ -60,8 +61,8 @@ fn looked(at: vec3f) -> vec4f { return textureSample(cubes, smp, at, 1); }
     expect(&package.run(&["gen", "--no-cache"])?, 1, &words)
 }
 
-/// What GLSL takes and computes otherwise is refused in the author's line, and where other targets
-/// are asked for it is not.
+/// Code for which the GLSL output would be accepted and compute something else, or that the language
+/// cannot express, is refused at the author's line. For other targets it is compiled.
 pub fn glsl_means_something_else() -> Outcome {
     let fragment = |body: &str| {
         format!(

@@ -1,4 +1,6 @@
-//! Programs that use the keys of a manifest: one line of ordinals in, a key and its number out.
+//! Writes programs that use the typed keys of a manifest, in each language. For each line of
+//! ordinals that they read, they print the key, its number, and whether the number gives the key
+//! back.
 
 use lamplight::permute::{Kind, Manifest, Mode, Setting};
 

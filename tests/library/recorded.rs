@@ -1,6 +1,5 @@
-//! What all permutations of the library gave when they were last accepted: one hash for each
-//! program, stage and target in a snapshot, and the outputs themselves to compare with, where they
-//! can be had again.
+//! The recorded outputs of all permutations of the library. A snapshot has one hash for each program,
+//! stage and target. If the recorded outputs themselves can be made again, a difference is shown.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -17,21 +16,24 @@ use similar::TextDiff;
 use super::readable;
 use crate::snapshot;
 
-/// Keys whose texts are shown, and lines of each difference.
+/// The number of keys whose texts are shown.
 const SHOWN: usize = 3;
+/// The most lines of each difference.
 const LINES: usize = 40;
 
-/// The snapshot: `FOLDER/NAME.snap`.
+/// The folder of the snapshot.
 const FOLDER: &str = "shaderlib/programs";
+/// The name of the snapshot.
 const NAME: &str = "hashes";
 
-/// Compares with the recorded table; a difference names the first keys, with their texts.
+/// Compares the outputs with the recorded table. The message of a difference has the first keys, with
+/// their texts.
 pub fn check(contents: &Contents) -> Result<(), Failed> {
     let (found, recorded) = (table(contents)?, recorded());
     if found == recorded {
         return Ok(keep(contents, &found)?);
     }
-    // Accepts the table where that is asked for, and says so to `cargo insta` where not.
+    // Accepts the table if the environment asks for that. Otherwise it is left for `cargo insta`.
     if snapshot::check(FOLDER, NAME, &found).is_ok() {
         return Ok(keep(contents, &found)?);
     }
@@ -39,19 +41,19 @@ pub fn check(contents: &Contents) -> Result<(), Failed> {
     let texts = match accepted(&recorded)? {
         Some(accepted) => difference(&accepted, contents)?,
         None => format!(
-            "The outputs of the recorded state are not at hand: the change is not in `shaderlib/` \
-             alone. Run this trial at the commit that recorded them, which keeps them in `{}`.",
+            "The recorded outputs are not available, since not only `shaderlib/` has changed. To see \
+             the differences, run this trial at the commit that recorded them: it keeps them in `{}`.",
             folder().display()
         ),
     };
     Err(format!("outputs differ from snapshots/{FOLDER}/{NAME}.snap:\n{rows}\n{texts}").into())
 }
 
-/// The recorded table; empty where there is none yet.
+/// The recorded table; empty if there is none.
 fn recorded() -> String {
     let path = snapshot::root().join(format!("snapshots/{FOLDER}/{NAME}.snap"));
     let text = std::fs::read_to_string(path).unwrap_or_default();
-    // The text follows insta's header.
+    // The table is after insta's header.
     text.splitn(3, "---\n").last().unwrap_or_default().to_owned()
 }
 
@@ -117,7 +119,7 @@ fn hash(entry: &EntryContents, target: &str) -> String {
     hasher.finalize().to_hex()[..12].to_owned()
 }
 
-/// The lines of a table that differ, old and new.
+/// The header and the lines of the new table that the old one does not have.
 fn differing_rows(old: &str, new: &str) -> String {
     let old: BTreeSet<&str> = old.lines().collect();
     let header = new.lines().next().unwrap_or_default();
@@ -125,7 +127,7 @@ fn differing_rows(old: &str, new: &str) -> String {
     rows.map(|line| format!("{line}\n")).collect()
 }
 
-/// Where accepted outputs are kept.
+/// The folder in which accepted outputs are kept.
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("accepted")
 }
@@ -135,19 +137,20 @@ fn file(table: &str) -> PathBuf {
     folder().join(format!("{}.lamplight", &hash[..16]))
 }
 
-/// Keeps accepted outputs, in place of older ones, for the next difference.
+/// Keeps accepted outputs, in place of older ones, so that the next difference can be shown.
 fn keep(contents: &Contents, table: &str) -> Result<(), String> {
     let file = file(table);
     if file.is_file() {
         return Ok(());
     }
-    // A folder that is not there is as good as empty.
+    // It is no error if the folder does not exist.
     let _ = std::fs::remove_dir_all(folder());
     std::fs::create_dir_all(folder()).map_err(|error| error.to_string())?;
     write_file(contents, &file).map_err(|error| error.to_string())
 }
 
-/// The outputs that a table was recorded of: kept ones, or those of the library that is committed.
+/// The outputs from which a table was recorded: those that were kept, or those of the committed
+/// library if they have that table.
 fn accepted(recorded: &str) -> Result<Option<Contents>, Failed> {
     if let Ok(bundle) = Bundle::open(file(recorded)) {
         return Ok(Some(bundle.contents()?));
@@ -156,7 +159,7 @@ fn accepted(recorded: &str) -> Result<Option<Contents>, Failed> {
     Ok(committed.filter(|contents| table(contents).is_ok_and(|table| table == recorded)))
 }
 
-/// What the library of the last commit gives. `None` where git does not know it.
+/// The outputs of the library in the last commit. `None` if git cannot give it.
 fn committed_library() -> Option<Contents> {
     let folder = tempfile::tempdir().ok()?;
     let mut archive = Command::new("git")
@@ -181,7 +184,7 @@ fn committed_library() -> Option<Contents> {
     made.ok().map(|made| made.contents)
 }
 
-/// How many keys of each entry point differ, and the first of them with their texts.
+/// How many keys of each entry point differ, with the texts of the first ones.
 pub fn difference(old: &Contents, new: &Contents) -> Result<String, Failed> {
     let (old, new) = (entries(old), entries(new));
     let names: BTreeSet<&Name<'_>> = old.keys().chain(new.keys()).collect();
@@ -217,12 +220,12 @@ pub fn difference(old: &Contents, new: &Contents) -> Result<String, Failed> {
 enum Difference<'c> {
     New,
     Gone,
-    /// In these targets: name, bytes before, bytes now.
+    /// The targets that differ: name, bytes before, bytes now.
     Changed(Vec<(&'c str, &'c [u8], &'c [u8])>),
 }
 
 impl<'c> Difference<'c> {
-    /// `None` where nothing differs.
+    /// `None` if nothing differs.
     fn new(old: Option<&'c Unit>, new: Option<&'c Unit>) -> Option<Self> {
         let (old, new) = match (old, new) {
             (Some(old), Some(new)) => (old, new),
@@ -238,7 +241,7 @@ impl<'c> Difference<'c> {
         (!changed.is_empty()).then_some(Self::Changed(changed))
     }
 
-    /// The names of the targets, and the difference of the text of the first that is text.
+    /// The names of the targets that differ, and the difference of the first that is a text.
     fn text(&self) -> Result<String, Failed> {
         let changed = match self {
             Self::New => return Ok("the key is new".to_owned()),
@@ -252,7 +255,7 @@ impl<'c> Difference<'c> {
         let target = *Target::ALL
             .iter()
             .find(|known| known.name() == *target)
-            .ok_or("a target that there is not")?;
+            .ok_or_else(|| format!("the crate has no target `{target}`"))?;
         let (before, now) = (readable(target, before)?, readable(target, now)?);
         let diff = TextDiff::from_lines(&before, &now);
         let diff = diff.unified_diff().context_radius(2).header("recorded", "now").to_string();

@@ -1,6 +1,6 @@
-//! Programs with as much as possible that writers treat in a way of their own.
+//! Programs with much that naga's writers treat in a special way.
 
-/// Names and functions that writers number, rename or add, in as many combinations as there are.
+/// Names and functions that writers number, rename or add, in all combinations of the axes.
 pub const TRAPS: &str = "
 struct Material { color: vec3f, kind: i32, spread: array<vec4f, 3> }
 struct Block { items: array<Material, 4>, turn: mat3x3f, counts: vec4i }
@@ -68,7 +68,7 @@ lookup = { values = ["one", "two", "three"] }
 wide = { values = [false, true] }
 "#;
 
-/// What GLSL has no words for: matrices of two rows in blocks, and functions that are newer.
+/// Code that GLSL cannot express: matrices of two rows in blocks, and functions of newer versions.
 pub const ROWS: &str = "
 struct Block { turn: mat3x2f, counts: vec4i }
 @group(0) @binding(0) var<uniform> block: Block;
@@ -91,7 +91,7 @@ targets = ["spirv", "hlsl", "msl", "wgsl"]
 wide = { values = [false, true] }
 "#;
 
-/// Names that mean something else to a writer, and an order of variables that depends on an axis.
+/// Names that have another meaning for a writer, and variables whose order depends on an axis.
 pub const NAMES: &str = "
 const MAX: f32 = 4.0;
 const scale: f32 = 2.0;

@@ -1,4 +1,5 @@
-//! What naga's writers do to names and functions, and the judges say of it.
+//! Names and functions that naga's writers change. The judges must accept the outputs, and some are
+//! searched for a certain text.
 
 use lamplight::bundle::write_directory;
 use lamplight::generate::Generated;
@@ -6,7 +7,7 @@ use libtest_mimic::Failed;
 
 use super::{Outcome, judge_all, made, package, units};
 
-/// Makes a program of one file in some targets, and has every output judged.
+/// Makes a program of one file in some targets, and fails if a judge refuses an output.
 fn judged(text: &str, targets: &str) -> Result<Generated, Failed> {
     let folder = tempfile::tempdir()?;
     let manifest = format!("[program.one]\nwesl = \"one.wesl\"\n{targets}\n");
@@ -20,8 +21,8 @@ fn judged(text: &str, targets: &str) -> Result<Generated, Failed> {
     Ok(made)
 }
 
-/// naga adds to an entry point that ends with a digit, and the manifest says what it is called; a
-/// variable and a parameter that become the same are told apart.
+/// naga changes the name of an entry point that ends with a digit, and the reflection has the name in
+/// the output. A variable and a parameter whose changed names would be equal get different names.
 pub fn entry_points() -> Outcome {
     let text = "
 @group(0) @binding(0) var<uniform> metal_2: vec4f;
@@ -35,7 +36,8 @@ fn read() -> vec4f { return metal_2; }
         let (text, name) = (String::from_utf8_lossy(&wgsl.bytes), &wgsl.native.entry_name);
         let declared = format!("fn {name}(");
         if text.matches(&declared).count() != 1 || text.contains("var<uniform> metal_2_:") {
-            return Err(format!("{entry} is told as `{name}`:\n{text}").into());
+            let what = format!("the reflection names it `{name}`, or a variable has its name");
+            return Err(format!("{entry}: {what}:\n{text}").into());
         }
         lamplight::validate::validate(&lamplight::compose::Composed::of_text(
             lamplight::bundle::Language::Wesl,
@@ -47,7 +49,8 @@ fn read() -> vec4f { return metal_2; }
     Ok(())
 }
 
-/// Names of an author's that naga's helpers have, or that its lists of words lack.
+/// Names of the author's that are also names of naga's helpers, or keywords that naga's lists lack,
+/// give outputs that the judges accept.
 pub fn kept_names() -> Outcome {
     let text = "
 struct Pair { sampler2D: f32, turn: mat2x2f, kind: vec3f }
@@ -77,7 +80,8 @@ fn gl_1(x: f32) -> f32 { let gl = x; return gl; }
     judged(text, "").map(|_| ())
 }
 
-/// HLSL has a structure for such a matrix in another structure, whose name stands at its end.
+/// In HLSL, an array of matrices of two rows within a structure has a structure of columns as its
+/// element. Its declaration ends with its name, which the output must have.
 pub fn matrices_of_two_rows() -> Outcome {
     let text = "
 struct Turns { all: array<mat3x2f, 4>, one: mat4x2f }
@@ -94,12 +98,12 @@ var<private> turns: Turns;
         whole.map(|artifact| String::from_utf8_lossy(&artifact.bytes).into_owned()).collect();
     match texts.iter().any(|text| text.contains("} __mat3x2_f32;")) {
         true => Ok(()),
-        false => Err(format!("the structure lacks its name: {texts:?}").into()),
+        false => Err(format!("no HLSL output has `}} __mat3x2_f32;`: {texts:?}").into()),
     }
 }
 
-/// Arrays of matrices of two rows are read, written and given as a whole, and a column is changed
-/// where it is: naga's own functions change a copy.
+/// Arrays of matrices of two rows can be read, written and passed as a whole in HLSL. A column is
+/// changed in place, through an `inout` parameter: naga's own functions change a copy.
 pub fn kept_matrices() -> Outcome {
     let text = "
 struct Pair { two: array<mat2x2f, 2> }
@@ -132,11 +136,15 @@ fn changed(given: array<mat3x2f, 4>, i: u32) -> array<mat3x2f, 4> {
         whole.map(|artifact| String::from_utf8_lossy(&artifact.bytes).into_owned()).collect();
     match texts.iter().any(|text| text.contains("(inout __mat3x2_f32 mat, ")) {
         true => Ok(()),
-        false => Err(format!("a column is changed in a copy: {texts:?}").into()),
+        false => {
+            let what = "no HLSL output has a function with `inout __mat3x2_f32 mat`";
+            Err(format!("{what}, so a column is changed in a copy: {texts:?}").into())
+        }
     }
 }
 
-/// What HLSL has no words for is refused in its line, for that target alone.
+/// A matrix of two rows in the result of a function cannot be written in HLSL. It is refused at its
+/// line, for that target only, and the message says to use a `var`.
 pub fn matrices_from_values() -> Outcome {
     let text = "
 struct Turns { all: array<mat3x2f, 4> }
@@ -148,16 +156,16 @@ fn made(at: vec2f) -> Turns { var turns: Turns; turns.all[1][0] = at; return tur
 ";
     judged(text, r#"targets = ["spirv", "glsl450", "msl", "wgsl"]"#)?;
     let Err(refused) = judged(text, r#"targets = ["hlsl"]"#) else {
-        return Err("HLSL has columns where a matrix is needed".into());
+        return Err("HLSL should refuse a matrix of two rows in a function's result".into());
     };
     let words = refused.message().unwrap_or_default().to_owned();
     match words.contains("one.wesl:5:") && words.contains("`var`") {
         true => Ok(()),
-        false => Err(words.into()),
+        false => Err(format!("expected one.wesl:5: and `var` in:\n{words}").into()),
     }
 }
 
-/// A function that GLSL 3.30 lacks is refused in its line, for those targets alone.
+/// Functions that GLSL 3.30 and GLSL ES 3.00 lack are refused at their line, for those targets only.
 pub fn lacking() -> Outcome {
     let text = "
 @fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
@@ -169,12 +177,13 @@ pub fn lacking() -> Outcome {
     for target in ["glsl330", "essl300"] {
         let targets = format!("targets = [\"{target}\"]");
         let Err(refused) = judged(text, &targets) else {
-            return Err(format!("{target} has neither `ldexp` nor `bitCount`").into());
+            let what = "should refuse `ldexp` and `bitCount`, and compiles them";
+            return Err(format!("{target} {what}").into());
         };
         let words = refused.message().unwrap_or_default().to_owned();
         for word in ["`ldexp`", "`bitCount`", "one.wesl:3:"] {
             if !words.contains(word) {
-                return Err(format!("{target}: no {word} in:\n{words}").into());
+                return Err(format!("{target}: expected {word} in:\n{words}").into());
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Bodies of functions: who is in scope, and what expressions are made of.
+//! Writes bodies of functions: the names in scope, and expressions of a type.
 
 use std::collections::BTreeSet;
 
@@ -13,30 +13,30 @@ pub struct Local {
     pub is_mutable: bool,
 }
 
-/// A function while it is written.
+/// A function that is being written.
 pub struct Body<'d> {
     pub draft: &'d mut Draft,
     pub locals: Vec<Local>,
-    /// Textures that are parameters.
+    /// The textures that are parameters.
     pub textures: Vec<Texture>,
-    /// Lines so far.
+    /// The lines so far.
     pub lines: Vec<String>,
-    /// The lines are there only then.
+    /// The condition under which the function exists.
     pub given: Option<When>,
-    /// Declarations that are named in it.
+    /// The declarations of the module that the function names.
     pub used: BTreeSet<String>,
-    /// Functions that may be called: those before so many.
+    /// How many functions may be called, from the first one on.
     pub callable: usize,
 }
 
 impl Local {
-    /// Its name without what makes a value of a pointer.
+    /// The name, without the `(*...)` that dereferences a pointer.
     pub fn plain(&self) -> &str {
         self.name.trim_matches(['(', '*', ')'])
     }
 }
 
-/// Paths through a value are followed so far.
+/// The greatest length of a path through members and elements of a value.
 const REACH: usize = 3;
 
 impl<'d> Body<'d> {
@@ -53,13 +53,14 @@ impl<'d> Body<'d> {
         }
     }
 
-    /// Whether a name of the module means something else here.
+    /// Whether a local variable or a parameter hides a name of the module.
     pub fn hides(&self, name: &str) -> bool {
         self.locals.iter().any(|local| local.plain() == name)
             || self.textures.iter().any(|texture| texture.name == name || texture.sampler == name)
     }
 
-    /// Whether a function of the language may be called by its name.
+    /// Whether a built-in function can be called here, because nothing hides its name. If so, the
+    /// function counts as called, and no later declaration takes its name.
     pub fn has(&mut self, name: &'static str) -> bool {
         let is_free = !self.draft.names.is_declared(name) && !self.hides(name);
         if is_free {
@@ -68,7 +69,7 @@ impl<'d> Body<'d> {
         is_free
     }
 
-    /// A name that nothing has that is in scope or was named before.
+    /// A name that is not in scope and that the function has not used so far.
     pub fn name(&mut self) -> String {
         let mut taken = self.used.clone();
         taken.extend(self.locals.iter().map(|local| local.plain().to_owned()));
@@ -90,7 +91,7 @@ impl<'d> Body<'d> {
         self.draft.spelling.is_glsl()
     }
 
-    /// Everything of a type that can be named.
+    /// Paths to all variables, members and elements of a type, which can be read or written.
     pub fn paths(&mut self, ty: &Type, is_written: bool) -> Vec<String> {
         let mut found = Vec::new();
         let index = self.index();
@@ -106,7 +107,7 @@ impl<'d> Body<'d> {
         found
     }
 
-    /// Something to index with: a number that is not known before the shader runs, if there is one.
+    /// An index that is not constant, if a variable can be one.
     fn index(&mut self) -> Option<String> {
         let counts = self.locals.iter().filter(|local| local.ty == UINT).map(|local| &local.name);
         let counts: Vec<String> = counts.cloned().collect();
@@ -145,7 +146,8 @@ impl<'d> Body<'d> {
                 deeper(format!("{path}.x"), &scalar);
                 deeper(format!("{path}{}", at(*size)), &scalar);
             }
-            // naga's GLSL takes no component of a column whose number is not known.
+            // naga's GLSL front end refuses a component of a column with an index that is not
+            // constant.
             Type::Matrix(columns, rows) => {
                 let last = if self.glsl() { "[1]".to_owned() } else { at(*columns) };
                 deeper(format!("{path}{last}"), &Type::Vector(*rows, Scalar::Float));
@@ -195,7 +197,7 @@ impl<'d> Body<'d> {
         }
     }
 
-    /// Remembers the declaration at the start of a path.
+    /// Records that the function uses the declaration at the start of a path.
     pub fn note(&mut self, path: &str) {
         let name = path.split(['.', '[']).next().unwrap_or(path);
         self.used.insert(name.to_owned());
@@ -211,7 +213,7 @@ impl<'d> Body<'d> {
         }
     }
 
-    /// A structure: its constructor, or a variable where members depend on an axis.
+    /// A value of a structure: its constructor, or a variable if members depend on an axis.
     fn structure(&mut self, number: usize, depth: usize) -> String {
         let of = self.draft.structs[number].clone();
         if of.is_plain() {
@@ -342,7 +344,7 @@ impl<'d> Body<'d> {
         format!("({one} {operator} {other})")
     }
 
-    /// A texture of the module or a parameter, and how it is sampled.
+    /// A lookup in a texture of the module or in one that is a parameter.
     pub fn sampled(&mut self, depth: usize) -> Option<String> {
         let hidden =
             |texture: &&Texture| !self.hides(&texture.name) && !self.hides(&texture.sampler);

@@ -1,4 +1,4 @@
-//! A program while it is written: its declarations, and who may name what.
+//! A program that is being written: its declarations, and the names and values that are visible.
 
 use std::collections::BTreeSet;
 
@@ -9,12 +9,13 @@ use super::types::{AXES, FLOAT, INT, Member, Scalar, Spelling, Struct, Type, UIN
 /// A constant, a variable of the module, or a member of a block.
 #[derive(Debug, Clone)]
 pub struct Value {
-    /// The declaration that it belongs to.
+    /// The name of its declaration.
     pub root: String,
-    /// How it is read.
+    /// The expression that reads it.
     pub path: String,
     pub ty: Type,
     pub is_mutable: bool,
+    /// The condition under which it exists.
     pub when: Option<When>,
 }
 
@@ -33,12 +34,12 @@ pub enum Parameter {
 pub struct Signature {
     pub name: String,
     pub parameters: Vec<Parameter>,
-    /// Parameters and result where the axis has another value.
+    /// The parameters under a condition, if they differ.
     pub other: Option<(When, Vec<Parameter>)>,
     pub result: Type,
 }
 
-/// What a texture is, and the name of its sampler.
+/// A texture and its sampler.
 #[derive(Debug, Clone)]
 pub struct Texture {
     pub name: String,
@@ -63,14 +64,17 @@ pub struct Draft {
     pub values: Vec<Value>,
     pub textures: Vec<Texture>,
     pub functions: Vec<Signature>,
-    /// Declarations in an order in which each comes after those that it names.
+    /// The texts of the declarations. Each comes after those that it names.
     pub items: Vec<String>,
-    /// Built-in functions that are called: nothing else has their names.
+    /// The built-in functions that are called. No declaration may have their names.
     pub built_ins: BTreeSet<&'static str>,
+    /// The next free binding.
     pub bindings: u32,
-    /// It has functions that GLSL 3.30 and GLSL ES 3.00 lack, and is not for them.
+    /// The program has functions that GLSL 3.30 and GLSL ES 3.00 lack, so they are not among its
+    /// targets.
     pub is_modern: bool,
-    /// It has matrices of two rows in blocks, which GLSL lays out otherwise, and is not for GLSL.
+    /// The program has matrices of two rows in blocks. GLSL has another layout for them, so it is not
+    /// among the targets.
     pub has_two_rows: bool,
 }
 
@@ -106,12 +110,12 @@ impl Draft {
         When { axis, value: self.random.below(AXES[axis].len().max(2)) }
     }
 
-    /// A condition in so many of a hundred cases.
+    /// A condition, with a probability in percent.
     pub fn perhaps(&mut self, percent: usize) -> Option<When> {
         self.random.chance(percent).then(|| self.when())
     }
 
-    /// The name of a type; where it has an alias, often that.
+    /// The name of a type, or often an alias if it has one.
     pub fn spell(&mut self, ty: &Type) -> String {
         let aliases: Vec<&String> =
             self.aliases.iter().filter(|(_, of)| of == ty).map(|(name, _)| name).collect();
@@ -126,7 +130,7 @@ impl Draft {
         }
     }
 
-    /// A type of values that functions work with.
+    /// A random type of values.
     pub fn some_type(&mut self) -> Type {
         match self.random.below(14) {
             0..=2 => FLOAT,
@@ -145,13 +149,14 @@ impl Draft {
         }
     }
 
-    /// Two rows are refused in blocks and structures where the source is GLSL.
+    /// A random type of matrices. From GLSL sources, the crate refuses two rows in blocks and
+    /// structures.
     fn matrix(&mut self) -> Type {
         let rows = if self.spelling.is_glsl() { 3 } else { 2 };
         Type::Matrix(2 + self.random.below(3), rows + self.random.below(5 - rows))
     }
 
-    /// What an array may hold.
+    /// A random type of an array's elements.
     fn element(&mut self) -> Type {
         match self.random.below(7) {
             0 => FLOAT,
@@ -173,7 +178,7 @@ impl Draft {
                 let ty = self.member_type();
                 let name = self.names.local(&mut self.random, &used);
                 used.insert(name.clone());
-                // One member is always there.
+                // The first member always exists, since a structure must not be empty.
                 let when = if index > 0 { self.perhaps(20) } else { None };
                 Member { name, ty, when }
             })
@@ -183,7 +188,8 @@ impl Draft {
         self.structs.push(Struct { name, members });
     }
 
-    /// naga's GLSL lays arrays in structures out in another way than others.
+    /// A random type of a member. naga's GLSL front end gives arrays in structures another layout than
+    /// other compilers, so GLSL sources have none.
     fn member_type(&mut self) -> Type {
         loop {
             let ty = self.some_type();
@@ -211,7 +217,7 @@ impl Draft {
         self.spelling.declared(&member.name, &ty) + end
     }
 
-    /// Aliases are a matter of WESL.
+    /// Adds an alias. Only WESL has them.
     pub fn alias(&mut self) {
         let ty = self.some_type();
         let name = self.name();
@@ -220,7 +226,7 @@ impl Draft {
         self.aliases.push((name, ty));
     }
 
-    /// A uniform: a block, or one value. Blocks have what both languages lay out alike.
+    /// Adds a uniform: a block, or one value. Blocks have types with the same layout in both languages.
     pub fn uniform(&mut self) {
         let (binding, name) = (self.bindings, self.name());
         self.bindings += 1;
@@ -267,7 +273,7 @@ impl Draft {
             0 => FLOAT,
             1 => INT,
             2 => Type::Vector(4, Scalar::Int),
-            // Two rows are refused where the source is GLSL.
+            // `has_two_rows` is never set for GLSL sources, in which the crate refuses them.
             3 | 4 => {
                 let rows = if self.has_two_rows { 2 } else { 4 };
                 Type::Matrix(2 + self.random.below(3), rows)

@@ -1,5 +1,5 @@
-//! Whether the outputs of a program depend on anything but its sources, its settings and the
-//! target, and whether the crate accepts them itself.
+//! Finds out whether the outputs of a program depend on anything else than its sources, its settings
+//! and the target, and whether the crate accepts its own WGSL.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use super::program::Program;
 use super::random::Random;
 use super::run::{Runnable, is_fragment};
 
-/// Something is wrong: what kind of thing, and all that is known of it.
+/// A mistake that was found: its kind, and the details.
 #[derive(Debug, Clone)]
 pub struct Finding {
     pub kind: String,
@@ -39,20 +39,20 @@ pub struct Output {
     pub reflection: Reflection,
 }
 
-/// What a program without mistakes gives.
+/// The outputs of a program in which no mistake was found.
 #[derive(Debug, Default)]
 pub struct Sound {
-    /// Distinct outputs.
+    /// The distinct outputs.
     pub outputs: Vec<Output>,
-    /// Why targets were compiled as a whole.
+    /// The targets that were compiled as a whole, with the reason.
     pub whole: Vec<(String, Reason)>,
-    /// One of its fragment stages, any of its permutations.
+    /// A fragment stage of one of the permutations.
     pub runnable: Option<Box<Runnable>>,
 }
 
-/// What became of a program.
+/// The verdict on a program.
 pub enum Verdict {
-    /// The crate refuses it: the words of its first error.
+    /// The crate refuses the program, with these errors.
     Refused(String),
     Sound(Sound),
 }
@@ -64,13 +64,14 @@ struct Case {
     manifest: Manifest,
 }
 
-/// Entry points and keys.
+/// Units by entry point and key.
 type Units = BTreeMap<(String, String), Unit>;
 
-/// Makes a program in several ways and compares.
+/// Makes the outputs of a program in several ways and compares them: all permutations together, then
+/// one alone, or a shard, or fewer targets, and then all in a random order.
 ///
 /// # Errors
-/// A finding.
+/// The first finding.
 pub fn judge(program: &Program, random: &mut Random) -> Result<Verdict, Finding> {
     let mut case = Case::new(program)?;
     let together = match case.made(&Request::default()) {
@@ -130,7 +131,7 @@ impl Case {
         Request { only, ..Request::default() }
     }
 
-    /// A part of the run gives what the whole run gave.
+    /// Fails unless a run over a part gives the outputs that the whole run gave.
     fn alike(&mut self, how: &str, all: &Units, request: &Request) -> Result<(), Finding> {
         let made = self.made(request);
         let made = made.map_err(|problems| {
@@ -147,7 +148,7 @@ impl Case {
         Ok(())
     }
 
-    /// Texts given to one linker in any order.
+    /// Fails unless one linker that is given all texts in a random order gives the same outputs.
     fn in_random_order(
         &mut self,
         source: &Program,
@@ -200,7 +201,7 @@ impl Case {
     }
 }
 
-/// Options with which a text has one entry point.
+/// Options with which a composed text has one entry point.
 fn keeping(language: Language, entry: &str) -> Options {
     let keep = match language {
         Language::Glsl => Keep::EntryPoints,
@@ -222,7 +223,7 @@ impl Sound {
     }
 }
 
-/// WGSL is read by naga itself.
+/// Fails unless the crate accepts its own WGSL.
 fn read_again(output: &Output) -> Result<(), Finding> {
     if output.target != Target::WGSL {
         return Ok(());
@@ -235,7 +236,7 @@ fn read_again(output: &Output) -> Result<(), Finding> {
     })
 }
 
-/// What differs, and both forms of it.
+/// Fails if two units differ, with what differs and both forms of it.
 fn same(one: &Unit, other: &Unit) -> Result<(), (String, String)> {
     if one.reflection != other.reflection {
         return Err((

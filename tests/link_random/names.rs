@@ -1,4 +1,5 @@
-//! Names that mean something to naga's writers, or that they make themselves.
+//! Chooses names for declarations. Many have a meaning for naga's writers, or are names that these
+//! writers form themselves.
 
 mod taken;
 
@@ -8,7 +9,7 @@ use super::random::Random;
 
 use taken::NAMES;
 
-/// Words that GLSL, as a source, keeps for itself, and what its front end takes for such.
+/// Words that are reserved in GLSL sources, or that naga's front end takes for reserved.
 const NOT_IN_GLSL: &[&str] = &[
     "buffer",
     "subroutine",
@@ -94,7 +95,7 @@ const NOT_IN_GLSL: &[&str] = &[
     "double",
 ];
 
-/// Gives names, no two alike.
+/// Gives distinct names.
 pub struct Names {
     taken: BTreeSet<String>,
     is_glsl: bool,
@@ -105,7 +106,7 @@ impl Names {
         Self { taken: BTreeSet::new(), is_glsl }
     }
 
-    /// A name for a declaration. One in four is made of one that is given already.
+    /// A name for a declaration. Three in ten are formed from one that was given before.
     pub fn declared(&mut self, random: &mut Random, used: &BTreeSet<&str>) -> String {
         loop {
             let name = self.candidate(random);
@@ -149,7 +150,7 @@ impl Names {
         }
     }
 
-    /// Whether the language lets an author use it.
+    /// Whether the language allows an author to use a name.
     fn is_allowed(&self, name: &str) -> bool {
         let is_plain = name.is_ascii() && !name.contains("__") && !name.starts_with("gl_");
         match self.is_glsl {

@@ -1,4 +1,4 @@
-//! Expressions of one number, with the built-in functions for which writers add helpers.
+//! Writes expressions that are one number, with the built-in functions for which writers add helpers.
 
 use super::body::Body;
 use super::types::{FLOAT, INT, Scalar, Type, UINT};
@@ -60,7 +60,7 @@ impl Body<'_> {
         format!("dot({one}, {other})")
     }
 
-    /// A number or another, by a condition.
+    /// One of two numbers, by a condition.
     fn selected(&mut self, one: String, depth: usize) -> String {
         let (other, condition) = (self.value(&FLOAT, depth), self.condition(depth));
         match self.draft.spelling.is_glsl() {
@@ -119,7 +119,7 @@ impl Body<'_> {
         }
     }
 
-    /// Functions that look at bits.
+    /// A built-in function on the bits of an integer.
     fn bits(&mut self, scalar: Scalar, one: &str, depth: usize) -> String {
         if self.draft.spelling.is_glsl() || !self.draft.is_modern {
             return one.to_owned();

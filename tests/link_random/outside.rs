@@ -1,16 +1,16 @@
-//! The judges of all targets over the outputs of random programs.
+//! Runs the judges of all targets on the outputs of random programs.
 
 use lamplight::judge;
 
 use super::judge::Output;
 
-/// Something that a judge refuses: the place of the output, and the judge's words.
+/// An output that a judge refuses: its index, and the judge's message.
 pub type Refusal = (usize, String);
 
-/// What the judges refuse of some outputs.
+/// The outputs that the judges refuse.
 ///
 /// # Errors
-/// Why a judge could not be run.
+/// The reason why a judge could not be run.
 pub fn refused(outputs: &[&Output]) -> Result<Vec<Refusal>, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let mut files = Vec::new();

@@ -1,4 +1,4 @@
-//! A random program: its manifest and its files.
+//! A random program: its manifest and its one file.
 
 use std::fmt::Write as _;
 
@@ -9,14 +9,14 @@ use super::draft::{Draft, Parameter, Signature, Texture, TextureKind, Value};
 use super::random::Random;
 use super::types::{AXES, FLOAT, INT, Scalar, Spelling, Type, UINT, When};
 
-/// What is given to the crate.
+/// A program, as it is given to the crate.
 #[derive(Debug, Clone)]
 pub struct Program {
     pub seed: u64,
     pub language: Language,
     pub manifest: String,
     pub targets: Vec<Target>,
-    /// The one file of it, by its name.
+    /// The name of its one file.
     pub file: &'static str,
     pub text: String,
 }
@@ -54,7 +54,7 @@ impl Program {
         let text = match language {
             Language::Glsl => format!("#version 450\n{}", draft.items.concat()),
             Language::Wesl => {
-                // The order of declarations means nothing in WGSL.
+                // The order of declarations has no meaning in WGSL.
                 draft.random.shuffle(&mut draft.items);
                 draft.items.concat()
             }
@@ -108,7 +108,7 @@ impl Draft {
         }
     }
 
-    /// A value that is known without running anything.
+    /// A value that consists of literals.
     fn literal(&mut self, ty: &Type) -> String {
         let some = match ty {
             Type::Scalar(Scalar::Float) => {
@@ -131,7 +131,7 @@ impl Draft {
         format!("{}({})", self.spell(ty), parts.join(", "))
     }
 
-    /// Whether a value of the type can be written without asking an axis.
+    /// Whether no member of the type depends on an axis.
     fn is_plain(&self, ty: &Type) -> bool {
         match ty {
             Type::Array(of, _) => self.is_plain(of),
@@ -143,7 +143,7 @@ impl Draft {
         }
     }
 
-    /// A type whose values are constants in both languages.
+    /// A random type whose values can be constants in the language.
     fn constant_type(&mut self) -> Type {
         loop {
             let ty = self.some_type();
@@ -241,7 +241,7 @@ impl Draft {
         let spelt = self.spell(result);
         let mut body = Body::new(self, given);
         let mut list = Vec::new();
-        // Its own name is not to be hidden: the text could be read as another.
+        // A parameter must not have the function's own name.
         body.used.insert(name.to_owned());
         for parameter in parameters {
             list.push(body.parameter(parameter));
@@ -259,7 +259,7 @@ impl Draft {
 }
 
 impl Body<'_> {
-    /// Spells a parameter, which the body knows from then on.
+    /// The text of a parameter. The body may use it from then on.
     fn parameter(&mut self, parameter: &Parameter) -> String {
         let glsl = self.draft.spelling.is_glsl();
         let name = self.name();
@@ -296,7 +296,7 @@ impl Body<'_> {
         }
     }
 
-    /// Variables of each kind of number, so that not everything is known beforehand.
+    /// Adds a variable of each scalar type that has none, so that expressions are not all constant.
     pub fn seeded(&mut self) {
         for ty in [FLOAT, INT, UINT] {
             let is_it = |local: &Local| local.ty == ty;

@@ -1,11 +1,11 @@
-//! Fragment stages of random programs, run from their outputs by what runs each target, and
-//! computed again by the evaluator from the composed text.
+//! Runs fragment stages of random programs from their outputs, on an executor for each target, and
+//! computes them again with the evaluator from the composed text.
 //!
-//! `unit + feeder -> two draws a target: what fragments are given, what they give -> comparison`
+//! `unit + feeder -> two draws for each target: inputs of fragments, outputs -> comparison`
 //!
-//! A feeder is a vertex stage made for the stage's inputs, so that every stage meets numbers that
-//! it can work with. Vertex stages of the programs are not run: where their triangles would lie is
-//! as random as they are.
+//! A feeder is a vertex stage that is made for the inputs of a fragment stage, so that these have
+//! ordinary numbers. Vertex stages of the programs are not run, because the places of their triangles
+//! would be random.
 
 mod driver;
 mod evaluated;
@@ -34,7 +34,7 @@ use crate::frames::fixture;
 use evaluated::Evaluator;
 use metal::Metal;
 
-/// Pixels from left to right, and from top to bottom.
+/// The size of a frame in pixels.
 const SIZE: [u32; 2] = [4, 4];
 
 type Place = (u32, u32);
@@ -48,17 +48,17 @@ pub struct Runnable {
     pub unit: Unit,
 }
 
-/// What became of the stages, by target.
+/// The results of the stages on one executor.
 #[derive(Debug, Default, Clone)]
 pub struct Ran {
     pub stages: usize,
     pub numbers: usize,
-    /// Numbers that the evaluator has no bound for, or of fragments with a comparison that was too
-    /// close to call.
+    /// How many numbers are neither right nor wrong: the evaluator has no bound for them, or a
+    /// comparison in the stage was within the error of either result.
     pub open: usize,
-    /// Stages that the driver drew otherwise until ids of the same module had other numbers.
+    /// How many stages the driver drew differently until the ids of the same module were renumbered.
     pub by_numbers: usize,
-    /// What was not run, by the reason.
+    /// How many stages were not run, for each reason.
     pub lacks: BTreeMap<String, usize>,
 }
 
@@ -73,30 +73,30 @@ impl std::fmt::Display for Ran {
     }
 }
 
-/// What runs the outputs.
+/// All executors that run outputs.
 pub struct Runner {
     sessions: Vec<Opened>,
 }
 
-/// What runs a target: the executor's name, and its session.
+/// A target, with the name and the session of an executor that runs it.
 type Opened = (Target, &'static str, Box<dyn Session>);
 
-/// A stage with everything that it is drawn with.
+/// A stage, with everything that is needed to draw it.
 struct Ready<'r> {
     runnable: &'r Runnable,
     validated: Validated,
     feeder: Validated,
-    /// `None` where the stage is given nothing.
+    /// A fragment stage that writes its inputs; `None` if the stage has no inputs.
     tells: Option<probe::Watched>,
     buffers: Buffers,
     fixtures: BTreeMap<Place, Arc<Fixture>>,
     stages: BTreeMap<Target, Result<Stages, Diagnostic>>,
 }
 
-/// With the places of stages in a list.
+/// Items with the indices of their stages in a list.
 type Placed<T> = Vec<(usize, T)>;
 
-/// What is drawn in one target.
+/// The stages that are drawn in one target.
 #[derive(Clone)]
 struct Stages {
     feeder: Shipped,
@@ -104,23 +104,23 @@ struct Stages {
     tells: Option<Shipped>,
 }
 
-/// The targets of both draws.
+/// The words that both draws gave.
 struct Drawn {
     target: Target,
-    /// The executor's.
+    /// The name of the executor.
     name: &'static str,
     outputs: Targets,
     inputs: Targets,
 }
 
-/// Words of each target.
+/// The words of each render target.
 type Targets = Vec<Vec<u32>>;
 
 impl Runner {
-    /// Opens everything that runs each target: one driver, or one and a browser.
+    /// Opens every driver and browser that runs a target.
     ///
     /// # Errors
-    /// What is missing.
+    /// The driver or browser that is missing.
     pub fn open() -> Result<Self, String> {
         let session = |(target, (entry, shipping)): (
             Target,
@@ -134,7 +134,7 @@ impl Runner {
         Ok(Self { sessions: all.map(session).collect::<Result<_, String>>()? })
     }
 
-    /// Runs stages; findings have the place of their stage.
+    /// Runs stages. Each finding has the index of its stage.
     pub fn run(
         &self,
         runnables: &[Runnable],
@@ -180,7 +180,7 @@ impl Runner {
     }
 }
 
-/// The stages that can be run with their places, and why others cannot.
+/// The stages that can be run, and a finding for each of the others.
 fn made_ready(runnables: &[Runnable]) -> (Placed<Ready<'_>>, Placed<Finding>) {
     let (mut ready, mut findings) = (Vec::new(), Vec::new());
     for (index, runnable) in runnables.iter().enumerate() {
@@ -196,10 +196,11 @@ impl<'r> Ready<'r> {
     fn new(runnable: &'r Runnable) -> Result<Self, String> {
         let Runnable { seed, composed, entry, unit, .. } = runnable;
         let told = |problems: Vec<Diagnostic>| format!("seed {seed}: {problems:?}");
-        // As the crate does: naga refuses some texts for their aliases.
+        // The crate validates the lean text too, since naga refuses some texts with aliases.
         let validated = validate(&lean(composed)).map_err(told)?;
         let mut random = Random(seed ^ 0xfeed);
-        // Of the whole text: an output leaves out what it does not read.
+        // The reflection is that of the whole text. An output leaves out inputs that it does not
+        // read.
         let whole = reflect(&validated, entry).map_err(|problem| told(vec![problem]))?;
         let text = feeder(&whole, &mut random);
         let feeder = Composed::of_text(Language::Wesl, None, text);
@@ -241,7 +242,7 @@ impl<'r> Ready<'r> {
         Ok(Stages { feeder: Shipped::of(feeder, target)?, own, tells: tells.transpose()? })
     }
 
-    /// What the stage gives, and what it is given.
+    /// Draws the stage and the one that writes its inputs. Gives the outputs and the inputs.
     fn draw(
         &self,
         stages: &Stages,
@@ -278,7 +279,7 @@ impl<'r> Ready<'r> {
         })
     }
 
-    /// What each target computes otherwise than the evaluator.
+    /// A finding for each target whose numbers differ from the evaluator's.
     fn compare(
         &self,
         frames: &[Drawn],
@@ -312,8 +313,8 @@ impl<'r> Ready<'r> {
     }
 }
 
-/// A vertex stage that draws one triangle over everything and gives numbers that differ from
-/// pixel to pixel for what a fragment stage takes.
+/// A vertex stage that draws one triangle over the whole frame. Its outputs fit the inputs of a
+/// fragment stage, and differ from pixel to pixel.
 fn feeder(reflection: &Reflection, random: &mut Random) -> String {
     let (mut members, mut values) = (String::new(), String::new());
     for (index, input) in reflection.inputs.iter().enumerate() {
@@ -349,12 +350,12 @@ fn interpolated(input: &Varying) -> String {
     }
 }
 
-/// From -2 to 2, exact in few digits.
+/// A number from -2 to 2 that is exact in few digits.
 fn number(random: &mut Random) -> f64 {
     random.below(65) as f64 / 16.0 - 2.0
 }
 
-/// Numbers of a uniform. Those that are integers lose what is behind the point.
+/// The numbers of a uniform. For integers they are truncated later.
 fn numbers(start: u64, path: &str) -> Vec<f64> {
     let mut random = path.bytes().fold(Random(start), |mut random, byte| {
         random.0 ^= u64::from(byte);

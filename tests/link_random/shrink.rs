@@ -1,8 +1,9 @@
-//! Findings made small: ever fewer lines of the text, while the same is wrong with it.
+//! Makes the program of a finding smaller: lines of its text are removed as long as the program has
+//! the same finding.
 
 use super::program::Program;
 
-/// Programs that are tried.
+/// The most programs that are tried.
 const MOST: usize = 600;
 
 pub fn shrunk(program: &Program, has: &dyn Fn(&Program) -> bool) -> Program {

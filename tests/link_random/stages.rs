@@ -1,4 +1,4 @@
-//! Entry points, and what enters and leaves them.
+//! Writes entry points with their inputs and outputs.
 
 use std::fmt::Write as _;
 
@@ -8,9 +8,9 @@ use super::types::{FLOAT, INT, Member, Scalar, Struct, Type, UINT, When};
 
 const FOUR: Type = Type::Vector(4, Scalar::Float);
 
-/// What goes from the vertex stage to the fragment stage.
+/// The values that go from the vertex stage to the fragment stage.
 struct Between {
-    /// By location.
+    /// Their types and conditions, by location.
     types: Vec<(Type, Option<When>)>,
 }
 
@@ -29,7 +29,7 @@ impl Draft {
         Between { types: types.collect() }
     }
 
-    /// A structure that is an interface: other functions may make and pass it too.
+    /// Adds a structure that is the interface of a stage. Other functions may use it too.
     fn interface(&mut self, attributes: &[(String, Type, Option<When>)]) -> usize {
         let name = self.name();
         let mut text = format!("struct {name} {{\n");
@@ -41,7 +41,7 @@ impl Draft {
             let line = format!("{attribute} {member}: {spelt},");
             match when {
                 None => text += &format!("{line}\n"),
-                // One attribute follows another.
+                // The condition is an attribute before the member's own.
                 Some(when) => text += &self.spelling.either(*when, &line, None),
             }
             members.push(Member { name: member, ty: ty.clone(), when: *when });
@@ -51,7 +51,7 @@ impl Draft {
         self.structs.len() - 1
     }
 
-    /// A vertex and a fragment stage.
+    /// Adds a vertex and a fragment stage.
     pub fn wesl_stages(&mut self) {
         let between = self.between();
         let located = between.types.iter().enumerate().map(|(location, (ty, when))| {
@@ -70,7 +70,7 @@ impl Draft {
         self.fragment_stage(taken, drawn);
     }
 
-    /// What a fragment stage may return beside a colour.
+    /// Adds the structure that a fragment stage may return: a colour, more targets, and a depth.
     fn drawn(&mut self) -> usize {
         let mut targets = vec![("@location(0)".to_owned(), FOUR, None)];
         for location in 1..1 + self.random.below(3) {
@@ -108,7 +108,7 @@ impl Draft {
         ));
     }
 
-    /// One that returns a colour or a structure, or one of them for some value of an axis.
+    /// Adds a fragment stage. It returns a colour or a structure, or an axis decides which of them.
     fn fragment_stage(&mut self, taken: usize, drawn: usize) {
         let name = self.name();
         let colour = |draft: &mut Self, when| draft.fragment(&name, taken, None, when);
@@ -151,7 +151,7 @@ impl Draft {
         )
     }
 
-    /// Inputs of a GLSL stage, as values that every function can name.
+    /// Adds the inputs of a GLSL stage. Every function can read them.
     fn glsl_inputs(&mut self, between: &Between) {
         for (location, (ty, when)) in between.types.iter().enumerate() {
             let (name, spelt) = (self.name(), self.spelling.ty(ty, &[]));
@@ -167,7 +167,7 @@ impl Draft {
         }
     }
 
-    /// Outputs of a GLSL stage.
+    /// Adds the outputs of a GLSL stage, and gives their names.
     fn glsl_outputs(&mut self, types: &[Type]) -> Vec<String> {
         let mut names = Vec::new();
         for (location, ty) in types.iter().enumerate() {
@@ -185,7 +185,7 @@ impl Draft {
         self.values.push(Value { root, path, ty, is_mutable: false, when: None });
     }
 
-    /// A GLSL stage that writes some variables.
+    /// Adds the `main` of a GLSL stage, which writes the outputs.
     fn glsl_main(&mut self, outputs: &[(String, Type)]) {
         let mut body = Body::new(self, None);
         body.used.extend(outputs.iter().map(|(name, _)| name.clone()));

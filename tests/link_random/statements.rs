@@ -1,15 +1,16 @@
-//! Statements, and calls of functions whose signature may depend on an axis.
+//! Writes statements, and calls of functions whose signature may depend on an axis.
 
 use super::body::{Body, Local};
 use super::draft::{Parameter, Signature, Texture, TextureKind};
 use super::types::{FLOAT, INT, Type};
 
-/// Statements of a body, and how deep their expressions are.
+/// The most statements of a block.
 const MOST: usize = 3;
+/// The depth of their expressions.
 const DEPTH: usize = 2;
 
 impl Body<'_> {
-    /// Some statements.
+    /// Adds one to [`MOST`] statements.
     pub fn statements(&mut self, nesting: usize) {
         for _ in 0..1 + self.below(MOST) {
             self.statement(nesting);
@@ -29,7 +30,7 @@ impl Body<'_> {
         }
     }
 
-    /// A new variable or value.
+    /// Adds a variable.
     pub fn variable(&mut self) {
         let ty = self.draft.some_type();
         let is_mutable = self.below(2) == 0;
@@ -89,7 +90,7 @@ impl Body<'_> {
         }
     }
 
-    /// One statement for a value of an axis, and another for the others.
+    /// Adds one statement for a value of an axis, and another for its other values.
     fn either(&mut self) {
         let when = self.draft.when();
         let ty = self.draft.some_type();
@@ -136,7 +137,7 @@ impl Body<'_> {
         self.lines.push(end.to_owned());
     }
 
-    /// The name of a variable that has the result of a function.
+    /// Adds a call of a function, and gives the name of the variable with its result.
     pub fn called(&mut self, ty: &Type) -> Option<String> {
         let functions = self.draft.functions[..self.callable].to_vec();
         let fitting = functions.into_iter().filter(|one| one.result == *ty);
@@ -166,7 +167,8 @@ impl Body<'_> {
         Some(kept)
     }
 
-    /// The result of a call, kept where it is made: what calls change depends on their order.
+    /// Adds a variable with the result of a call. A call within an expression would be in an order
+    /// that languages do not define, and calls change variables.
     fn kept(&mut self, ty: &Type, call: &str) -> String {
         let kept = self.name();
         let glsl = self.draft.spelling.is_glsl();

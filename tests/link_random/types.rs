@@ -1,4 +1,4 @@
-//! Types, and how both languages spell what is made of them.
+//! Types, and their spelling in both languages.
 
 use lamplight::bundle::Language;
 
@@ -16,7 +16,7 @@ pub enum Type {
     /// Columns and rows.
     Matrix(usize, usize),
     Array(Box<Type>, usize),
-    /// By its place in the list of structures.
+    /// The index in the list of structures.
     Struct(usize),
 }
 
@@ -24,20 +24,20 @@ pub const FLOAT: Type = Type::Scalar(Scalar::Float);
 pub const INT: Type = Type::Scalar(Scalar::Int);
 pub const UINT: Type = Type::Scalar(Scalar::Uint);
 
-/// An axis of the program has a value.
+/// A condition: an axis of the program has a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct When {
     pub axis: usize,
     pub value: usize,
 }
 
-/// An axis: its values, or none if it is true or false.
+/// The values of an axis; none for a boolean axis.
 pub type Axis = &'static [&'static str];
 
-/// The axes of a program, by the number of their name.
+/// The axes of a program. Their names are numbers.
 pub const AXES: [Axis; 4] = [&[], &[], &["one", "two", "three"], &["low", "high", "none", "all"]];
 
-/// A structure; some members are there for some values of an axis.
+/// A structure, of which some members may exist only under a condition.
 #[derive(Debug, Clone)]
 pub struct Struct {
     pub name: String,
@@ -98,9 +98,9 @@ impl Spelling {
         }
     }
 
-    /// A declaration of a variable, or of a member or a parameter, without its end.
+    /// The declaration of a variable, a member or a parameter, without the character that ends it.
     pub fn declared(self, name: &str, ty: &str) -> String {
-        // Sizes of arrays stand behind the name in GLSL.
+        // In GLSL the size of an array is after the name.
         match (self.is_glsl(), ty.split_once('[')) {
             (false, _) => format!("{name}: {ty}"),
             (true, None) => format!("{ty} {name}"),
@@ -108,7 +108,7 @@ impl Spelling {
         }
     }
 
-    /// The condition of an axis.
+    /// The text of a condition.
     pub fn condition(self, when: When) -> String {
         let values = AXES[when.axis];
         let axis = format!("axis_{}", when.axis);
@@ -125,11 +125,11 @@ impl Spelling {
         }
     }
 
-    /// Lines that are there under a condition, and others that are there where they are not. In
-    /// WESL either is one declaration, member, parameter or statement.
+    /// Lines under a condition, and others for when the condition does not hold. In WESL each of
+    /// them is one declaration, member, parameter or statement.
     pub fn either(self, when: When, some: &str, other: Option<&str>) -> String {
         let condition = self.condition(when);
-        // What follows `@else` in brackets would be a condition.
+        // A bracket after `@else` would be read as a condition.
         let other = other.map(|other| match other.starts_with('(') {
             true => format!("{{ {other} }}"),
             false => other.to_owned(),

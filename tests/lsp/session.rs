@@ -1,4 +1,4 @@
-//! An editor's side of the protocol.
+//! The editor's side of the protocol.
 
 use std::fs;
 use std::io::BufReader;
@@ -24,7 +24,7 @@ TINT = { doc = "A warm colour." }
 
 pub const UTIL: &str = "/// Half of it.\nfn half(x: f32) -> f32 {\n    return x * 0.5;\n}\n";
 
-/// A package on the disk and a server that has one of its files open.
+/// A package on disk, and a server with one of its files open.
 pub struct Session {
     pub folder: TempDir,
     pub child: Child,
@@ -75,11 +75,11 @@ impl Session {
     pub fn receive(&mut self) -> Result<Value, Failed> {
         match wire::read(&mut self.from)? {
             Incoming::Message(message) => Ok(message),
-            other => Err(format!("{other:?}").into()),
+            other => Err(format!("expected a message of the server, found {other:?}").into()),
         }
     }
 
-    /// The answer to a request: its result, or what it says is wrong.
+    /// The answer to a request: its result, or its error.
     pub fn answer(
         &mut self,
         method: &str,
@@ -102,7 +102,7 @@ impl Session {
         self.answer(method, parameters)?.map_err(|error| error.to_string().into())
     }
 
-    /// Asks about the first place of some words in a text; `more` joins the parameters.
+    /// Asks about the first place of some words in a text. `more` is added to the parameters.
     pub fn at(
         &mut self,
         method: &str,
@@ -115,7 +115,7 @@ impl Session {
     }
 
     pub fn place(&self, text: &str, words: &str, more: Value) -> Result<Value, Failed> {
-        let byte = text.find(words).ok_or_else(|| format!("no `{words}`"))?;
+        let byte = text.find(words).ok_or_else(|| format!("the text has no `{words}`"))?;
         let line = text[..byte].matches('\n').count();
         let start = text[..byte].rfind('\n').map_or(0, |end| end + 1);
         let mut parameters = json!({
@@ -128,7 +128,7 @@ impl Session {
         Ok(parameters)
     }
 
-    /// What is told of a file, once nothing else waits.
+    /// The next diagnostics that the server publishes for a file.
     pub fn told(&mut self, name: &str) -> Result<Vec<Value>, Failed> {
         let uri = self.uri(name)?;
         loop {

@@ -1,4 +1,5 @@
 //! Emitted MSL that the judge must accept: stages of every kind, and the shaders of `tests/emit`.
+//! Each is emitted as a whole and as it ships, which is linked from functions.
 
 use std::fs;
 use std::path::{Path, PathBuf};

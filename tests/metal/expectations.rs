@@ -1,4 +1,5 @@
-//! The cases of `tests/eval/*.wgsl`, `// expect: f(1, 2.5) = 3`, as emitted MSL on the CPU.
+//! Runs the cases of `tests/eval/*.wgsl`, such as `// expect: f(1, 2.5) = 3`, as emitted MSL on the
+//! CPU.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,7 +10,7 @@ use naga::ScalarKind;
 
 use super::{Outcome, told};
 
-/// Cases that cannot be run, by the start of their text, and why.
+/// The start of cases that cannot be run, and the reason.
 const OPEN: &[(&str, &str)] = &[
     ("column(9)", OUTSIDE),
     ("from_half(", HALF),
@@ -18,10 +19,10 @@ const OPEN: &[(&str, &str)] = &[
     ("table(100)", OUTSIDE),
     ("to_half(", HALF),
 ];
-const OUTSIDE: &str = "the index is outside, which MSL leaves open";
-const HALF: &str = "numbers of 16 bits are no capability of modules that ship";
+const OUTSIDE: &str = "the index is out of bounds, which MSL does not define";
+const HALF: &str = "16-bit floats are not a capability of modules that ship";
 
-/// Largest error of a number, as a share of it and of 1.
+/// The largest error of a number, relative to the number or to 1.
 const SHARE: f64 = 1e-4;
 
 struct Case {
@@ -103,7 +104,7 @@ fn word(text: &str, kind: ScalarKind) -> Result<(u32, f64), String> {
         }
     };
     if kind == ScalarKind::Float {
-        let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+        let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
         return Ok(((value as f32).to_bits(), value));
     }
     let word = whole(text)?;
@@ -121,7 +122,8 @@ fn agrees(case: &Case, found: &[u32]) -> Result<(), String> {
             *found == bits
         };
         if !is_right {
-            return Err(format!("{found:08x?}, as number {}", f32::from_bits(*found)));
+            let number = f32::from_bits(*found);
+            return Err(format!("expected {text}, found {found:08x}, which is {number} in f32"));
         }
     }
     Ok(())

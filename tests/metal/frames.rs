@@ -1,5 +1,5 @@
-//! Permutations of `forward`, drawn on the CPU from the MSL that a bundle holds, and sampled
-//! fragments computed again by the evaluator from the composed text.
+//! Draws permutations of `forward` on the CPU from the MSL that a bundle holds, and computes a sample
+//! of the fragments again with the evaluator, from the composed text.
 
 use std::collections::BTreeMap;
 
@@ -15,17 +15,17 @@ use naga::{Binding, BuiltIn};
 use crate::fragments::{self, Tally, Watched};
 use crate::frames::{Scene, Sources, bundle, points};
 
-/// Permutations of each language, with all pairs of values among them.
+/// The number of permutations of each language. All pairs of values are among them.
 const LEAST_POINTS: usize = 200;
-/// Pixels from left to right, and from top to bottom.
+/// The size of a frame in pixels.
 const SIZE: [u32; 2] = [128, 64];
-/// One quad in so many is computed again.
+/// Every 29th quad is computed again.
 const STEP: usize = 29;
-/// Least fragments of a permutation.
+/// The least number of fragments of a permutation that must be compared.
 const LEAST: usize = 200;
-/// Largest share of open fragments of a permutation.
+/// The largest share of a permutation's fragments that may be open (see [`crate::fragments`]).
 const OPEN: f64 = 0.01;
-/// Stages that are compiled together.
+/// The number of permutations whose stages are compiled together.
 const BATCH: usize = 64;
 
 pub fn trials() -> Vec<Trial> {
@@ -66,7 +66,7 @@ fn drawn(language: Language) -> Result<(), String> {
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
 
-/// Distinct stages of some permutations.
+/// The distinct stages of some permutations.
 #[derive(Default)]
 struct Stages {
     shipped: Vec<Shipped>,
@@ -94,7 +94,7 @@ impl Stages {
             self.shipped.push(Shipped { target: Target::MSL, bytes, native, reflection });
             Ok(self.shipped.len() - 1)
         };
-        // The entry points of GLSL are all called `main`: a bundle calls them by their stage.
+        // Entry points of GLSL are all called `main`, so a bundle names them by their stage.
         match language {
             Language::Wesl => Ok([index(scene.vertex.entry)?, index(scene.fragment.entry)?]),
             Language::Glsl => Ok([index("vertex")?, index("fragment")?]),
@@ -126,9 +126,11 @@ fn agrees(compiled: &Compiled, pair: [usize; 2], scene: &Scene) -> Result<Tally,
     let mut tally = Tally::default();
     fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
     match tally {
-        Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
+        Tally { tried, .. } if tried < LEAST => {
+            Err(format!("{tried} fragments were compared, expected at least {LEAST}"))
+        }
         Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => {
-            Err(format!("{open} of {tried} fragments are open"))
+            Err(format!("{open} of {tried} fragments are open, at most {OPEN} of them may be"))
         }
         tally => Ok(tally),
     }
@@ -138,7 +140,7 @@ fn stage(composed: &Composed) -> EntryPoint<'_> {
     EntryPoint { module: &composed.validated.module, entry: composed.entry }
 }
 
-/// The colour, and the inputs as the evaluator's function takes them, one word after another.
+/// The colour, and then the inputs in the order of the evaluator's function, four words a target.
 fn in_order(stage: &Composed, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, String> {
     let (Some(colour), Some((front, rest))) = (targets.first(), targets.split_last()) else {
         return Err("there are no targets".to_owned());
@@ -161,7 +163,7 @@ fn in_order(stage: &Composed, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, Str
             }
             Some(Binding::BuiltIn(BuiltIn::Position { .. })) => position,
             Some(Binding::BuiltIn(BuiltIn::FrontFacing)) => front,
-            other => return Err(format!("nothing is known of {other:?}")),
+            other => return Err(format!("the drawn frame has no values for {other:?}")),
         };
         inputs.push((target, component));
     }

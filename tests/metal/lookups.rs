@@ -1,4 +1,5 @@
-//! Textures and derivatives: the emitted MSL on the CPU against the evaluator, on the same quads.
+//! Lookups in textures, and derivatives: the emitted MSL, run on the CPU, must give the evaluator's
+//! results for the same quads.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,9 +16,9 @@ use lamplight::validate::{Validated, validate};
 
 use super::{Outcome, scrambled, told};
 
-/// Quads of each text and each kind of sampler.
+/// The number of quads for each text and each variant of samplers.
 const QUADS: u32 = 64;
-/// Both sides compute lookups in f64; sums of them are f32.
+/// The largest relative error. Both sides compute lookups in f64, and sums of them in f32.
 const SHARE: f64 = 2e-6;
 
 struct Text {
@@ -88,14 +89,14 @@ fn agrees(program: &mut Program, index: usize, text: &Text, variant: u32) -> Res
             };
             if (0..4).any(is_off) {
                 let arguments = &arguments[lane];
-                return Err(format!("{arguments:?} gives {given:?} instead of {:?}", wanted[lane]));
+                return Err(format!("{arguments:?} gives {given:?}, expected {:?}", wanted[lane]));
             }
         }
     }
     Ok(())
 }
 
-/// Four fragments whose inputs differ a little, or not so little.
+/// Four fragments whose inputs differ by a random step, so that derivatives select different levels.
 fn quad_of(quad: u32, variant: u32) -> [Fragment; 4] {
     let random = |place: u32| {
         f64::from(scrambled(place + 100 * quad + 100_000 * variant)) / f64::from(u32::MAX)
@@ -111,7 +112,7 @@ fn quad_of(quad: u32, variant: u32) -> [Fragment; 4] {
     })
 }
 
-/// Something for every binding: sizes, texels, filters and addresses follow from the variant.
+/// A resource for every binding. The variant decides sizes, texels, filters and address modes.
 fn resources(reflection: &Reflection, variant: u32) -> Resources {
     let mut resources = Resources::default();
     for (index, binding) in reflection.bindings.iter().enumerate() {
@@ -175,8 +176,8 @@ fn texture(ty: &str, seed: u32, variant: u32) -> Texture {
         (_, true) => 3,
         (_, false) => 1,
     };
-    // naga writes the comparison of level 0 without a level, which Metal takes from the
-    // neighbours: the same only where there is one level, and one filter.
+    // naga writes a comparison in level 0 without the level, so Metal derives the level from
+    // neighbouring fragments. The results agree only if there is one level and one filter.
     let is_single = shape == Shape::D1 || ty.contains("depth") || variant % 4 == 3;
     let count = if is_single { 1 } else { 3 };
     let level = |level: u32| {
@@ -193,7 +194,7 @@ fn texture(ty: &str, seed: u32, variant: u32) -> Texture {
     Texture { shape, levels: (0..count).map(level).collect() }
 }
 
-/// A component of a texel, of what the texture holds.
+/// A component of a texel, in the number type of the texture.
 fn value(ty: &str, word: u32) -> f64 {
     match ty {
         _ if ty.contains("u32") => f64::from(word),

@@ -1,14 +1,14 @@
-//! What the functions of `functions/*.metal` should give, from their definitions in f64, or bit
-//! by bit in u32.
+//! The results that the functions of `functions/*.metal` should give, computed from their definitions
+//! in f64, or exactly in u32.
 
 use lamplight::eval::{half_from, half_to};
 
-/// What a text is tried with, and what it should give.
+/// The inputs of a text, and its expected results.
 pub enum Reference {
-    /// Numbers between two bounds; the error that is allowed, as a share and as such; the
-    /// components of every target.
+    /// The inputs are numbers from `from` to `to`. `share` is the relative error that is allowed, and
+    /// `least` the absolute one. `expected` gives the components of all targets.
     Numbers { from: f64, to: f64, share: f64, least: f64, expected: fn(&[f64; 12]) -> Vec<f64> },
-    /// Any words; the words of every target.
+    /// The inputs are any words. The function gives the words of all targets.
     Words(fn(&[u32; 12]) -> Vec<u32>),
 }
 
@@ -22,7 +22,7 @@ const fn numbers(
     Reference::Numbers { from, to, share, least, expected }
 }
 
-/// By the name of the file.
+/// The references, by the names of files.
 pub const REFERENCES: &[(&str, Reference)] = &[
     ("angles", numbers(-6.0, 6.0, 1e-6, 2e-7, |w| each(w, &[f64::sin, f64::cos, f64::tan]))),
     (
@@ -88,7 +88,7 @@ fn c(words: &[f64; 12]) -> &[f64] {
     &words[8..]
 }
 
-/// Functions of each component of a.
+/// Applies functions to each component of `a`.
 fn each(words: &[f64; 12], functions: &[fn(f64) -> f64]) -> Vec<f64> {
     functions.iter().flat_map(|function| a(words).iter().map(|x| function(*x))).collect()
 }
@@ -169,7 +169,7 @@ fn geometry(w: &[f64; 12]) -> Vec<f64> {
     .concat()
 }
 
-/// Columns times a vector.
+/// A matrix, given as columns, times a vector.
 fn times(columns: &[Vec<f64>], by: &[f64]) -> Vec<f64> {
     (0..columns[0].len())
         .map(|row| columns.iter().zip(by).map(|(column, by)| column[row] * by).sum())
@@ -225,7 +225,7 @@ fn matrices(w: &[f64; 12]) -> Vec<f64> {
     .concat()
 }
 
-/// Fraction in [0.5, 1) and exponent.
+/// The fraction, in [0.5, 1), and the exponent of a number.
 fn frexp(x: f64) -> (f64, f64) {
     if x == 0.0 {
         return (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! What must hold for every key.
+//! Laws that hold for every key.
 
 use std::collections::BTreeSet;
 
@@ -10,22 +10,24 @@ use libtest_mimic::Failed;
 use super::laws::{ensure, random_spaces, read};
 use super::random::Random;
 
+/// Every point has a key of its own, and the key is read as that point.
 pub fn keys_round_trip() -> Result<(), Failed> {
     for space in random_spaces(50) {
         let points = space.enumerate();
         let keys: BTreeSet<Key> = points.iter().map(|point| space.key(point)).collect();
-        ensure(keys.len() == points.len(), "two points have one key")?;
+        ensure(keys.len() == points.len(), "two points have the same key")?;
         for point in &points {
             ensure(
                 read(&space, space.key(point).as_str()).as_ref() == Some(point),
-                format!("{}", space.key(point)),
+                format!("the key `{}` is not read as its own point", space.key(point)),
             )?;
         }
     }
     Ok(())
 }
 
-/// What the loader and the tools make of the same keys: the same key, or an error from both.
+/// The loader and the tools, which each read keys, give the same canonical key for a text, or both
+/// refuse it. If they differed, an engine could not find what `gen` wrote.
 pub fn loader_and_tools_read_alike() -> Result<(), Failed> {
     let mut sources = SourceSet::default();
     let id = sources.add("lamplight.toml", MIXED_AXES);
@@ -40,7 +42,8 @@ pub fn loader_and_tools_read_alike() -> Result<(), Failed> {
         ensure(loader == tools, format!("`{text}`: loader {loader:?}, tools {tools:?}"))?;
         *(if loader.is_some() { &mut fine } else { &mut wrong }) += 1;
     }
-    ensure(fine > 1000 && wrong > 1000, format!("{fine} keys are fine, {wrong} are not"))
+    let counts = format!("{fine} keys are accepted, {wrong} refused");
+    ensure(fine > 1000 && wrong > 1000, format!("{counts}, expected more than 1000 of each"))
 }
 
 /// Axes of every kind and mode.
@@ -64,7 +67,7 @@ fn bundle_axis(axis: &lamplight::permute::Axis) -> bundle::Axis {
     }
 }
 
-/// A key with few parts, each perhaps with blanks, without its value, or misspelt.
+/// A key with few parts. A part may have blanks, no value, or a mistake.
 fn random_key(random: &mut Random, axes: &[bundle::Axis]) -> String {
     const SPOILT: [&str; 12] = [
         "",
@@ -95,7 +98,7 @@ fn random_key(random: &mut Random, axes: &[bundle::Axis]) -> String {
     parts.collect::<Vec<_>>().join(",")
 }
 
-/// A space, and one with an axis and a value more.
+/// A space, and the same space with more axes and values.
 pub fn grown() -> Result<[Space; 2], Failed> {
     let parsed = |axes: &str| -> Result<Space, Failed> {
         let mut sources = SourceSet::default();
@@ -116,16 +119,18 @@ pub fn grown() -> Result<[Space; 2], Failed> {
     Ok([small, large])
 }
 
+/// A key keeps its text and its settings when the space gets more axes and values.
 pub fn keys_survive_growth() -> Result<(), Failed> {
     let [small, large] = grown()?;
     for point in small.enumerate() {
         let key = small.key(&point);
-        let later = read(&large, key.as_str()).ok_or("a key is lost")?;
-        ensure(large.key(&later) == key, format!("{key} became {}", large.key(&later)))?;
+        let later = read(&large, key.as_str());
+        let later = later.ok_or_else(|| format!("the larger space refuses the key `{key}`"))?;
+        ensure(large.key(&later) == key, format!("`{key}` became `{}`", large.key(&later)))?;
         let (before, after) = (small.settings(&point).values, large.settings(&later).values);
         ensure(
             before.iter().all(|(name, value)| after.get(name) == Some(value)),
-            format!("{key} means something else"),
+            format!("`{key}` has other settings in the larger space"),
         )?;
     }
     Ok(())

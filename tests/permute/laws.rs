@@ -1,4 +1,4 @@
-//! What must hold for every space.
+//! Laws that hold for every space.
 
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
@@ -49,20 +49,26 @@ pub fn random_spaces(count: u64) -> impl Iterator<Item = Space> {
     (0..count).map(|seed| space(&mut Random(seed)))
 }
 
+/// Counts and lists of points are those of a search through the full product.
 fn enumeration_is_brute_force() -> Result<(), Failed> {
     for (seed, space) in random_spaces(400).enumerate() {
         let all = product(&space);
         let wanted: Vec<Vec<u8>> =
             all.iter().filter(|point| is_wanted(&space, point)).cloned().collect();
         let valid = all.iter().filter(|point| is_valid(&space, point)).count();
-        ensure(space.full_count() == all.len() as u128, format!("full count, seed {seed}"))?;
-        ensure(space.valid_count() == valid as u128, format!("valid count, seed {seed}"))?;
-        ensure(space.count() == wanted.len() as u128, format!("count, seed {seed}"))?;
-        ensure(ordinals(&space.enumerate()) == wanted, format!("points, seed {seed}"))?;
+        let count = |what: &str, found: u128, expected: usize| {
+            let text = format!("seed {seed}: {what} is {found}, expected {expected}");
+            ensure(found == expected as u128, text)
+        };
+        count("the full count", space.full_count(), all.len())?;
+        count("the count of valid points", space.valid_count(), valid)?;
+        count("the count of wanted points", space.count(), wanted.len())?;
+        ensure(ordinals(&space.enumerate()) == wanted, format!("seed {seed}: other points"))?;
     }
     Ok(())
 }
 
+/// The count without an axis is that of the distinct points without it.
 fn counts_without_an_axis() -> Result<(), Failed> {
     for (seed, space) in random_spaces(100).enumerate() {
         for axis in 0..space.axes().len() {
@@ -74,7 +80,7 @@ fn counts_without_an_axis() -> Result<(), Failed> {
                 ordinals(&space.enumerate()).into_iter().map(without).collect();
             ensure(
                 space.count_without(axis) == Ok(expected.len() as u128),
-                format!("axis {axis}, seed {seed}"),
+                format!("seed {seed}: wrong count without axis {axis}"),
             )?;
         }
     }
@@ -87,6 +93,8 @@ pub fn read(space: &Space, text: &str) -> Option<lamplight::permute::Assignment>
     key::parse(space, &Quoted::whole(&sources, id)).ok()
 }
 
+/// The pairwise cover has only valid points, has every pair of values that a valid point has, and
+/// lists every other pair as infeasible.
 fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
     for (seed, space) in random_spaces(150).enumerate() {
         let valid: Vec<Vec<u8>> =
@@ -95,14 +103,14 @@ fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
         let points = ordinals(&cover.points);
         ensure(
             points.iter().all(|point| is_valid(&space, point)),
-            format!("an invalid point, seed {seed}"),
+            format!("seed {seed}: the cover has an invalid point"),
         )?;
-        ensure(pairs(&points) == pairs(&valid), format!("the pairs differ, seed {seed}"))?;
+        ensure(pairs(&points) == pairs(&valid), format!("seed {seed}: the cover lacks a pair"))?;
         let infeasible: BTreeSet<Pair> =
             pairs(&product(&space)).difference(&pairs(&valid)).copied().collect();
         ensure(
             infeasible == cover.infeasible.iter().copied().collect(),
-            format!("infeasible pairs, seed {seed}"),
+            format!("seed {seed}: the infeasible pairs are others"),
         )?;
     }
     let small = |axes| {
@@ -110,7 +118,7 @@ fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
     };
     ensure(
         small(Vec::new()) == Ok(1) && small(vec![axis("a".to_owned(), 3)]) == Ok(3),
-        "spaces without pairs are covered too",
+        "a space without axes needs 1 point, and one axis of 3 values needs 3",
     )
 }
 
@@ -127,7 +135,8 @@ fn pairs(points: &[Vec<u8>]) -> BTreeSet<Pair> {
     pairs
 }
 
-/// 10^12 points: twelve axes of ten values, chained so that each follows the one before it.
+/// A product of 10^12 points is counted and listed within a second. Twelve axes of ten values are
+/// constrained so that each follows from the previous one, with two choices at most.
 fn huge_space_answers_at_once() -> Result<(), Failed> {
     let started = Instant::now();
     let axes: Vec<_> = (0..12).map(|index| axis(format!("a{index:02}"), 10)).collect();
@@ -149,14 +158,15 @@ fn huge_space_answers_at_once() -> Result<(), Failed> {
         }
     }
     let space = Space::new(axes, constraints, Lists::default()).map_err(|_| "too complex")?;
-    ensure(space.full_count() == 1_000_000_000_000, "the product is 10^12")?;
-    ensure(space.count() == 10 << 8, format!("{} points", space.count()))?;
-    ensure(space.enumerate().len() as u128 == space.count(), "all are listed")?;
+    ensure(space.full_count() == 1_000_000_000_000, "the product should have 10^12 points")?;
+    ensure(space.count() == 10 << 8, format!("{} points, expected 2560", space.count()))?;
+    ensure(space.enumerate().len() as u128 == space.count(), "not all points are listed")?;
     let took = started.elapsed();
-    ensure(took < Duration::from_secs(1), format!("took {took:?}"))
+    ensure(took < Duration::from_secs(1), format!("took {took:?}, expected less than 1 s"))
 }
 
-/// Random clauses over many axes have no small diagram in any order.
+/// A space with random clauses over many axes is refused in bounded time. Its decision diagram is
+/// large for every order of the axes.
 fn entangled_space_is_refused() -> Result<(), Failed> {
     let mut random = Random(7);
     let axes: Vec<_> = (0..100).map(|index| axis(format!("a{index:03}"), 2)).collect();
@@ -171,44 +181,46 @@ fn entangled_space_is_refused() -> Result<(), Failed> {
     ensure(started.elapsed() < Duration::from_secs(20), format!("took {:?}", started.elapsed()))
 }
 
+/// The lock file of a space that grows only gets more lines. The numbers of keys stay, are distinct,
+/// and give their points back.
 fn lock_is_stable() -> Result<(), Failed> {
     let [small, large] = grown()?;
     let before = Lock::default().extended("p", &small);
     let after = before.extended("p", &large);
-    ensure(after.to_string().starts_with(&before.to_string()), "lines are only appended")?;
+    ensure(after.to_string().starts_with(&before.to_string()), "an older line was changed")?;
     for point in small.enumerate() {
         let later = read(&large, small.key(&point).as_str()).ok_or("a key is lost")?;
         let dense = before.dense("p", &small, &point);
         ensure(
             dense.is_some() && dense == after.dense("p", &large, &later),
-            format!("{} has another number", small.key(&point)),
+            format!("`{}` got another number", small.key(&point)),
         )?;
     }
     let numbers: BTreeSet<_> =
         large.enumerate().iter().map(|point| after.dense("p", &large, point)).collect();
     ensure(
         numbers.len() as u128 == large.count() && !numbers.contains(&None),
-        "numbers are distinct",
+        "two points have the same number, or one has none",
     )?;
     for point in large.enumerate() {
         let dense = after.dense("p", &large, &point).ok_or("no number")?;
         ensure(
             after.point("p", &large, dense) == Some(point),
-            format!("{dense} does not come back"),
+            format!("the number {dense} does not give its point back"),
         )?;
     }
     ensure(
         (0..2000).filter(|dense| after.point("p", &large, *dense).is_some()).count() as u128
             == large.count(),
-        "no other number is a point",
+        "a number that no point has gives a point",
     )?;
     let mut sources = SourceSet::default();
     let id = sources.add("lamplight.lock", after.to_string());
-    ensure(lock::parse(&sources, id) == Ok(after.clone()), "the file reads back")?;
-    ensure(after.extended("p", &small) == after, "nothing is taken away")
+    ensure(lock::parse(&sources, id) == Ok(after.clone()), "the written lock is read as another")?;
+    ensure(after.extended("p", &small) == after, "a smaller space changed the lock")
 }
 
-/// A composition that asks for a further axis only after some answers.
+/// The reads of a composition that asks for a second axis only after some values of the first.
 fn compose(settings: &Settings) -> Vec<(String, Setting)> {
     let ask = |name: &str| (name.to_owned(), settings.values[name].clone());
     let shadow = ask("shadow");
@@ -219,42 +231,46 @@ fn compose(settings: &Settings) -> Vec<(String, Setting)> {
     reads
 }
 
+/// The tree of reads finds the earlier composition for settings that would be read alike, so that
+/// only distinct reads are composed.
 fn read_tree_finds_what_composes_alike() -> Result<(), Failed> {
     let [_, large] = grown()?;
     let mut tree: ReadTree<Vec<(String, Setting)>> = ReadTree::default();
     let mut composed = 0;
     for settings in large.enumerate().iter().map(|point| large.settings(point)) {
         match tree.get(&settings) {
-            Some(known) => ensure(*known == compose(&settings), "another composition was found")?,
+            Some(known) => ensure(*known == compose(&settings), "the tree found other reads")?,
             None => {
                 composed += 1;
                 tree.insert(&compose(&settings), compose(&settings))
-                    .map_err(|_| "a contradiction")?;
+                    .map_err(|_| "the tree refuses reads that do not contradict it")?;
             }
         }
     }
     ensure(
         composed == 1 + 3 * 4 && tree.leaves().count() == composed,
-        format!("{composed} compositions"),
+        format!("{composed} compositions, {} leaves, expected 13", tree.leaves().count()),
     )
 }
 
+/// The tree refuses reads that no composer could make, given the earlier ones.
 fn read_tree_refuses_contradictions() -> Result<(), Failed> {
     let read = |name: &str, value: bool| (name.to_owned(), Setting::Bool(value));
     let mut tree = ReadTree::default();
-    ensure(tree.get(&Settings::default()).is_none(), "an empty tree knows nothing")?;
-    ensure(tree.insert(&[read("a", true), read("b", true)], 1).is_ok(), "the first is free")?;
-    ensure(tree.insert(&[read("b", true)], 2).is_err(), "another first question")?;
-    ensure(tree.insert(&[read("a", true)], 3).is_err(), "an answer that was not enough before")?;
+    ensure(tree.get(&Settings::default()).is_none(), "an empty tree found something")?;
+    ensure(tree.insert(&[read("a", true), read("b", true)], 1).is_ok(), "the first was refused")?;
+    ensure(tree.insert(&[read("b", true)], 2).is_err(), "another first read was accepted")?;
+    ensure(tree.insert(&[read("a", true)], 3).is_err(), "reads that end too early were accepted")?;
     ensure(
         tree.insert(&[read("a", true), read("b", true), read("c", true)], 4).is_err(),
-        "a question after the end",
+        "reads that go on after the end were accepted",
     )?;
-    ensure(tree.insert(&[read("a", false)], 5).is_ok(), "another answer")?;
-    ensure(tree.leaves().copied().eq([1, 5]), "leaves are in order")
+    ensure(tree.insert(&[read("a", false)], 5).is_ok(), "another value was refused")?;
+    ensure(tree.leaves().copied().eq([1, 5]), "the leaves should be 1 and 5, in order")
 }
 
-/// Deep, long and garbled constraints give a diagnostic or a space, never a crash.
+/// Deep, long and garbled constraints give a space, or diagnostics with places within the text, and
+/// never a crash.
 fn hostile_constraints_end() -> Result<(), Failed> {
     let mut texts = vec![
         "(".repeat(100_000),
@@ -286,14 +302,14 @@ fn hostile_constraints_end() -> Result<(), Failed> {
                 problems.iter().flat_map(|problem| &problem.labels).map(|label| label.span.range());
             ensure(
                 spans.into_iter().all(|range| sources.get(id).text.get(range).is_some()),
-                "a span is no text",
+                format!("a diagnostic's place is not in the text: {problems:?}"),
             )?;
         }
     }
     Ok(())
 }
 
-/// Garbled manifests give diagnostics within the text or a manifest, never a crash.
+/// Garbled manifests give a manifest, or diagnostics with places within the text, and never a crash.
 fn hostile_manifests_end() -> Result<(), Failed> {
     const TEXT: &str = "[program.p]\nwesl = \"p\"\nonly = [{ e = [\"x\", \"y\"], b = \"*\" }]\nexclude = [{ n = 2 }]\ninclude = [\"b,e=y\"]\n\
         axis.b = { values = [false, true] }\naxis.e = { values = [\"x\", \"y\"], default = \"y\", mode = \"spec\" }\naxis.n = { values = [1, 2] }\n\
@@ -316,14 +332,15 @@ fn hostile_manifests_end() -> Result<(), Failed> {
                 problems.iter().flat_map(|problem| &problem.labels).map(|label| label.span.range());
             ensure(
                 spans.all(|range| sources.get(id).text.get(range).is_some()),
-                "a span is no text",
+                format!("a diagnostic's place is not in the text: {problems:?}"),
             )?;
         }
     }
     Ok(())
 }
 
-/// Five thousand keys over twenty axes of four values: listed, counted and reported.
+/// Five thousand keys over twenty axes of four values are listed, counted and reported in bounded
+/// time.
 fn thousands_of_keys_are_quick() -> Result<(), Failed> {
     let started = Instant::now();
     let axes: Vec<_> = (0..20).map(|index| axis(format!("a{index:02}"), 4)).collect();
@@ -336,21 +353,25 @@ fn thousands_of_keys_are_quick() -> Result<(), Failed> {
     let include = (0..5000)
         .map(|_| read(&plain, &key()))
         .collect::<Option<Vec<_>>>()
-        .ok_or("a key is lost")?;
+        .ok_or("a key of the space was refused")?;
     let nothing = Slice { values: vec![ValueSet::EMPTY; 20], span: NOWHERE };
     let lists = Lists { only: vec![nothing], include: include.clone(), ..Lists::default() };
     let space = Space::new(axes, Vec::new(), lists).map_err(|_| "too complex")?;
     let distinct: BTreeSet<_> = include.into_iter().collect();
-    ensure(space.enumerate().into_iter().eq(distinct), "other points")?;
-    ensure(report::report("p", &space).axes.iter().all(|axis| axis.without.is_some()), "no cost")?;
+    ensure(space.enumerate().into_iter().eq(distinct), "the listed points are not the keys'")?;
+    ensure(
+        report::report("p", &space).axes.iter().all(|axis| axis.without.is_some()),
+        "an axis has no count without it",
+    )?;
     ensure(started.elapsed() < Duration::from_secs(30), format!("took {:?}", started.elapsed()))
 }
 
+/// The report of a space can be written as JSON with its numbers.
 fn report_is_data() -> Result<(), Failed> {
     let [_, large] = grown()?;
     let report = serde_json::to_value(report::report("p", &large))?;
     ensure(
         report["wanted"] == 64 && report["axes"][0]["factor"] == 2.0 && report["stages"].is_null(),
-        report.to_string(),
+        format!("expected 64 wanted points, a factor of 2 and no stages: {report}"),
     )
 }

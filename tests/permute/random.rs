@@ -1,4 +1,4 @@
-//! Small random spaces: the same ones on every run.
+//! Small random spaces, which are the same in every run.
 
 use lamplight::permute::axis::{Axis, Kind, Mode, ValueSet};
 use lamplight::permute::space::{Constraint, Formula, Lists, Slice};
@@ -40,7 +40,7 @@ pub fn constraint(formula: Formula) -> Constraint {
     Constraint { text: String::new(), doc: None, formula, span: NOWHERE }
 }
 
-/// Up to six axes of up to four values under up to five constraints, perhaps with lists.
+/// A space of up to six axes with up to four values each, up to five constraints, and possibly lists.
 pub fn space(random: &mut Random) -> Space {
     let axes: Vec<Axis> = (0..1 + random.below(6))
         .map(|index| axis(format!("a{index}"), 1 + random.below(4)))
@@ -78,7 +78,7 @@ fn formula(random: &mut Random, axes: &[Axis], depth: usize) -> Formula {
     }
 }
 
-/// Every point of the full product, canonically ordered, by counting.
+/// Every point of the full product, in canonical order.
 pub fn product(space: &Space) -> Vec<Vec<u8>> {
     space.axes().iter().fold(vec![Vec::new()], |points, axis| {
         points

@@ -1,10 +1,11 @@
-//! What a reflection says, as wgpu takes it.
+//! Translates a reflection to wgpu's descriptors.
 
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
 use lamplight::bundle::{Binding, Kind, Reflection, Stage, Varying};
 
+/// Fills the gaps between the bindings of a group with bindings that no stage can see.
 pub fn fill(group: &mut BTreeMap<u32, wgpu::BindGroupLayoutEntry>) {
     let last = group.last_key_value().map_or(0, |(binding, _)| *binding);
     for binding in 0..last {
@@ -37,7 +38,8 @@ pub fn entry(
         Kind::ComparisonSampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
         Kind::Texture => texture(binding)?,
         Kind::Storage | Kind::StorageTexture => {
-            return Err(format!("`{}` is of a kind that the library has not", binding.name));
+            let what = "which this test does not expect in the library";
+            return Err(format!("`{}` is a {:?}, {what}", binding.name, binding.kind));
         }
     };
     let visibility = match reflection.stage {
@@ -48,7 +50,7 @@ pub fn entry(
     Ok(wgpu::BindGroupLayoutEntry { binding: binding.binding, visibility, ty, count: None })
 }
 
-/// Whether the sampler reads a depth texture without comparing: such a pair cannot filter.
+/// Whether the sampler reads a depth texture without comparing. wgpu does not allow filtering then.
 fn filters_depth(sampler: [u32; 2], reflection: &Reflection) -> bool {
     let is_depth = |place: [u32; 2]| {
         reflection.bindings.iter().any(|binding| {
@@ -70,7 +72,7 @@ fn texture(binding: &Binding) -> Result<wgpu::BindingType, String> {
         "texture_depth_2d_array" => (wgpu::TextureSampleType::Depth, D2Array),
         "texture_depth_cube" => (wgpu::TextureSampleType::Depth, Cube),
         "texture_depth_cube_array" => (wgpu::TextureSampleType::Depth, CubeArray),
-        other => return Err(format!("no texture is of type `{other}`")),
+        other => return Err(format!("`{}` has the unknown type `{other}`", binding.name)),
     };
     Ok(wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false })
 }
@@ -88,7 +90,7 @@ pub fn attributes(inputs: &[Varying]) -> Result<Vec<wgpu::VertexAttribute>, Stri
             "vec4<f32>" => wgpu::VertexFormat::Float32x4,
             "u32" => wgpu::VertexFormat::Uint32,
             "i32" => wgpu::VertexFormat::Sint32,
-            other => return Err(format!("no attribute is of type `{other}`")),
+            other => return Err(format!("a vertex input has the unknown type `{other}`")),
         };
         attributes.push(wgpu::VertexAttribute { format, offset, shader_location });
         offset += format.size();
@@ -104,7 +106,7 @@ pub fn targets(outputs: &[Varying]) -> Result<Vec<Option<wgpu::ColorTargetState>
             "f32" => wgpu::TextureFormat::R8Unorm,
             "vec2<f32>" => wgpu::TextureFormat::Rg8Unorm,
             "vec4<f32>" => wgpu::TextureFormat::Rgba8Unorm,
-            other => return Err(format!("no target is of type `{other}`")),
+            other => return Err(format!("a fragment output has the unknown type `{other}`")),
         };
         targets.resize(location as usize, None);
         targets.push(Some(format.into()));
@@ -112,7 +114,7 @@ pub fn targets(outputs: &[Varying]) -> Result<Vec<Option<wgpu::ColorTargetState>
     Ok(targets)
 }
 
-/// A depth buffer as most engines have it.
+/// A depth buffer, as in most engines.
 pub fn depth() -> wgpu::DepthStencilState {
     wgpu::DepthStencilState {
         format: wgpu::TextureFormat::Depth32Float,

@@ -1,4 +1,4 @@
-//! Validators of others accept what programs are composed of and written as.
+//! External validators accept the composed texts and the outputs of programs.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -14,13 +14,13 @@ use rayon::prelude::*;
 
 use super::{Sources, alone, report, texts};
 
-/// Files in one call of glslangValidator.
+/// The number of files in one call of glslangValidator.
 const BATCH: usize = 64;
 
-/// Targets that external validators read.
+/// The targets that glslangValidator reads as GLSL.
 const GLSL_TARGETS: [Target; 3] = [Target::GLSL450, Target::GLSL330, Target::ESSL300];
 
-/// glslangValidator compiles the GLSL of every permutation that ships, as composed, for Vulkan.
+/// glslangValidator accepts the composed GLSL of every permutation that ships.
 pub fn glslang_takes_sources(
     program: &Program,
     stage: &(&'static str, &'static str, &'static str),
@@ -37,10 +37,11 @@ pub fn glslang_takes_sources(
         files.push((path, point));
     }
     let refused = |batch: &[(String, &Assignment)]| -> Vec<(Assignment, String)> {
-        // Files of one call are linked with each other, which fails with status 3 where all compile.
+        // glslangValidator links the files of one call. If all of them compile, linking fails, with
+        // status 3.
         let paths = batch.iter().map(|(path, _)| path);
         let status = Command::new("glslangValidator")
-            // It writes what it compiled into the folder it is in.
+            // It writes its output to the current folder.
             .current_dir(folder.path())
             .args(["--client", "vulkan100"])
             .args(paths)
@@ -61,8 +62,8 @@ pub fn glslang_takes_sources(
 /// Options of glslangValidator for GLSL with Vulkan's semantics.
 const VULKAN: &[&str] = &["-V", "-o", "/dev/null"];
 
-/// Runs the outputs of the covering set through spirv-val and glslangValidator, and the GLSL that
-/// they were made from.
+/// spirv-val and glslangValidator accept the outputs of the covering set, and glslangValidator the
+/// GLSL sources from which they were made.
 pub fn validators(
     program: &Program,
     stage: &(&'static str, &'static str, &'static str),
@@ -100,7 +101,7 @@ fn accepted(
     for target in GLSL_TARGETS {
         run("glslangValidator", &["-S", extension, &write(target, extension)?])?;
     }
-    // What is written for ES 3.00 is for every later ES: one that only 3.00 takes would be a trap.
+    // Engines use the text for ES 3.00 with later versions of ES too, so it must be valid there.
     let es_300 = std::fs::read_to_string(write(Target::ESSL300, extension)?)
         .map_err(|error| error.to_string())?;
     let es_310 = es_300.replacen("#version 300 es", "#version 310 es", 1);

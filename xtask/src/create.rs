@@ -10,9 +10,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     let made = new::make(&root(), kind, name).map_err(Failure::usage)?;
     for (path, text) in &made.files {
         let file = root().join(path);
-        let folder = file.parent().map_or(Ok(()), std::fs::create_dir_all);
-        folder
-            .and_then(|()| std::fs::write(&file, text))
+        lamplight::output::write(&file, text.as_bytes())
             .map_err(|error| Failure::environment(format!("cannot write `{path}`: {error}")))?;
         println!("wrote {path}");
     }

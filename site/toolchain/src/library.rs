@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use lamplight::catalogue::plot::{self, Plot};
 use lamplight::catalogue::{self, Item, Kind};
+use lamplight::parse::words::has_word;
 use lamplight::project::LIBRARY;
 use lamplight::proof::references;
 use lamplight::source::{self, Embedded, Files as _, Package, SourceSet};
@@ -207,15 +208,6 @@ fn declaration(text: &str, name: &str) -> Option<String> {
         .position(|line| line.starts_with('}') || (line.ends_with(';') && !line.starts_with(' ')));
     let end = start + length.unwrap_or(lines.len() - start - 1);
     Some(lines[start - commented..=end].join("\n"))
-}
-
-fn has_word(text: &str, word: &str) -> bool {
-    let is_letter = |letter: char| letter == '_' || letter.is_alphanumeric();
-    text.match_indices(word).any(|(at, _)| {
-        let before = text[..at].chars().next_back().is_some_and(is_letter);
-        let after = text[at + word.len()..].chars().next().is_some_and(is_letter);
-        !before && !after
-    })
 }
 
 /// What a search found.

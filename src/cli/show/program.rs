@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::Shown;
 use crate::cli::list::{count, setting};
 use crate::cli::text::{rows, wrapped};
+use crate::parse::words::has_word;
 use crate::permute::{Axis, Program};
 
 /// A program with its axes and constraints.
@@ -46,16 +47,12 @@ pub fn axis_json(program: &str, axis: &Axis) -> Value {
 
 /// The constraints that name the axis.
 fn constraints(program: &Program, axis: &Axis) -> Vec<String> {
-    let names = |text: &str| {
-        text.split(|letter: char| !letter.is_alphanumeric() && letter != '_')
-            .any(|word| word == axis.name)
-    };
     program
         .space
         .constraints()
         .iter()
         .map(|constraint| constraint.text.clone())
-        .filter(|text| names(text))
+        .filter(|text| has_word(text, &axis.name))
         .collect()
 }
 

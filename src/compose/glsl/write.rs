@@ -6,6 +6,7 @@ use super::table::Spellings;
 use super::token::{NONE, Tok};
 use crate::compose::{Segment, SourceMap};
 use crate::parse::glsl::Module;
+use crate::parse::words::continues_word;
 use crate::source::Span;
 
 /// Output text and its map.
@@ -238,9 +239,8 @@ fn indentation(space: &str) -> &str {
 
 fn glues(left: Option<char>, right: Option<char>) -> bool {
     let (Some(left), Some(right)) = (left, right) else { return false };
-    let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let number = |c: char| c.is_ascii_digit() || c == '.';
-    (word(left) && word(right))
+    (continues_word(left) && continues_word(right))
         || (number(left) && number(right))
         || ("+-*/%<>=!&|^#".contains(left) && "+-*/<>=&|^#".contains(right))
 }

@@ -7,6 +7,7 @@ use super::reached::{Reached, Thing, name_of};
 use crate::compose::{Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl::{ItemKind, Name};
+use crate::parse::words::continues_word;
 use crate::resolve::wesl::Graph;
 
 /// The new names of the things that do not keep theirs.
@@ -181,7 +182,7 @@ fn mangle(graph: &Graph, thing: Thing) -> String {
 
 /// A character of a part. Those that no identifier has, from file names, become underscores.
 fn escaped(letter: char) -> impl Iterator<Item = char> {
-    let allowed = unicode_ident::is_xid_continue(letter) && letter != '_';
+    let allowed = continues_word(letter) && letter != '_';
     [if allowed { letter } else { '_' }, '_'].into_iter().take(if allowed { 1 } else { 2 })
 }
 

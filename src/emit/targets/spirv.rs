@@ -6,7 +6,7 @@
 use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::bundle::Target;
-use crate::emit::spirv::{HEADER_WORDS, instructions};
+use crate::emit::spirv::{HEADER_WORDS, Instruction, bytes, instructions, op};
 use crate::emit::slots::{Numbering, native};
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
@@ -32,29 +32,28 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         PipelineOptions { shader_stage: source.stage, entry_point: source.entry.to_owned() };
     let words = write_vec(source.module, source.info, &options, Some(&pipeline))
         .map_err(|error| error.to_string())?;
-    let bytes = ordered(&words).iter().flat_map(|word| word.to_le_bytes()).collect();
+    let bytes = bytes(&ordered(&words));
     Ok(Emitted { bytes, native: native(source, source.entry, Numbering::Author) })
 }
 
 /// The module with the variables of each function in the order of their ids, which is the author's.
 /// naga writes them in the order of a hash map, which differs between processors.
 fn ordered(words: &[u32]) -> Vec<u32> {
-    const VARIABLE: u32 = 59;
     const FUNCTION: u32 = 7;
-    let is_local = |instruction: &[u32]| {
-        instruction.first().is_some_and(|word| word & 0xffff == VARIABLE)
-            && instruction.get(3) == Some(&FUNCTION)
+    let is_local = |found: &Instruction<'_>| {
+        found.op == op::VARIABLE && found.words.get(3) == Some(&FUNCTION)
     };
     let mut made = words.get(..HEADER_WORDS).unwrap_or_default().to_vec();
     let mut run: Vec<&[u32]> = Vec::new();
-    for instruction in instructions(words).chain([&[][..]]) {
-        if is_local(instruction) {
-            run.push(instruction);
+    // The last one stands for the end.
+    for instruction in instructions(words).map(Some).chain([None]) {
+        if let Some(local) = instruction.filter(is_local) {
+            run.push(local.words);
             continue;
         }
         run.sort_by_key(|variable| variable[2]);
         made.extend(run.drain(..).flatten());
-        made.extend(instruction);
+        made.extend(instruction.map_or(&[][..], |instruction| instruction.words));
     }
     made
 }

@@ -8,14 +8,10 @@ use std::collections::BTreeMap;
 
 use super::heaps;
 use crate::bundle::{Native, Stage};
-use crate::emit::spirv::{HEADER_WORDS, instructions, words};
+use crate::emit::spirv::{self, HEADER_WORDS, Instruction, instructions, op, string};
+use crate::parse::words::words;
 use crate::tools::{GLSLANG, SPIRV_OPT};
 
-const OP_NAME: u32 = 5;
-const OP_EXTENSION: u32 = 10;
-const OP_DECORATE: u32 = 71;
-const OP_DECORATE_STRING: u32 = 5632;
-const OP_MEMBER_DECORATE_STRING: u32 = 5633;
 const LOCATION: u32 = 30;
 const BINDING: u32 = 33;
 const DESCRIPTOR_SET: u32 = 34;
@@ -31,11 +27,7 @@ pub fn lacks(text: &str) -> Option<&'static str> {
         );
     }
     let named = |name: &str| {
-        let behind = text.split(name).skip(1);
-        let before = text.split(name).map(|part| part.chars().next_back());
-        let is_word =
-            |letter: Option<char>| letter.is_some_and(|one| one.is_alphanumeric() || one == '_');
-        before.zip(behind).any(|(before, behind)| !is_word(before) && behind.starts_with('('))
+        words(text).any(|word| word.text == name && text[word.at + name.len()..].starts_with('('))
     };
     if named("frexp") {
         return Some("frexp of Direct3D drops the sign, and that of glslangValidator keeps it");
@@ -86,7 +78,7 @@ pub fn spirv(text: &[u8], stage: Stage, native: &Native, group: u32) -> Result<V
     // The static samplers are still variables here, which Vulkan does not allow.
     let legal = SPIRV_OPT
         .pipe(&["--target-env=vulkan1.1", "--legalize-hlsl", "-o", "-", "-"], &compiled)?;
-    bound(&words(&legal), native, group)
+    bound(&spirv::words(&legal), native, group)
 }
 
 /// Writes locations after semantics, and bindings for heaps.
@@ -95,11 +87,11 @@ fn bound(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String>
     let locations = locations(words)?;
     let header = words.get(..HEADER_WORDS).ok_or("glslangValidator wrote no module")?;
     let mut out = header.to_vec();
-    for instruction in instructions(words) {
-        match (instruction[0] & 0xffff, instruction) {
-            (OP_DECORATE_STRING | OP_MEMBER_DECORATE_STRING, _) => {}
-            (OP_EXTENSION, [_, name @ ..]) if text(name).starts_with("SPV_GOOGLE") => {}
-            (OP_DECORATE, [head, id, decoration, value]) => {
+    for Instruction { op, words } in instructions(words) {
+        match (op, words) {
+            (op::DECORATE_STRING | op::MEMBER_DECORATE_STRING, _) => {}
+            (op::EXTENSION, [_, name @ ..]) if string(name).starts_with("SPV_GOOGLE") => {}
+            (op::DECORATE, [head, id, decoration, value]) => {
                 let value = match (*decoration, places.get(id), locations.get(id)) {
                     (LOCATION, _, Some(location)) => *location,
                     (BINDING, Some(binding), _) => *binding,
@@ -108,7 +100,7 @@ fn bound(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String>
                 };
                 out.extend([*head, *id, *decoration, value]);
             }
-            _ => out.extend_from_slice(instruction),
+            _ => out.extend_from_slice(words),
         }
     }
     Ok(out)
@@ -119,12 +111,12 @@ fn places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
     let by_name: BTreeMap<String, u32> = heaps::bindings(&native.sampler_heaps).collect();
     let mut places = BTreeMap::new();
     let mut variables = Vec::new();
-    for instruction in instructions(words) {
-        match (instruction[0] & 0xffff, instruction) {
-            (OP_NAME, [_, id, name @ ..]) => {
-                places.extend(by_name.get(&text(name)).map(|binding| (*id, *binding)));
+    for Instruction { op, words } in instructions(words) {
+        match (op, words) {
+            (op::NAME, [_, id, name @ ..]) => {
+                places.extend(by_name.get(&string(name)).map(|binding| (*id, *binding)));
             }
-            (OP_DECORATE, [_, id, DESCRIPTOR_SET, _]) => variables.push(*id),
+            (op::DECORATE, [_, id, DESCRIPTOR_SET, _]) => variables.push(*id),
             _ => {}
         }
     }
@@ -136,19 +128,13 @@ fn places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
 /// The location of each variable, from the number in its semantic `LOCn`.
 fn locations(words: &[u32]) -> Result<BTreeMap<u32, u32>, String> {
     let mut locations = BTreeMap::new();
-    for instruction in instructions(words) {
-        if let [head, id, USER_SEMANTIC, name @ ..] = instruction
-            && head & 0xffff == OP_DECORATE_STRING
-            && let Some(number) = text(name).strip_prefix("LOC")
+    for Instruction { op, words } in instructions(words) {
+        if let (op::DECORATE_STRING, [_, id, USER_SEMANTIC, name @ ..]) = (op, words)
+            && let Some(number) = string(name).strip_prefix("LOC")
         {
             let number = number.parse().map_err(|_| format!("the semantic LOC{number}"))?;
             locations.insert(*id, number);
         }
     }
     Ok(locations)
-}
-
-fn text(words: &[u32]) -> String {
-    let bytes = words.iter().flat_map(|word| word.to_le_bytes()).take_while(|byte| *byte != 0);
-    String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
 }

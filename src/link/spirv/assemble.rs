@@ -1,11 +1,12 @@
 //! Puts pieces together into a module.
 
-use super::capabilities::{SHADER, extensions};
-use super::operands::op;
-use super::{DEPTH, HEADER, MEMORY_MODEL, Piece, Pool, Ref, SHELVES, Shelf, Text};
 use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
+
+use super::capabilities::{SHADER, extensions};
+use super::{DEPTH, HEADER, MEMORY_MODEL, Piece, Pool, Ref, SHELVES, Shelf, Text};
+use crate::emit::spirv::{first_word, op};
 
 /// A piece that the new module has.
 struct Node<'n> {
@@ -128,7 +129,7 @@ fn write_extension(name: &str, out: &mut Vec<u32>) {
     let words = name.len() / 4 + 1;
     let mut bytes = name.as_bytes().to_vec();
     bytes.resize(words * 4, 0);
-    out.push((words as u32 + 1) << 16 | u32::from(op::EXTENSION));
+    out.push(first_word(op::EXTENSION, words + 1));
     out.extend(bytes.as_chunks().0.iter().map(|&word| u32::from_le_bytes(word)));
 }
 
@@ -157,7 +158,7 @@ pub fn assemble<'a>(
         Vec::with_capacity(linker.len() + entry.entry.words.len() + entry.modes.words.len() + 64);
     out.extend(HEADER);
     out.extend([bound, 0]);
-    out.extend(needs.iter().flat_map(|&need| [2 << 16 | u32::from(op::CAPABILITY), need]));
+    out.extend(needs.iter().flat_map(|&need| [first_word(op::CAPABILITY, 2), need]));
     for name in extensions(&needs) {
         write_extension(name, &mut out);
     }

@@ -1,7 +1,9 @@
 //! What capabilities instructions need, and what extensions those come from.
 
-use super::operands::{Inst, op};
 use std::collections::BTreeSet;
+
+use super::operands::Inst;
+use crate::emit::spirv::op;
 
 /// The capability that every graphics module has.
 pub const SHADER: u32 = 1;

@@ -1,11 +1,13 @@
 //! Reads a module only as far as needed: its functions, and the layout of each instruction.
 
-use super::capabilities::{self, SHADER, STORAGE_IMAGE_WRITE_WITHOUT_FORMAT, extensions};
-use super::operands::Section::{Body, Either, Global};
-use super::operands::{Inst, op};
-use super::{HEADER, MEMORY_MODEL};
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
+
+use super::capabilities::{self, SHADER, STORAGE_IMAGE_WRITE_WITHOUT_FORMAT, extensions};
+use super::operands::Inst;
+use super::operands::Section::{Body, Either, Global};
+use super::{HEADER, MEMORY_MODEL};
+use crate::emit::spirv::{HEADER_WORDS, op, split_first};
 
 /// Vertex and fragment. The other stages have instructions of their own, which the table of
 /// operands lacks.
@@ -31,7 +33,8 @@ pub struct Module<'a> {
 impl<'a> Module<'a> {
     /// Reads all instructions, and checks that each id is defined once.
     pub fn read(words: &'a [u32]) -> Result<Self, String> {
-        let (header, mut rest) = words.split_at_checked(5).ok_or("the header is cut off")?;
+        let (header, mut rest) =
+            words.split_at_checked(HEADER_WORDS).ok_or("the header is cut off")?;
         if !header.starts_with(&HEADER) || header.last() != Some(&0) {
             return Err("the header is not of a known kind".into());
         }
@@ -42,11 +45,9 @@ impl<'a> Module<'a> {
             .filter(|&bound| bound <= words.len() * 4 + 1024);
         let ids = vec![Id::default(); bound.ok_or("the bound is too high")?];
         let mut module = Self { insts: Vec::with_capacity(words.len() / 3), ids, about: vec![] };
-        while let Some(&first) = rest.first() {
-            let (words, tail) =
-                rest.split_at_checked((first >> 16) as usize).ok_or("an instruction is cut off")?;
-            module.push(Inst::new(words)?)?;
-            rest = tail;
+        while let Some((instruction, after)) = split_first(rest)? {
+            module.push(Inst::new(instruction)?)?;
+            rest = after;
         }
         Ok(module)
     }

@@ -1,28 +1,6 @@
 //! The layout of each instruction's operands.
 
-/// Opcodes that are treated by name.
-pub mod op {
-    pub const NAME: u16 = 5;
-    pub const MEMBER_NAME: u16 = 6;
-    pub const EXTENSION: u16 = 10;
-    pub const IMPORT: u16 = 11;
-    pub const MEMORY_MODEL: u16 = 14;
-    pub const ENTRY_POINT: u16 = 15;
-    pub const EXECUTION_MODE: u16 = 16;
-    pub const CAPABILITY: u16 = 17;
-    pub const TYPE_INT: u16 = 21;
-    pub const TYPE_IMAGE: u16 = 25;
-    pub const TYPE_STRUCT: u16 = 30;
-    pub const FUNCTION: u16 = 54;
-    pub const FUNCTION_END: u16 = 56;
-    pub const FUNCTION_CALL: u16 = 57;
-    pub const VARIABLE: u16 = 59;
-    pub const LOAD: u16 = 61;
-    pub const ACCESS_CHAIN: u16 = 65;
-    pub const DECORATE: u16 = 71;
-    pub const MEMBER_DECORATE: u16 = 72;
-    pub const IMAGE_WRITE: u16 = 99;
-}
+use crate::emit::spirv::Instruction;
 
 /// Where an instruction may stand in a module.
 #[derive(Clone, Copy, PartialEq)]
@@ -130,8 +108,8 @@ pub struct Inst<'a> {
 impl<'a> Inst<'a> {
     /// Looks the opcode up in the table. An unknown instruction is refused, since ids in it would
     /// not be renumbered.
-    pub fn new(words: &'a [u32]) -> Result<Self, String> {
-        let op = *words.first().ok_or("an instruction has no words")? as u16;
+    pub fn new(instruction: Instruction<'a>) -> Result<Self, String> {
+        let Instruction { op, words } = instruction;
         let (section, layout) = layout(op).ok_or_else(|| format!("opcode {op} is not known"))?;
         Ok(Self { op, section, words, layout })
     }

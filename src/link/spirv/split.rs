@@ -1,10 +1,12 @@
 //! Takes a module apart.
 
-use super::module::{Function, Module, Role, functions};
-use super::operands::{Inst, op};
-use super::{DEPTH, Declaration, Parts, Piece, Pool, Ref, Shelf, Text};
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
+
+use super::module::{Function, Module, Role, functions};
+use super::operands::Inst;
+use super::{DEPTH, Declaration, Parts, Piece, Pool, Ref, Shelf, Text};
+use crate::emit::spirv::op;
 
 /// Takes a module apart into pieces.
 ///

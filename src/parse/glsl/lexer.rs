@@ -1,6 +1,7 @@
 //! Splits text into tokens, once for each file.
 
 use super::symbols::{Symbol, Symbols};
+use crate::parse::words::is_word_byte;
 
 /// What a token is, as far as that matters to the preprocessor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -174,7 +175,7 @@ fn scan(text: &str, start: usize) -> (Kind, usize) {
 fn word_end(bytes: &[u8], mut at: usize) -> usize {
     loop {
         match bytes.get(at) {
-            Some(byte) if byte.is_ascii_alphanumeric() || *byte == b'_' => at += 1,
+            Some(byte) if is_word_byte(*byte) => at += 1,
             Some(b'\\') if splice(bytes, at) > 0 => at += splice(bytes, at),
             _ => return at,
         }

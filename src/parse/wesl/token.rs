@@ -3,6 +3,7 @@
 use super::blank::{block_comment, is_blank, line_comment};
 use super::name::{Name, Names};
 use crate::diagnostic::{Diagnostic, codes};
+use crate::parse::words::{begins_word, number_end, word_end};
 use crate::source::{LIMITS, SourceId, Span};
 
 /// What a token is. `<` and `>` are always single tokens: `>>` and `>=` are two tokens each. So a
@@ -193,7 +194,7 @@ impl Scanner<'_> {
                 Ok(Kind::Mark(mark))
             }
             _ => match self.character() {
-                Some(letter) if unicode_ident::is_xid_start(letter) => Ok(self.word(names)),
+                Some(letter) if begins_word(letter) => Ok(self.word(names)),
                 other => Err(self.stray(other.unwrap_or('\0'))),
             },
         }
@@ -223,35 +224,13 @@ impl Scanner<'_> {
 
     fn word(&mut self, names: &mut Names) -> Kind {
         let start = self.at;
-        while self.at < self.bytes.len() {
-            match self.bytes[self.at] {
-                b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'0'..=b'9' => self.at += 1,
-                0x80.. => match self.character() {
-                    Some(letter) if unicode_ident::is_xid_continue(letter) => {
-                        self.at += letter.len_utf8()
-                    }
-                    _ => break,
-                },
-                _ => break,
-            }
-        }
+        self.at = word_end(self.text, start);
         Kind::Word(names.intern(&self.text[start..self.at]))
     }
 
     /// A numeric literal. It is not checked here, since naga does that.
     fn number(&mut self) -> Kind {
-        let hexadecimal = self.bytes[self.at] == b'0' && matches!(self.peek(1), b'x' | b'X');
-        loop {
-            let exponent = if hexadecimal {
-                matches!(self.peek(0), b'p' | b'P')
-            } else {
-                matches!(self.peek(0), b'e' | b'E')
-            };
-            match self.peek(0) {
-                _ if exponent && matches!(self.peek(1), b'+' | b'-') => self.at += 2,
-                b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' | b'.' => self.at += 1,
-                _ => return Kind::Number,
-            }
-        }
+        self.at = number_end(self.text, self.at);
+        Kind::Number
     }
 }

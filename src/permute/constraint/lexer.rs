@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::parse::words::{begins_word, word_end};
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// An identifier, `in`, `true` and `false` among them.
@@ -45,18 +47,14 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
 }
 
 fn next(rest: &str, first: char) -> (Kind, usize) {
-    let run = |from: usize| {
-        from + rest[from..]
-            .find(|c: char| !c.is_alphanumeric() && c != '_')
-            .unwrap_or(rest.len() - from)
-    };
+    let run = |from: usize| word_end(rest, from);
     if let Some(sign) = SIGNS.iter().find(|sign| rest.starts_with(**sign)) {
         return (Kind::Sign, sign.len());
     }
     match first {
         '-' if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => (Kind::Number, run(1)),
         _ if first.is_ascii_digit() => (Kind::Number, run(0)),
-        _ if first.is_alphabetic() || first == '_' => (Kind::Word, run(0)),
+        _ if begins_word(first) => (Kind::Word, run(0)),
         _ => (Kind::Stray, first.len_utf8()),
     }
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use naga::{ArraySize, Handle, Module, ScalarKind, Type, TypeInner};
 
 use super::FUNCTION;
+use crate::parse::words::piece_at;
 use crate::project::LIBRARY;
 use crate::proof::library::Library;
 
@@ -246,35 +247,14 @@ fn type_name(module: &Module, ty: Handle<Type>) -> String {
     }
 }
 
-/// Words, numbers, `::` and single other characters, spaces included.
+/// Words, numbers, `::`, blanks and other characters.
 fn tokens(text: &str) -> Vec<Range<usize>> {
     let mut tokens = Vec::new();
     let mut at = 0;
-    while let Some(first) = text[at..].chars().next() {
-        let rest = &text[at..];
-        let length = if rest.starts_with("::") {
-            2
-        } else if first.is_ascii_digit()
-            || (first == '.' && rest[1..].starts_with(|c: char| c.is_ascii_digit()))
-        {
-            number_length(rest)
-        } else if first.is_alphabetic() || first == '_' {
-            rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len())
-        } else {
-            first.len_utf8()
-        };
-        tokens.push(at..at + length);
-        at += length;
+    while let Some(piece) = piece_at(text, at) {
+        let end = if text[at..].starts_with("::") { at + 2 } else { piece.end() };
+        tokens.push(at..end);
+        at = end;
     }
     tokens
-}
-
-fn number_length(text: &str) -> usize {
-    let part = |(index, c): &(usize, char)| {
-        let sign = (*c == '+' || *c == '-')
-            && text[..*index].ends_with(['e', 'E'])
-            && !text.starts_with("0x");
-        c.is_ascii_alphanumeric() || *c == '.' || sign
-    };
-    text.char_indices().take_while(part).last().map_or(0, |(index, c)| index + c.len_utf8())
 }

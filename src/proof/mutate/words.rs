@@ -4,6 +4,7 @@ use naga::{Expression, Function, Handle, Span};
 
 use super::site::{Edit, How, Site};
 use crate::compose::SourceMap;
+use crate::parse::words::is_word;
 use crate::source::{self, SourceSet};
 
 /// The most characters of an excerpt.
@@ -95,9 +96,7 @@ impl Text<'_> {
     fn whole_call(&self, span: source::Span) -> &str {
         let text = &self.sources.get(span.source).text;
         let (name, rest) = (self.sources.text(span), &text[span.end as usize..]);
-        if !name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
-            || !rest.starts_with('(')
-        {
+        if !is_word(name) || !rest.starts_with('(') {
             return name;
         }
         let mut depth = 0;

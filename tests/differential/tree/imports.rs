@@ -1,4 +1,4 @@
-//! What a module imports, and how it names what it imports.
+//! Chooses how a module imports and names the items of other modules.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use super::random::Random;
 use super::{Item, file, segments};
 
-/// What a module imports: local names, and the statements that bring them in.
+/// The imports of a module: its local names, and the statements that import them.
 pub struct Imports {
     pub module: usize,
     locals: BTreeSet<String>,
@@ -28,7 +28,7 @@ impl Imports {
         }
     }
 
-    /// How this module calls an item.
+    /// A name for an item in this module. An import is added if the name needs one.
     pub fn reference(&mut self, item: &Item, hidden: &[String], random: &mut Random) -> String {
         if item.module == self.module {
             return item.name.to_owned();
@@ -49,7 +49,7 @@ impl Imports {
                 && path.len() > 1
                 && path.last().is_none_or(|last| last != "super") =>
             {
-                // The module by name, the item by a path from it.
+                // The module is imported, and the item is named by a path from it.
                 let last = path.last().unwrap().clone();
                 self.locals.insert(last.clone());
                 self.statements.push((path, String::new()));
@@ -80,7 +80,8 @@ impl Imports {
         local
     }
 
-    /// Statements one by one, or grouped in braces by their first segment.
+    /// The import statements. Each is on its own, or grouped in braces with those that have the same
+    /// first segment.
     pub fn text(&self, random: &mut Random) -> String {
         let mut groups: BTreeMap<&str, Vec<String>> = BTreeMap::new();
         let mut text = self.plain.concat();
@@ -115,7 +116,7 @@ fn nest(path: &str) -> String {
     path.split_once("::").map_or(path.to_owned(), |(first, rest)| format!("{first}::{{{rest}}}"))
 }
 
-/// One of the ways to name a module from another.
+/// A path from one module to another: from the package, or with `super`.
 pub fn path(from: usize, to: usize, random: &mut Random) -> Vec<String> {
     let (start, end) = (segments(from), segments(to));
     let (own, other) = (file(from).0, file(to).0);
@@ -123,7 +124,8 @@ pub fn path(from: usize, to: usize, random: &mut Random) -> Vec<String> {
         return [vec![other], end].concat();
     }
     let shared = start.iter().zip(&end).take_while(|(a, b)| a == b).count();
-    // `super` is the folder's own module: climb until what remains is below it.
+    // The first `super` leads to the module's folder, and each further one a folder up. There are
+    // as many as lead to a folder that contains the other module.
     let common = shared.min(start.len() - 1).min(end.len() - 1);
     if random.chance(40) {
         let climbs = vec!["super".to_owned(); start.len() - common];

@@ -1,8 +1,8 @@
-//! Choices that a seed decides.
+//! Random choices that depend on a seed only.
 
 use super::FLAGS;
 
-/// splitmix64.
+/// The generator splitmix64.
 pub struct Random(pub u64);
 
 impl Random {

@@ -8,10 +8,10 @@ use super::{Item, Kind, NAMES, reaches};
 
 pub struct Writer<'a> {
     pub random: &'a mut Random,
-    /// Those that may be used.
+    /// The items that the declaration may use.
     pub items: &'a [Item],
     pub imports: &'a mut Imports,
-    /// Names that mean something local here.
+    /// Names of local variables, which hide items of the module.
     pub hidden: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ impl Writer<'_> {
         format!("{comment}{text}{assertion}\n")
     }
 
-    /// One declaration, or two or three of which a condition chooses one.
+    /// One declaration, or two or three with conditions that select one of them.
     fn either(&mut self, guard: &str, mut write: impl FnMut(&mut Self) -> String) -> String {
         if !guard.is_empty() || self.random.chance(70) {
             return format!("{guard}{}", write(self));
@@ -87,7 +87,7 @@ impl Writer<'_> {
     fn function(&mut self, name: &str, arity: usize, shape: Option<usize>) -> String {
         let names: Vec<&str> =
             ["x", "y", NAMES[self.random.below(NAMES.len())]].into_iter().take(arity).collect();
-        // Types are resolved outside, where parameters do not hide anything.
+        // Types of parameters are resolved outside of the function, where parameters hide nothing.
         let mut parameters: Vec<String> =
             names.iter().map(|name| format!("{name}: {}", self.real())).collect();
         if let Some(shape) = shape {
@@ -219,7 +219,8 @@ impl Writer<'_> {
         )
     }
 
-    /// Adds a value; one that only exists under a condition under the same condition.
+    /// Adds a value to the sum. If the value exists only under a condition, the statement has the
+    /// same condition.
     fn guarded(&mut self) -> String {
         let guarded: Vec<usize> = (0..self.items.len())
             .filter(|index| self.items[*index].guard.is_some() && self.usable(&self.items[*index]))
@@ -235,7 +236,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A local declaration with the name of something else, perhaps only in some permutations.
+    /// A local variable that shadows an item, in all permutations or only in some.
     fn shadow(&mut self, condition: &str) -> String {
         let constants =
             self.items.iter().filter(|item| item.kind == Kind::Real && item.guard.is_none());
@@ -259,7 +260,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A structure, perhaps given to a function.
+    /// A variable of a structure, which may be passed to a function.
     fn structured(&mut self) -> String {
         let takes = |item: &&Item| {
             item.guard.is_none() && matches!(item.kind, Kind::Function { shape: Some(_), .. })
@@ -309,7 +310,7 @@ impl Writer<'_> {
         }
     }
 
-    /// An item as a number, if it is one.
+    /// An expression with the item that is a number, if the item allows one.
     fn value(&mut self, item: &Item, depth: usize) -> Option<String> {
         let arguments = |writer: &mut Self, count: usize| {
             (0..count).map(|_| writer.expression(depth)).collect::<Vec<_>>().join(", ")

@@ -1,7 +1,7 @@
-//! Names that writers and languages have a use for.
+//! Names that naga's writers or the output languages use.
 
-/// Names of parameters, variables and results in helpers that writers add, of the helpers, of the
-/// values that writers number, and keywords and types of the languages that are written.
+/// Names of helpers that writers add, and of their parameters, variables and results; names of values
+/// that writers number; keywords and types of the output languages.
 pub const NAMES: &[&str] = &[
     // Parameters and locals of helpers.
     "other",
@@ -48,7 +48,7 @@ pub const NAMES: &[&str] = &[
     "const_",
     "param",
     "param_1",
-    // Helpers, and what they are made of.
+    // Helpers, and parts of their names.
     "naga_modf",
     "naga_frexp",
     "naga_div",
@@ -135,7 +135,7 @@ pub const NAMES: &[&str] = &[
     "global",
     "global_1",
     "phi_1_",
-    // Interfaces.
+    // Names of interfaces: structures, variables and entry points.
     "_vs2fs_location0",
     "_fs2p_location0",
     "_p2vs_location0",
@@ -164,7 +164,7 @@ pub const NAMES: &[&str] = &[
     "SV_Target",
     "LOC0",
     "frag_color",
-    // Words of Metal, HLSL and GLSL that WGSL and GLSL leave to authors in part.
+    // Words of Metal, HLSL and GLSL. WGSL and GLSL sources may use some of them as names.
     "half",
     "float_",
     "float2",
@@ -284,7 +284,7 @@ pub const NAMES: &[&str] = &[
     "wchar_t",
     "template_",
     "typename_",
-    // What a mark looks like to somebody who does not look twice.
+    // Names that look like the linker's marks.
     "Zq",
     "zq",
     "Zq1qz",
@@ -293,7 +293,7 @@ pub const NAMES: &[&str] = &[
     "lamplight_idle",
     "lamplight_result",
     "lamplight_entry",
-    // Plain ones, with numbers and underscores behind them.
+    // Ordinary names, some with numbers and underscores at their end.
     "light",
     "Light",
     "light_",
@@ -324,7 +324,7 @@ pub const NAMES: &[&str] = &[
     "naïve",
     "λ_1",
     "Ωmega",
-    // Functions of WGSL, which an author may hide.
+    // Built-in functions of WGSL, which an author's declarations may hide.
     "abs",
     "max",
     "min",

@@ -1,9 +1,9 @@
-//! Drivers that give other numbers for the same module.
+//! Finds differences that are a defect of a driver.
 //!
-//! SwiftShader prepares a module with SPIRV-Tools before it compiles it, and what comes of that may
-//! depend on the numbers that ids have: of two modules that differ in nothing else, one gave an
-//! infinity for a constant. Such an answer says nothing about the output that was drawn, so what was
-//! drawn otherwise is drawn again with other numbers.
+//! SwiftShader optimises a module with SPIRV-Tools before it compiles it. The result may depend on
+//! the numbers of ids: of two modules that differed in nothing else, one gave an infinity for a
+//! constant. Then the output is right and the driver is wrong. So a stage that was drawn differently
+//! is drawn again with other numbers of ids.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,11 @@ use lamplight::execute::shipped::Shipped;
 
 use super::{Drawn, Opened, Ready, Stages};
 
-/// Numberings that are tried.
+/// How many other numberings are tried.
 const NUMBERINGS: usize = 4;
 
-/// The name of an executor that draws what the evaluator computes once ids of the same SPIR-V have
-/// other numbers.
+/// Draws a stage again with other numbers of ids. If the result is then the evaluator's, gives the
+/// name of the executor.
 pub fn renumbered(sessions: &[Opened], target: Target, ready: &Ready<'_>) -> Option<&'static str> {
     let (_, name, session) = sessions.iter().find(|(one, ..)| *one == target)?;
     let stages = ready.stages.get(&target)?.as_ref().ok()?;
@@ -30,8 +30,8 @@ pub fn renumbered(sessions: &[Opened], target: Target, ready: &Ready<'_>) -> Opt
     (1..=NUMBERINGS).find_map(is_right)
 }
 
-/// HLSL with variables in front that nothing reads: glslangValidator numbers what follows otherwise,
-/// and spirv-opt leaves them out.
+/// HLSL with unused variables in front. They change the numbers that glslangValidator gives to all
+/// later ids, and spirv-opt removes them.
 fn with_unused(stage: &Shipped, count: usize) -> Option<Shipped> {
     let unused = |number| format!("static float naga_unused_{number}_ = {number}.0;\n");
     let unused: String = (0..count).map(unused).collect();

@@ -1,4 +1,4 @@
-//! What the evaluator says of a stage, compared with what was drawn.
+//! Computes a stage with the evaluator, and compares what was drawn.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -9,20 +9,21 @@ use naga::Binding;
 use super::{Drawn, Ran, Ready, SIZE};
 use crate::fragments;
 
-/// The evaluator of one stage: what was given the same is computed once.
+/// The evaluator of one stage. Quads with the same inputs are computed once.
 pub struct Evaluator<'p> {
     machine: Box<Compute<'p>>,
     known: BTreeMap<Vec<u32>, Wanted>,
 }
 
-/// Computes a quad from the words that its fragments are given.
+/// Computes a quad from the input words of its fragments.
 type Compute<'p> = dyn FnMut(&[Vec<u32>; 4]) -> Result<Wanted, String> + 'p;
 
-/// What it says of a quad.
+/// The evaluator's results for a quad.
 #[derive(Clone)]
 struct Wanted {
-    /// Of each fragment, by location and component.
+    /// The results of each fragment, by location and component.
     results: [BTreeMap<(u32, usize), Bounded>; 4],
+    /// Whether a comparison in the stage was within the error of either result.
     doubt: bool,
 }
 
@@ -65,7 +66,7 @@ fn four(target: &[u32], pixel: usize) -> [u32; 4] {
     std::array::from_fn(|word| target[4 * pixel + word])
 }
 
-/// The location and the component of each result; none for a depth.
+/// The location and the component of each result; `None` for a depth.
 fn places(function: &Function) -> Vec<Option<(u32, usize)>> {
     let mut places: Vec<Option<(u32, usize)>> = Vec::new();
     for binding in &function.outputs {

@@ -1,4 +1,4 @@
-//! The MSL of a batch.
+//! Compiles and draws the MSL of a batch of stages.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,8 @@ use super::{Ready, Stages, Targets};
 /// All stages of a batch in MSL, compiled at once.
 pub struct Metal {
     compiled: Compiled,
-    /// Of each stage that has MSL, the index of its feeder; its own and the one that tells follow.
+    /// For each stage that has MSL, the index of its feeder. The stage itself, and the one that
+    /// writes its inputs, follow.
     first: BTreeMap<usize, usize>,
 }
 

@@ -13,7 +13,6 @@ mod noise;
 mod quadrature;
 mod sheen;
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -165,15 +164,6 @@ fn header(table: &Table, error: &str) -> String {
     )
 }
 
-/// Writes a file beside its place, and renames it.
-fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let beside = path.with_extension("new");
-    let mut file = std::fs::File::create(&beside)?;
-    file.write_all(bytes)?;
-    file.sync_all()?;
-    std::fs::rename(beside, path)
-}
-
 /// Makes one table and writes its files.
 fn make(folder: &Path, table: &Table) -> Result<(), String> {
     let values: Vec<f32> = (table.make)().into_iter().flatten().map(|value| value as f32).collect();
@@ -183,7 +173,7 @@ fn make(folder: &Path, table: &Table) -> Result<(), String> {
     let files = [("bin", bytes), ("ktx2", texture), ("toml", header(table, &error).into_bytes())];
     for (extension, bytes) in files {
         let path = folder.join(format!("{}.{extension}", table.name));
-        write(&path, &bytes).map_err(|error| format!("{}: {error}", path.display()))?;
+        lamplight::output::write(&path, &bytes).map_err(|error| error.to_string())?;
     }
     println!("{}: {error}", table.name);
     Ok(())

@@ -1,0 +1,201 @@
+//! What a word and a number are, in one place.
+//!
+//! A text that is read in full is split by the tokenizer of its language, [`wesl`](super::wesl) or
+//! [`glsl`](super::glsl). [`words`] and [`pieces`] are for texts of which less is asked, or whose
+//! language has no tokenizer here: what naga writes, expressions, formulas, lines of a page.
+
+use std::ops::Range;
+
+/// Whether an identifier may begin with a letter: as in WGSL, whose rule contains that of GLSL and
+/// of the C family.
+pub fn begins_word(letter: char) -> bool {
+    match letter {
+        'a'..='z' | 'A'..='Z' | '_' => true,
+        _ => !letter.is_ascii() && unicode_ident::is_xid_start(letter),
+    }
+}
+
+/// Whether an identifier may go on with a letter.
+pub fn continues_word(letter: char) -> bool {
+    match u8::try_from(letter) {
+        Ok(byte) if byte.is_ascii() => is_word_byte(byte),
+        _ => unicode_ident::is_xid_continue(letter),
+    }
+}
+
+/// The ASCII part of [`continues_word`].
+#[inline]
+pub fn is_word_byte(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || byte == b'_'
+}
+
+/// Whether the whole text is one identifier, or a keyword.
+pub fn is_word(text: &str) -> bool {
+    text.starts_with(begins_word) && word_at(text).len() == text.len()
+}
+
+/// The letters, digits and underscores that a text starts with.
+pub fn word_at(text: &str) -> &str {
+    &text[..word_end(text, 0)]
+}
+
+/// The end of the letters, digits and underscores from a byte on.
+#[inline]
+pub fn word_end(text: &str, start: usize) -> usize {
+    let bytes = text.as_bytes();
+    let mut at = start;
+    while let Some(&byte) = bytes.get(at) {
+        if is_word_byte(byte) {
+            at += 1;
+        } else if let Some(letter) = beyond_ascii(text, at).filter(|found| continues_word(*found)) {
+            at += letter.len_utf8();
+        } else {
+            break;
+        }
+    }
+    at
+}
+
+/// A range with the letters, digits and underscores on both sides of it.
+pub fn word_around(text: &str, range: Range<usize>) -> Range<usize> {
+    text[..range.start].trim_end_matches(continues_word).len()..word_end(text, range.end)
+}
+
+/// The character at a byte where ASCII ends.
+fn beyond_ascii(text: &str, at: usize) -> Option<char> {
+    if text.as_bytes()[at].is_ascii() { None } else { text.get(at..)?.chars().next() }
+}
+
+/// The end of the number that starts at a byte, read loosely: letters, digits and points, with the
+/// sign of an exponent.
+pub fn number_end(text: &str, start: usize) -> usize {
+    let bytes = text.as_bytes();
+    let is_hexadecimal = matches!(bytes.get(start..start + 2), Some(b"0x" | b"0X"));
+    let exponents = if is_hexadecimal { b"pP" } else { b"eE" };
+    let mut at = start;
+    loop {
+        match bytes.get(at) {
+            Some(byte) if byte.is_ascii_alphanumeric() || *byte == b'.' => at += 1,
+            Some(b'+' | b'-') if at > start && exponents.contains(&bytes[at - 1]) => at += 1,
+            _ => return at,
+        }
+    }
+}
+
+/// What a piece of a text is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PieceKind {
+    Word,
+    Number,
+    /// White space, as long as it goes on.
+    Blank,
+    /// Any other single character.
+    Sign,
+}
+
+/// A piece of a text. The pieces of a text are all of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Piece<'a> {
+    pub kind: PieceKind,
+    pub text: &'a str,
+    /// Where it starts.
+    pub at: usize,
+}
+
+impl Piece<'_> {
+    /// The first byte behind it.
+    pub fn end(&self) -> usize {
+        self.at + self.text.len()
+    }
+}
+
+/// The pieces of a text in order. Comments are no pieces of their own.
+pub fn pieces(text: &str) -> impl Iterator<Item = Piece<'_>> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let found = piece_at(text, at)?;
+        at = found.end();
+        Some(found)
+    })
+}
+
+/// The piece that starts at a byte.
+#[inline]
+pub fn piece_at(text: &str, at: usize) -> Option<Piece<'_>> {
+    let bytes = text.as_bytes();
+    let is_digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
+    let (kind, end) = match *bytes.get(at)? {
+        b'a'..=b'z' | b'A'..=b'Z' | b'_' => (PieceKind::Word, word_end(text, at)),
+        b'0'..=b'9' => (PieceKind::Number, number_end(text, at)),
+        b'.' if is_digit(at + 1) => (PieceKind::Number, number_end(text, at)),
+        byte if byte.is_ascii() && !byte.is_ascii_whitespace() => (PieceKind::Sign, at + 1),
+        _ => match text[at..].chars().next()? {
+            letter if begins_word(letter) => (PieceKind::Word, word_end(text, at)),
+            letter if letter.is_whitespace() => {
+                (PieceKind::Blank, text.len() - text[at..].trim_start().len())
+            }
+            letter => (PieceKind::Sign, at + letter.len_utf8()),
+        },
+    };
+    Some(Piece { kind, text: &text[at..end], at })
+}
+
+/// An identifier or a keyword.
+#[derive(Debug, Clone, Copy)]
+pub struct Word<'a> {
+    pub text: &'a str,
+    /// Where it starts.
+    pub at: usize,
+    /// The last byte before it that is not white space; a blank where there is none.
+    pub before: u8,
+}
+
+/// Every identifier and keyword. Letters within a number, such as an exponent, do not count.
+pub fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
+    let (mut at, mut before) = (0, b' ');
+    std::iter::from_fn(move || {
+        while let Some(piece) = piece_at(text, at) {
+            let last = before;
+            at = piece.end();
+            if piece.kind != PieceKind::Blank {
+                before = text.as_bytes()[at - 1];
+            }
+            if piece.kind == PieceKind::Word {
+                return Some(Word { text: piece.text, at: piece.at, before: last });
+            }
+        }
+        None
+    })
+}
+
+/// Whether a text has a word.
+pub fn has_word(text: &str, word: &str) -> bool {
+    words(text).any(|found| found.text == word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{PieceKind, has_word, is_word, pieces, word_around, words};
+
+    #[test]
+    fn pieces_are_all_of_the_text() {
+        let text = "vec3f(.5e-3, 0x1p-2+größe)\u{a0} @x";
+        let found: Vec<&str> = pieces(text).map(|piece| piece.text).collect();
+        assert_eq!(found.concat(), text);
+        let solid: Vec<&str> = pieces(text)
+            .filter(|piece| piece.kind != PieceKind::Blank)
+            .map(|piece| piece.text)
+            .collect();
+        assert_eq!(solid, ["vec3f", "(", ".5e-3", ",", "0x1p-2", "+", "größe", ")", "@", "x"]);
+    }
+
+    #[test]
+    fn words_are_whole() {
+        let found: Vec<(&str, u8)> =
+            words("@fragment a.b 1e5 _c").map(|word| (word.text, word.before)).collect();
+        assert_eq!(found, [("fragment", b'@'), ("a", b't'), ("b", b'.'), ("_c", b'5')]);
+        assert!(has_word("x + größe", "größe") && !has_word("größer 1e5", "größe"));
+        assert!(is_word("_a1") && !is_word("1a") && !is_word("a-b") && !is_word(""));
+        assert_eq!(word_around("(größe)", 2..2), 1.."(größe".len());
+    }
+}
