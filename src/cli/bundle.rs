@@ -23,13 +23,14 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Programs, entry points and the number of their permutations; with a program, its keys.
+    /// List programs, entry points and the numbers of their permutations, or the keys of one
+    /// program.
     List {
         bundle: PathBuf,
         #[arg(long, value_name = "P")]
         program: Option<String>,
     },
-    /// One shader, or what an engine must know of it.
+    /// Print or write one shader, or its reflection.
     Get(Get),
     /// Check every byte and every reference.
     Verify { bundle: PathBuf },
@@ -41,7 +42,7 @@ enum Command {
         #[command(flatten)]
         overwrite: Overwrite,
     },
-    /// What differs between two bundles; exit code 3 if anything does.
+    /// List the differences between two bundles; the exit code is 3 if there are any.
     Diff {
         old: PathBuf,
         new: PathBuf,

@@ -25,13 +25,15 @@ pub struct Arguments {
         default_value = "docs/catalogue"
     )]
     output: PathBuf,
-    /// Write the modules that are made from data into the library's sources instead.
+    /// Instead, write the modules that are generated from data into this folder of the library's
+    /// sources.
     #[arg(long, value_name = "DIR", conflicts_with = "output")]
     modules: Option<PathBuf>,
-    /// Measure what functions and axes cost on GPUs, and write the record that the pages show.
+    /// Measure the cost of functions and axes on GPUs, and write it to this file, which the pages
+    /// read.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "modules", "check"])]
     pub costs: Option<PathBuf>,
-    /// Write nothing; fail if anything would change.
+    /// Write nothing; fail if a file would change.
     #[arg(long)]
     check: bool,
     #[command(flatten)]

@@ -25,36 +25,38 @@ use crate::proof::ratchet::{FILE, Ratchet};
 use crate::report;
 use crate::source::{Disk, SourceSet};
 
-/// Run numeric cases and compare with their references.
+/// Run numeric cases, and compare the results with the expected values.
 #[derive(Args)]
 pub struct Arguments {
     /// Modules of the library (`lighting::spot`, `lighting`; `lamplight` for all of it), or case
     /// files and folders of your own [default: the package here, else the whole library].
     path: Vec<String>,
-    /// What runs the cases; may be given several times.
+    /// The executor that runs the cases; may be given several times.
     #[arg(long, value_name = "E", default_value = "eval")]
     pub executor: Vec<String>,
-    /// Only one language [default: both].
+    /// Run only one language [default: both].
     #[arg(long, value_enum)]
     lang: Option<LanguageName>,
-    /// Write a page with plots, JSON and JUnit into this folder.
+    /// Write an HTML page with plots, a JSON file and a JUnit file into this folder.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-    /// Lower the package's `tolerances.toml` to what was measured here.
+    /// Record the measured errors in the package's `tolerances.toml`, where they are lower than
+    /// those that it has.
     #[arg(long)]
     bless: bool,
-    /// With `--bless`, also raise it. With `--report`, replace files that Lamplight did not write.
+    /// With `--bless`, also record errors that are higher. With `--report`, replace files that
+    /// Lamplight did not write.
     #[arg(long)]
     force: bool,
     /// Choose the value of a setting that your modules ask for.
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = input::axis_value)]
     set: Vec<(String, Setting)>,
-    /// Turn a feature on, or off with `=false`.
+    /// Turn a feature on, or turn it off with `=false`.
     #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = input::parse_feature)]
     feature: Vec<(String, Setting)>,
     #[command(flatten)]
     features: features::Arguments,
-    /// List the cases that state less than WGSL allows.
+    /// List the cases whose tolerance is smaller than the error that WGSL allows.
     #[arg(long)]
     spec: bool,
 }

@@ -13,7 +13,7 @@ use crate::cli::terminal::stdout;
 use crate::diagnostic::nearest_name;
 use crate::output;
 
-/// Print what a shell needs to complete commands, options and values.
+/// Print a script with which a shell completes commands, options and values.
 #[derive(Args)]
 pub struct Completions {
     #[arg(value_enum)]

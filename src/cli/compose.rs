@@ -9,7 +9,7 @@ use super::input::Input;
 use super::terminal::write_data;
 use crate::source::SourceSet;
 
-/// Print a root module with all it reaches as one text.
+/// Print a root module and everything that it uses as one text.
 #[derive(Args)]
 pub struct Arguments {
     /// Path to the root module; `-` is standard input.

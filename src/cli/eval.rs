@@ -15,13 +15,13 @@ use crate::proof::expression::evaluate_expression;
 use crate::proof::library::Library;
 use crate::source::SourceSet;
 
-/// Evaluate WGSL expressions over the functions of the library and of your own package.
+/// Evaluate WGSL expressions that call functions of the library and of your own package.
 #[derive(Args)]
 pub struct Arguments {
     /// The language whose modules are called.
     #[arg(long, value_enum, default_value = "wesl")]
     lang: LanguageName,
-    /// What runs it: `lamplight list executors`.
+    /// The executor that runs it; `lamplight list executors` lists all.
     #[arg(long, value_name = "E", default_value = "eval")]
     pub executor: String,
     #[command(flatten)]

@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::terminal::stdout;
 use crate::diagnostic::{codes, guide, nearest_name};
 
-/// Explain a diagnostic's code; without one, list them all.
+/// Explain the code of a diagnostic, or list all codes.
 #[derive(Args)]
 pub struct Arguments {
     /// The code, as printed in brackets: `unknown-axis`.

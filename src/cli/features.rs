@@ -10,8 +10,8 @@ use crate::permute::constant;
 /// The option, for every command that composes.
 #[derive(Args, Clone, Default)]
 pub struct Arguments {
-    /// What a feature is that nothing chooses [default: the manifest's `features_default`, else
-    /// `error`].
+    /// The value of a feature that nothing chooses [default: the manifest's `features_default`,
+    /// else `error`].
     #[arg(long, value_name = "on|off|error", value_enum)]
     features_default: Option<Undeclared>,
     /// The value of `constants::NAME` where no axis has the name: a literal of WGSL, whose suffix

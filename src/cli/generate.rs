@@ -19,30 +19,30 @@ use crate::source::SourceSet;
 pub struct Arguments {
     #[command(flatten)]
     places: Places,
-    /// Only this program.
+    /// Compile only this program.
     #[arg(long, value_name = "P")]
     program: Option<String>,
-    /// Only this permutation.
+    /// Compile only this permutation.
     #[arg(long, value_name = "KEY")]
     only: Option<String>,
-    /// Only these targets.
+    /// Compile only for these targets.
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
     target: Vec<Wanted>,
     /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: the
     /// manifest's].
     #[arg(long, value_name = "SPACE", value_parser = parse_clip)]
     clip: Option<Clip>,
-    /// Only the k-th of n parts, for `lamplight merge`.
+    /// Compile only the k-th of n parts, which `lamplight merge` puts together.
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
-    /// Write nothing; compare with the bundle that is there.
+    /// Write nothing; compare with the existing bundle, and end with exit code 3 if they differ.
     #[arg(long)]
     check: bool,
-    /// Let the judges of all targets look at the outputs; the bundle that is there stays as it is
-    /// where they refuse one.
+    /// Check every output with an independent validator of its target before the bundle is
+    /// replaced.
     #[arg(long)]
     validate: bool,
-    /// The summary as JSON.
+    /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
 }

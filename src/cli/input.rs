@@ -32,7 +32,7 @@ pub struct Input {
     /// Choose an axis's value.
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
     set: Vec<(String, Setting)>,
-    /// Turn a feature on, or off with `=false`.
+    /// Turn a feature on, or turn it off with `=false`.
     #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = parse_feature)]
     feature: Vec<(String, Setting)>,
     #[command(flatten)]
@@ -81,10 +81,10 @@ impl From<LanguageName> for Language {
 
 #[derive(Clone, Copy, Default, ValueEnum)]
 enum MangleName {
-    /// Only names that collide change.
+    /// Rename items only if their names collide.
     #[default]
     Collisions,
-    /// The underscore-count form of the WESL specification.
+    /// Give every imported item the name that the WESL specification suggests.
     Underscore,
 }
 

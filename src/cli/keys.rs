@@ -15,7 +15,7 @@ use crate::permute::{Lock, Manifest};
 use crate::project;
 use crate::source::SourceSet;
 
-/// Write typed keys for Rust, C or TypeScript, or the lock file of dense keys.
+/// Write typed keys for Rust, C or TypeScript, or the lock file of integer keys.
 #[derive(Args)]
 pub struct Arguments {
     /// The manifest [default: `lamplight.toml` here or in the nearest folder above, else that of
@@ -28,11 +28,11 @@ pub struct Arguments {
     /// The file to write [default: standard output].
     #[arg(short, long, value_name = "FILE", requires = "lang")]
     out: Option<PathBuf>,
-    /// Write the lock file beside the manifest: axes and values that it lacks are appended. Where
-    /// there is one, keys can be turned into its numbers and back.
+    /// Write the lock file beside the manifest, or append axes and values that it lacks. With a
+    /// lock file, generated code can convert keys to integers and back.
     #[arg(long)]
     lock: bool,
-    /// Write nothing; exit code 3 if a file is not up to date.
+    /// Write nothing; the exit code is 3 if a file is not up to date.
     #[arg(long)]
     check: bool,
     #[command(flatten)]

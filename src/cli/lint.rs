@@ -15,15 +15,15 @@ use crate::permute::{Setting, Settings};
 use crate::project;
 use crate::source::SourceSet;
 
-/// Look at every module of a package, whether anything reaches it or not.
+/// Check every module of a package, also those that no shader uses.
 #[derive(Args)]
 pub struct Arguments {
-    /// Modules, or folders with all modules below [default: the package here].
+    /// Modules, or folders whose modules are all checked [default: the package here].
     path: Vec<PathBuf>,
     /// Choose the value of a setting that no manifest declares.
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = input::axis_value)]
     set: Vec<(String, Setting)>,
-    /// Turn a feature on, or off with `=false`.
+    /// Turn a feature on, or turn it off with `=false`.
     #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = parse_feature)]
     feature: Vec<(String, Setting)>,
     #[command(flatten)]

@@ -17,13 +17,13 @@ use crate::permute::{Manifest, Program, Setting};
 use crate::project;
 use crate::source::SourceSet;
 
-/// List what the library, your own package and the tools offer.
+/// List functions, programs, presets, targets and more, of the library and of your own package.
 #[derive(Args)]
 pub struct Arguments {
     /// What to list.
     #[arg(value_enum, default_value_t)]
     what: What,
-    /// As a JSON array of objects, which have more than the table.
+    /// Print a JSON array of objects, which have more fields than the table.
     #[arg(long)]
     json: bool,
     #[command(flatten)]

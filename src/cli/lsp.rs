@@ -17,7 +17,7 @@ use crate::lsp::wire::{self, Incoming};
 use crate::output;
 use crate::source::{Embedded, Files};
 
-/// Answer an editor's questions about WESL, WGSL and GLSL on standard input and output.
+/// Run a language server for WESL, WGSL and GLSL on standard input and output.
 #[derive(Args)]
 pub struct Arguments {}
 

@@ -14,15 +14,15 @@ use crate::bundle::{self, Bundle, DirectoryWriter, Error, Language};
 use crate::project;
 use crate::source::SourceSet;
 
-/// Merge the bundles of shards, in any order, into what one run would have written.
+/// Merge the bundles of shards into the bundle that one run would have written.
 #[derive(Args)]
 pub struct Arguments {
-    /// The bundle to write: a folder, or a single file that ends in `.lamplight`.
+    /// The bundle to write: a folder, or a single file whose name ends in `.lamplight`.
     out: PathBuf,
-    /// Bundles to read, every byte of them verified.
+    /// The bundles of all shards, in any order; every byte of them is verified.
     #[arg(required = true)]
     inputs: Vec<PathBuf>,
-    /// Fail unless every permutation of this manifest is there.
+    /// Fail if a permutation of this manifest is missing.
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
     #[command(flatten)]

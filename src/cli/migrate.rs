@@ -17,15 +17,15 @@ use crate::output;
 use crate::project;
 use crate::source::{self, Disk, Files, Package, SourceSet};
 
-/// Rewrite shaders of another preprocessor to WESL. The files that are there stay as they are.
+/// Rewrite shaders of another preprocessor as WESL; the original files stay unchanged.
 #[derive(Args)]
 pub struct Arguments {
-    /// What they are written for.
+    /// The preprocessor that the shaders are written for.
     #[arg(long, value_enum)]
     from: From,
     /// The folder of the shaders: all `.wgsl` files below it belong together.
     folder: PathBuf,
-    /// Where to write [default: `NAME.wesl` beside each `NAME.wgsl`].
+    /// The folder to write to [default: `NAME.wesl` beside each `NAME.wgsl`].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]

@@ -50,7 +50,8 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use crate::execute::executors;
 use failure::Failure;
 
-/// Lighting and shadow functions in WGSL and GLSL: composed, compiled, bundled, proven.
+/// Compose, compile, bundle and check shaders in WGSL and GLSL, with a library of lighting
+/// functions.
 #[derive(Parser)]
 #[command(name = "lamplight", version, max_term_width = 100)]
 struct Cli {
@@ -59,7 +60,7 @@ struct Cli {
     /// How diagnostics are printed on standard error.
     #[arg(long, global = true, value_enum, default_value_t)]
     diagnostics: failure::DiagnosticForm,
-    /// When to write colours; `auto` heeds `NO_COLOR`.
+    /// When to print colours.
     #[arg(long, global = true, value_enum, default_value_t)]
     color: failure::Colour,
 }

@@ -28,19 +28,20 @@ pub struct Arguments {
     /// the library].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
-    /// As JSON.
+    /// Print JSON.
     #[arg(long)]
     json: bool,
     /// List every key of this program instead.
     #[arg(long, value_name = "PROGRAM")]
     keys: Option<String>,
-    /// Compose every permutation: count the distinct texts, and say which axes each stage sees.
+    /// Compose every permutation, count the distinct texts, and print which axes change each stage.
     #[arg(long)]
     compose: bool,
     /// Compile them too, and count the distinct outputs.
     #[arg(long)]
     compile: bool,
-    /// Compile every permutation for GPUs, and tell what each value of an axis adds to a stage.
+    /// Compile every permutation for GPUs, and print the cost that each value of an axis adds to a
+    /// stage.
     #[arg(long)]
     pub cost: bool,
     #[command(flatten)]

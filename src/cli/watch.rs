@@ -25,7 +25,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 pub struct Arguments {
     #[command(flatten)]
     places: Places,
-    /// The permutation in use: it is in the bundle before the others are compiled.
+    /// The permutation in use, which is compiled and written before the others.
     #[arg(long, value_name = "KEY", requires = "program")]
     key: Option<String>,
     /// The program of that permutation.

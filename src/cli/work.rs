@@ -29,14 +29,14 @@ pub struct Places {
     /// The manifest [default: `lamplight.toml` here or in the nearest folder above].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
-    /// Folder of the bundle, or a single file that ends in `.lamplight`.
+    /// The folder of the bundle, or a single file whose name ends in `.lamplight`.
     #[arg(short, long, value_name = "DIR", default_value = "bundle")]
     pub out: PathBuf,
     /// Folder for results that later runs need not compute again [default: `lamplight-cache` in
     /// the package's cargo target folder, or else in the user's cache folder].
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// Compute everything, keep nothing.
+    /// Do not read or write the cache.
     #[arg(long, conflicts_with_all = ["cache", "store"])]
     no_cache: bool,
     #[arg(long, value_name = "ADDRESS", help = store::HELP)]

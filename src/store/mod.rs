@@ -15,7 +15,7 @@ use crate::cache::{MOST_RECORD_BYTES, Storage};
 
 /// The help on addresses.
 pub const HELP: &str =
-    "A cache that machines share, asked after the folder: `fs:/path` or `redis://host:port`";
+    "A cache that machines share: `fs:/path` or `redis://host:port`; read after `--cache`";
 
 /// How long a server may take for its first answer.
 const PATIENCE: Duration = Duration::from_secs(5);

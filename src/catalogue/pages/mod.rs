@@ -67,13 +67,15 @@ import lamplight::brdf::specular::blinn_phong;
 #include <lamplight/brdf/specular.glsl>
 ```
 
-Vectors named `n l v h` are unit; `l` and `v` point away from the surface. Colours are linear.
-Visibility and attenuation are factors from 0 to 1, 1 fully lit. Depth is from 0 to 1, near to far.
+Vectors named `n`, `l`, `v` and `h` are unit vectors. `l` and `v` point away from the surface.
+Colours are linear.
+Visibility is a factor from 0 to 1, where 1 is fully lit. Attenuation is a factor of at least 0.
+Depth is from 0 to 1, from near to far.
 
-Beside the modules: the [programs](programs.md) with their axes, the [presets](presets.md), one for
-each published example, and the [costs](costs.md) of functions on GPUs, the dearest first.
+There are also pages of the [programs](programs.md) with their axes, of the [presets](presets.md),
+one for each published example, and of the [costs](costs.md) of functions on GPUs.
 
-This catalogue is made from the library by `cargo xtask docs`.
+`cargo xtask docs` generates this catalogue from the library.
 ";
 
 fn index_page(contents: &Contents) -> String {

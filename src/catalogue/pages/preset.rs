@@ -9,8 +9,8 @@ use crate::scene::sets;
 
 /// The page: presets, scenes, light probes.
 pub fn preset_page(presets: &[Preset], probes: &[Probe]) -> String {
-    let mut text = "# Presets\n\nOne for each published example. The numbers are those that the source gives, named after the\n\
-                    uniforms' fields; what it leaves open, the scene chooses: `lamplight show PRESET` lists it.\n"
+    let mut text = "# Presets\n\nEach published example is a preset. Its numbers are those that the source gives, under the names of the\n\
+                    uniforms' fields. The scene chooses the values that the source leaves open: `lamplight show PRESET` lists these.\n"
         .to_owned();
     let mut work = "";
     for preset in presets {
@@ -80,8 +80,8 @@ fn preset_description(preset: &Preset) -> String {
 fn light_probes(text: &mut String, probes: &[Probe]) {
     let _ = write!(
         text,
-        "\n## Light probes\n\nNine coefficients each, ordered {}; in shaders the functions of [`ambient::probes`](ambient/probes.md),\n\
-         in Rust `lamplight::catalogue::probe::library(..)`.\n\n| probe | place | L00 |\n|---|---|---|\n",
+        "\n## Light probes\n\nEach probe has nine coefficients in the order {}. In shaders, [`ambient::probes`](ambient/probes.md) has a function\n\
+         for each probe. In Rust, `lamplight::catalogue::probe::library(..)` returns them.\n\n| probe | place | L00 |\n|---|---|---|\n",
         ORDER.join(", ")
     );
     for probe in probes {

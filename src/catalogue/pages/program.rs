@@ -9,8 +9,8 @@ use crate::permute::{Axis, Manifest, Program};
 
 /// The page.
 pub fn program_page(manifest: &Manifest, costs: &Costs) -> String {
-    let mut text = "# Programs\n\nEntry points in both languages. An axis multiplies permutations; a constraint takes some away;\n\
-                    what ships is listed in `shaderlib/lamplight.toml`.\n"
+    let mut text = "# Programs\n\nThe programs of the library have entry points in both languages. Axes multiply the permutations of a\n\
+                    program, and constraints exclude some. `shaderlib/lamplight.toml` lists those that ship.\n"
         .to_owned();
     for program in &manifest.programs {
         write_program(&mut text, program, costs);

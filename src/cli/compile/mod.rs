@@ -20,7 +20,7 @@ use crate::generate::{Root, Shader};
 use crate::source::SourceSet;
 use files::File;
 
-/// Compose, validate and write shaders, a file for each entry point and target.
+/// Compile shaders, and write a file for each entry point and target.
 #[derive(Args)]
 pub struct Arguments {
     /// Paths to root modules; `-` is standard input.
@@ -36,13 +36,13 @@ pub struct Arguments {
     /// of the file's program in the manifest, or else `wgpu`].
     #[arg(long, value_name = "SPACE", value_parser = parse_clip)]
     clip: Option<Clip>,
-    /// Only this entry point; may be given several times.
+    /// Compile only this entry point; may be given several times.
     #[arg(long, value_name = "NAME")]
     entry: Vec<String>,
-    /// Also write what an engine must know of each entry point, as JSON.
+    /// Also write the reflection of each entry point, as JSON.
     #[arg(long)]
     reflection: bool,
-    /// Folder for the files [default: standard output].
+    /// The folder for the files [default: standard output].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Also write which files the outputs depend on, as a rule for make or ninja.

@@ -34,11 +34,11 @@ use crate::output;
 /// The most bytes of a file of recorded costs.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Tell what functions, permutations and shaders cost on GPUs that are not there.
+/// Estimate the cost of functions, permutations and shaders on GPUs that the machine need not have.
 ///
-/// Mesa compiles for AMD GPUs that need not be there. A function is put into a fragment stage whose
-/// inputs vary and whose result is used; the figures of the same stage without the function are
-/// subtracted.
+/// Mesa's driver compiles them for AMD GPUs and reports figures of the machine code. A function is
+/// called by a fragment stage whose inputs vary and whose result is used. The figures of the same
+/// stage without the function are subtracted.
 #[derive(Args)]
 pub struct Arguments {
     /// A function (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a folder (`brdf`),
@@ -56,8 +56,8 @@ pub struct Arguments {
     /// The program of a key [default: the manifest's only one, or `forward`].
     #[arg(long, value_name = "P")]
     program: Option<String>,
-    /// Compare with recorded figures: what rose by more than `--rise` fails (exit code 3). Where
-    /// there is no such file, the figures are recorded.
+    /// Compare with the figures in this file; the exit code is 3 if one rose by more than `--rise`.
+    /// If the file does not exist, record the figures in it.
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
     /// Record the figures in the file of `--baseline`.
@@ -66,10 +66,10 @@ pub struct Arguments {
     /// The share by which a figure may rise, such as 0.02.
     #[arg(long, value_name = "SHARE", default_value_t = 0.02, value_parser = parse_share)]
     rise: f64,
-    /// Figures of whole stages, instead of what the functions add to them.
+    /// Print the figures of whole stages, instead of those that the functions add.
     #[arg(long)]
     whole: bool,
-    /// As a JSON array of objects with both.
+    /// Print a JSON array of objects with both.
     #[arg(long)]
     json: bool,
     #[command(flatten)]

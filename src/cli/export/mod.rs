@@ -19,7 +19,7 @@ use crate::source::{Embedded, Files as _};
 /// Write the shader library for other tools.
 #[derive(Args)]
 pub struct Arguments {
-    /// The folder to write to. A compiler's include path is this one: `glslangValidator -IDIR`.
+    /// The folder to write to. Give it to a compiler as its include path: `glslangValidator -IDIR`.
     folder: PathBuf,
     /// What to write: the library's files, or a package that is ready to publish.
     #[arg(long, value_enum, default_value_t)]
@@ -33,9 +33,9 @@ enum Form {
     /// `DIR/lamplight`: WESL and GLSL, for compilers with an include path.
     #[default]
     Files,
-    /// `DIR/lamplight_wgsl`: a crate that carries the package `lamplight` for the `wesl` crate.
+    /// `DIR/lamplight_wgsl`: a crate that contains the package `lamplight` for the `wesl` crate.
     Cargo,
-    /// `DIR/lamplight`: an npm package that exports a `weslBundle`, with the GLSL beside it.
+    /// `DIR/lamplight`: an npm package that exports a `weslBundle`, and also contains the GLSL.
     Npm,
 }
 

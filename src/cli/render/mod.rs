@@ -32,56 +32,56 @@ use crate::picture::strip::{self, Comparison};
 use crate::picture::{self, Picture, Plan, Shot, Surroundings, is_own_png};
 use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
 
-/// Draw a scene with one permutation.
+/// Draw a picture of a preset, a permutation or your own model.
 #[derive(Args, Clone)]
 pub struct Arguments {
     /// A preset: one published example (`lamplight list presets`); or a comparison, such as
     /// `shadow_filters`.
     preset: Option<String>,
-    /// Choose an axis's value, over those of the preset.
+    /// Choose an axis's value, instead of the preset's.
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
     set: Vec<(String, Setting)>,
-    /// What draws the picture [default: that of the preset, or `forward`].
+    /// The program that draws the picture [default: that of the preset, or `forward`].
     #[arg(long, value_name = "NAME")]
     program: Option<String>,
-    /// What is drawn [default: the scene of the preset, or `casters`].
+    /// The scene [default: the scene of the preset, or `casters`].
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
-    /// A model instead of a scene: a binary glTF file (`.glb`).
+    /// Draw this model instead of a scene: a binary glTF file (`.glb`).
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "all"])]
     model: Option<PathBuf>,
-    /// From where the model is seen: the number of one of its cameras, or a place and what is
-    /// looked at [default: its first camera, or a place that sees all of it].
+    /// The view of the model: the number of one of its cameras, or the positions of the eye and of
+    /// the point that it looks at [default: its first camera, or a position that shows all of it].
     #[arg(long, value_name = "N|X,Y,Z,X,Y,Z", requires = "model", value_parser = model::parse_view,
         allow_hyphen_values = true)]
     camera: Option<View>,
     /// Draw every preset, with pages that show them.
     #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene", "cascades"])]
     all: bool,
-    /// Where the picture goes [default: the name of the preset, or `render.png`]; with `--all`, a
+    /// The file of the picture [default: the name of the preset, or `render.png`]; with `--all`, a
     /// folder [default: `gallery`].
     #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Pixels across and down [default: 512x512; 960x720 with `--all`].
+    /// Width and height in pixels [default: 512x512; 960x720 with `--all`].
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
-    /// Places in each pixel that are averaged [default: 4; 16 with `--all`; 1 on `eval`].
+    /// Samples of each pixel, which are averaged [default: 4; 16 with `--all`; 1 on `eval`].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     samples: Option<u32>,
-    /// Factor on all light, in powers of two.
+    /// Exposure in stops: each stop doubles all light.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = parse_stops,
         allow_negative_numbers = true)]
     exposure: f64,
-    /// Shadow maps of a directional light, each of a part of the viewer's depth.
+    /// The number of cascades, the shadow maps of a directional light.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     cascades: u32,
-    /// What draws: `lamplight list executors`; `eval` needs no driver.
+    /// The executor that draws; `eval` needs no driver.
     #[arg(long, value_name = "E", default_value = "vulkan")]
     pub executor: String,
     /// The source language.
     #[arg(long, value_enum, default_value = "wesl")]
     lang: LanguageName,
-    /// What is around the scene: `studio`, `daylight`, `constant`, or a Radiance file (`.hdr`).
+    /// The environment: `studio`, `daylight`, `constant`, or a Radiance file (`.hdr`).
     #[arg(long, value_name = "NAME|FILE", default_value = "studio")]
     environment: String,
     #[command(flatten)]

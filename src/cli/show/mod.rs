@@ -24,14 +24,14 @@ use crate::diagnostic::nearest_name;
 use crate::permute::Manifest;
 use crate::project::{self, LIBRARY};
 
-/// Show a function's documentation, signatures, source and error model, or search for a word.
+/// Show the documentation, signatures, source and error model of a function, or search for a word.
 #[derive(Args)]
 pub struct Arguments {
     /// An item (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a program
     /// (`forward`), an axis (`forward.shadow`), a preset (`hpg_5_shadow`) or a light probe; your own
     /// items are below `package`. Any other word is searched for.
     path: String,
-    /// As a JSON object.
+    /// Print a JSON object.
     #[arg(long)]
     json: bool,
     #[command(flatten)]

@@ -31,7 +31,7 @@ pre { overflow: auto; padding: .6rem .8rem; border: 1px solid var(--edge); borde
 </head>
 <body>
 <h1>Gallery</h1>
-<p>Every published example, drawn by <code>lamplight render --all</code>. A picture leads to its large form.</p>
+<p><code>lamplight render --all</code> draws every published example and every comparison. Each picture here is a link to its large form.</p>
 ";
 
 /// The page.

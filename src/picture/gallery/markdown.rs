@@ -9,9 +9,9 @@ const COLUMNS: usize = 4;
 
 /// The page. Pictures and their smaller forms are beside it.
 pub fn markdown_page(cards: &[&Card], strips: &[StripCard]) -> String {
-    let mut text = "# Gallery\n\nEvery published example, drawn by `lamplight render --all`: a \
-                    picture shows its large form. Which driver drew\nwhich picture is in \
-                    [adapters.txt](adapters.txt).\n"
+    let mut text = "# Gallery\n\n`lamplight render --all` draws every published example and every \
+                    comparison. Each picture here is a link to\nits large form. \
+                    [adapters.txt](adapters.txt) says which driver drew which picture.\n"
         .to_owned();
     text.push_str("\n## Comparisons\n");
     strips.iter().for_each(|card| write_strip(&mut text, card));
@@ -40,8 +40,10 @@ fn write_strip(text: &mut String, card: &StripCard) {
     );
     for panel in &card.comparison.panels {
         let made = panel.value.as_ref().unwrap_or(&panel.key).replace(',', ", ");
-        let cascades = if panel.cascades > 1 { " with cascades" } else { "" };
-        let _ = write!(text, "- {}{cascades}: `{}`", panel.label, made.replace(",  ", ", "));
+        let _ = write!(text, "- {}: `{}`", panel.label, made.replace(",  ", ", "));
+        if panel.cascades > 1 {
+            let _ = write!(text, ", `--cascades {}`", panel.cascades);
+        }
         for (group, fields) in &panel.numbers {
             for (field, value) in fields {
                 let _ = write!(text, ", `{group}.{field}` = {value}");
