@@ -37,7 +37,7 @@ pub fn entries(
 ) -> Result<Vec<Entry>, Diagnostics> {
     let Some(point) = point else { return Ok(Vec::new()) };
     let (mut entries, mut errors) = (Vec::new(), Diagnostics::new());
-    for (file, language) in roots(program) {
+    for (file, language) in root_files(program) {
         let found = of_file(sources, packages, program, point, (file, language), &mut entries);
         errors.extend(found.err().into_iter().flatten());
     }
@@ -67,9 +67,9 @@ fn of_file(
         return Err(of_permutation(vec![error], program, point));
     }
     for (name, stage) in points {
-        let keep = shader::kept(&graph, &Options::default(), &name);
+        let keep = shader::kept_items(&graph, &Options::default(), &name);
         let options = Options { keep, ..Options::default() };
-        let label = label(entries, language, &name, stage);
+        let label = entry_label(entries, language, &name, stage);
         let (program, graph) = (program.name.clone(), graph.clone());
         entries.push(Entry { program, language, name, label, stage, graph, options });
     }
@@ -102,7 +102,7 @@ fn of_permutation(errors: Diagnostics, program: &Program, point: &Assignment) ->
     errors.into_iter().map(|error| error.note(note.as_str())).collect()
 }
 
-fn label(before: &[Entry], language: Language, name: &str, stage: naga::ShaderStage) -> String {
+fn entry_label(before: &[Entry], language: Language, name: &str, stage: naga::ShaderStage) -> String {
     let twin = before.iter().find(|entry| entry.language != language && entry.stage == stage);
     match (language, twin) {
         (Language::Wesl, _) => name.to_owned(),
@@ -111,7 +111,7 @@ fn label(before: &[Entry], language: Language, name: &str, stage: naga::ShaderSt
     }
 }
 
-fn roots(program: &Program) -> Vec<(&File, Language)> {
+fn root_files(program: &Program) -> Vec<(&File, Language)> {
     let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
     let wesl = program.wesl.iter().map(|file| (file, Language::Wesl));
     wesl.chain(glsl.map(|file| (file, Language::Glsl))).collect()

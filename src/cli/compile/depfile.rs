@@ -8,7 +8,7 @@ use crate::output::{self, Replace};
 use crate::source::SourceSet;
 
 /// Writes the rule. The library is part of this program, so it is not listed.
-pub fn write(
+pub fn write_depfile(
     path: &Path,
     outputs: impl Iterator<Item = PathBuf>,
     sources: &SourceSet,
@@ -20,8 +20,8 @@ pub fn write(
         .map(|(_, source)| source.path.as_str())
         .collect();
     let outputs: Vec<String> =
-        outputs.map(|path| escaped(&path.to_string_lossy())).collect::<Result<_, _>>()?;
-    let inputs: Vec<String> = inputs.iter().map(|path| escaped(path)).collect::<Result<_, _>>()?;
+        outputs.map(|path| escape_for_make(&path.to_string_lossy())).collect::<Result<_, _>>()?;
+    let inputs: Vec<String> = inputs.iter().map(|path| escape_for_make(path)).collect::<Result<_, _>>()?;
     let inputs: String = inputs.iter().map(|path| format!(" \\\n  {path}")).collect();
     let rule = format!("{}:{inputs}\n", outputs.join(" "));
     // A file that is there may be replaced if it is a rule for the same outputs.
@@ -32,7 +32,7 @@ pub fn write(
 
 /// A name in the syntax of make. A line end in a name would begin a rule of its own, and make has no
 /// way to write one.
-fn escaped(path: &str) -> Result<String, Failure> {
+fn escape_for_make(path: &str) -> Result<String, Failure> {
     if path.contains(['\n', '\r', '\0']) {
         return Err(Failure::input(format!(
             "the file name {path:?} has a line end, which a rule for make cannot hold"
