@@ -31,7 +31,7 @@ impl Limit {
     /// The value as a person writes it: `4 MiB`, `1,048,576`, `5 s`.
     pub fn written(&self) -> String {
         match self.unit {
-            Measure::Count => thousands(self.value),
+            Measure::Count => with_commas(self.value),
             Measure::Seconds => format!("{} s", self.value),
             Measure::Bytes if self.value >= 1 << 30 => format!("{} GiB", self.value >> 30),
             Measure::Bytes if self.value >= 1 << 20 => format!("{} MiB", self.value >> 20),
@@ -41,10 +41,10 @@ impl Limit {
 }
 
 /// With a comma between groups of three digits.
-fn thousands(number: u64) -> String {
+fn with_commas(number: u64) -> String {
     match number / 1000 {
         0 => number.to_string(),
-        more => format!("{},{:03}", thousands(more), number % 1000),
+        more => format!("{},{:03}", with_commas(more), number % 1000),
     }
 }
 
@@ -62,12 +62,12 @@ thread_local! {
 }
 
 /// Steps that stages took on this thread so far.
-pub fn taken() -> u64 {
+pub fn steps_taken() -> u64 {
     TAKEN.get()
 }
 
 /// Counts steps of a loop that has a bound of another kind, such as on what it gives.
-pub fn count(steps: u64) {
+pub fn count_steps(steps: u64) {
     TAKEN.set(TAKEN.get().wrapping_add(steps));
 }
 
@@ -86,7 +86,7 @@ impl Steps {
     /// # Errors
     /// Where fewer are left. Nothing is left afterwards.
     pub fn spend(&mut self, steps: u64) -> Result<(), Exhausted> {
-        count(steps);
+        count_steps(steps);
         let left = self.left.checked_sub(steps);
         self.left = left.unwrap_or(0);
         self.is_exhausted |= left.is_none();
@@ -135,111 +135,114 @@ macro_rules! limits {
 limits! {
     FILE_BYTES: usize = 4 << 20, Bytes, "bytes of one file", "memory", "`file-too-large`";
     FILE_TOKENS: usize = 1 << 20, Count, "tokens of one file", "memory, time", "`too-many-tokens`";
-    NESTING: usize = 256, Count, "brackets, blocks and conditions within each other",
+    NESTING: usize = 256, Count, "depth of nested brackets, blocks and conditions",
         "the stack of compilers behind the composer", "`nesting-too-deep`";
     FILES: usize = 10_000, Count, "files of one composition", "time", "`too-many-files`";
-    INCLUDE_DEPTH: usize = 64, Count, "files open at once by `#include`", "includes without end",
-        "`include-too-deep`";
+    INCLUDE_DEPTH: usize = 64, Count, "depth of nested `#include`s",
+        "the stack, against endless includes", "`include-too-deep`";
     EXPANSION_BYTES: usize = 16 << 20, Bytes, "bytes of one composed text",
-        "macros and includes that multiply", "`expansion-too-large`, `output-too-large`";
-    LINK_STEPS: u64 = 1 << 18, Count,
-        "steps to find what the names of a package mean", "time",
+        "memory, against macros and includes that multiply",
+        "`expansion-too-large`, `output-too-large`";
+    LINK_STEPS: u64 = 1 << 18, Count, "steps to resolve the names of a package", "time",
         "`limit-exceeded`";
-    LINK_FACTOR: u64 = 16, Count, "such steps more for each byte that was read", "time",
+    LINK_FACTOR: u64 = 16, Count, "further such steps for each byte that was read", "time",
         "`limit-exceeded`";
-    COMPILED_BYTES: usize = 4 << 20, Bytes, "bytes of a composed text that is compiled",
+    COMPILED_BYTES: usize = 4 << 20, Bytes, "bytes of a composed text that naga compiles",
         "the stack and time of naga", "`limit-exceeded`";
-    COMPILED_NESTING: usize = 256, Count, "brackets in it", "the stack of naga", "`limit-exceeded`";
+    COMPILED_NESTING: usize = 256, Count, "depth of nested brackets in it", "the stack of naga",
+        "`limit-exceeded`";
     OPERATORS: usize = 4096, Count, "operators of one expression in it", "the stack of naga",
         "`limit-exceeded`";
     BODIES: usize = 4096, Count, "functions and structs in it",
-        "time: naga's grows with their square", "`limit-exceeded`";
+        "time: that of naga grows with the square of their number", "`limit-exceeded`";
     DECLARATIONS: usize = 4096, Count, "variables, constants and aliases in it",
-        "time: naga's grows with their square", "`limit-exceeded`";
-    OVERRIDES: usize = 256, Count, "overrides in it", "time: naga's grows with their square",
-        "`limit-exceeded`";
-    ENTRY_POINTS: usize = 128, Count, "entry points in it", "time: each is compiled from all of it",
-        "`limit-exceeded`";
-    STATEMENTS: usize = 8192, Count, "statements, cases and their values of one function in it",
-        "time: naga's grows with their square", "`limit-exceeded`";
-    CONSTANT_PARTS: u64 = 1 << 16, Count, "parts of one constant, those that it names included",
+        "time: that of naga grows with the square of their number", "`limit-exceeded`";
+    OVERRIDES: usize = 256, Count, "overrides in it",
+        "time: that of naga grows with the square of their number", "`limit-exceeded`";
+    ENTRY_POINTS: usize = 128, Count, "entry points in it",
+        "time: each is compiled from the whole text", "`limit-exceeded`";
+    STATEMENTS: usize = 8192, Count,
+        "statements, `switch` clauses and their values in one function",
+        "time: that of naga grows with the square of their number", "`limit-exceeded`";
+    CONSTANT_PARTS: u64 = 1 << 16, Count,
+        "subexpressions of one constant, including those of the constants it uses",
         "memory: naga copies them", "`limit-exceeded`";
-    CONSTANT_USES: u64 = 1 << 20, Count, "parts of constants, counted where they are named",
-        "memory: naga copies them", "`limit-exceeded`";
-    VALUE_SCALARS: u64 = 1 << 20, Count, "scalars of variables, constants and values in it",
-        "memory: a zero is written for each", "`limit-exceeded`";
-    PADDING_BYTES: u64 = 1 << 16, Bytes, "bytes between the members of a structure",
-        "memory: HLSL has a member for each four", "`limit-exceeded`";
-    TYPE_NESTING: usize = 64, Count, "types within each other", "the stack of naga",
+    CONSTANT_USES: u64 = 1 << 20, Count,
+        "subexpressions of all constants, counted again at each use", "memory: naga copies them",
+        "`limit-exceeded`";
+    VALUE_SCALARS: u64 = 1 << 20, Count, "scalars in all variables, constants and values of it",
+        "memory: outputs initialise each with a zero", "`limit-exceeded`";
+    PADDING_BYTES: u64 = 1 << 16, Bytes, "bytes of padding between the members of a structure",
+        "memory: HLSL has a member for each four bytes", "`limit-exceeded`";
+    TYPE_NESTING: usize = 64, Count, "depth of nested types", "the stack of naga",
         "`limit-exceeded`";
     LINKED_BYTES: usize = 8 << 20, Bytes,
-        "bytes of functions with all that they name, of one text that is put together from them",
-        "time: naga reads each", "compiled as a whole";
+        "bytes of all functions of one text, each with the declarations that it uses",
+        "time: naga reads each function with these", "no error: the text is compiled as a whole";
     CALM_PART: usize = 8, Count,
-        "part of a bound on composed texts, beyond which another process tries them first",
-        "the process, where others' code would end it", "`naga-exhausted`";
-    REHEARSAL_BYTES: u64 = 1 << 30, Bytes, "memory of that process", "memory",
+        "divisor of the limits on composed texts: a text beyond this part of one is first \
+         compiled in another process", "the run, if naga would end its process", "`naga-exhausted`";
+    REHEARSAL_BYTES: u64 = 1 << 30, Bytes, "memory of that process", "memory", "`naga-exhausted`";
+    REHEARSAL_SECONDS: u64 = 5, Seconds, "processor time of that process", "time",
         "`naga-exhausted`";
-    REHEARSAL_SECONDS: u64 = 5, Seconds, "its time on a processor", "time", "`naga-exhausted`";
     AXES: usize = 128, Count, "axes of a program, values of an axis",
-        "counting a space of permutations at once", "`axis-limit`";
-    CONSTRAINT_NESTING: usize = 64, Count, "levels of a constraint", "the stack",
+        "time and memory to count permutations", "`axis-limit`";
+    CONSTRAINT_NESTING: usize = 64, Count, "depth of a nested constraint", "the stack",
         "`nesting-too-deep`";
     CONSTRAINTS: usize = 4096, Count, "constraints of a program", "time", "`space-too-complex`";
     SPACE_STEPS: u64 = 1 << 22, Count, "steps to count a program's permutations", "time",
         "`space-too-complex`";
-    PERMUTATIONS: usize = 1_000_000, Count, "permutations of a program", "time, and your disk",
+    PERMUTATIONS: usize = 1_000_000, Count, "permutations of a program", "time, disk space",
         "`too-many-permutations`";
     PACKAGES: usize = 1000, Count, "packages in `wesl.toml`", "time", "`wesl-toml`";
     MESSAGE_BYTES: u64 = 64 << 20, Bytes, "bytes of one message to the language server", "memory",
-        "skipped, and answered with an error";
+        "the message is skipped, and answered with an error";
     EDIT_STEPS: u64 = 1 << 29, Count,
-        "bytes of a document that the edits of one message read and move", "time",
-        "the document is closed, and its user is told";
-    DIAGNOSTICS: usize = 100, Count, "diagnostics of one run", "your eyes", "`not-shown`";
+        "bytes of a document that the edits of one message read or move", "time",
+        "the document is closed, and the editor shows a message";
+    DIAGNOSTICS: usize = 100, Count, "diagnostics that one run prints", "the reader", "`not-shown`";
     MANIFEST_BYTES: u64 = 1 << 30, Bytes, "bytes of a bundle's `manifest.json`", "memory",
         "the bundle cannot be read";
     GROUP_BYTES: usize = 16 << 20, Bytes, "bytes of one compiled shader in a bundle",
-        "memory: what a few compressed bytes can become", "the bundle is damaged";
-    BUNDLE_BYTES: u64 = 256 << 20, Bytes, "bytes that a part of a bundle holds",
+        "memory: a few compressed bytes may expand to many", "the bundle is damaged";
+    BUNDLE_BYTES: u64 = 256 << 20, Bytes, "bytes of one part of a bundle, decompressed",
         "memory, time", "the bundle is damaged";
-    BUNDLE_FACTOR: u64 = 128, Count, "bytes more for each byte of its file", "memory, time",
+    BUNDLE_FACTOR: u64 = 128, Count, "further such bytes for each byte of its file", "memory, time",
         "the bundle is damaged";
     ENVIRONMENT_BYTES: u64 = 128 << 20, Bytes, "bytes of a Radiance file", "memory",
         "has more bytes than are allowed";
-    ENVIRONMENT_PIXELS: u64 = 1 << 24, Count, "pixels that its header may name", "memory",
+    ENVIRONMENT_PIXELS: u64 = 1 << 24, Count, "pixels of the image, by its header", "memory",
         "pixels are more than";
     MODEL_BYTES: u64 = 256 << 20, Bytes, "bytes of a model", "memory", "bytes are more than";
-    MODEL_JSON_BYTES: usize = 4 << 20, Bytes, "bytes of the document in it", "memory",
+    MODEL_JSON_BYTES: usize = 4 << 20, Bytes, "bytes of the JSON document in it", "memory",
         "has more bytes than";
-    MODEL_NODES: usize = 100_000, Count, "nodes of a model, each where it is placed", "time",
-        "more nodes than";
-    MODEL_NESTING: usize = 256, Count, "nodes within each other", "nodes without end",
-        "within each other";
-    MODEL_CORNERS: usize = 1 << 20, Count, "corners of all triangles of a model", "memory",
+    MODEL_NODES: usize = 100_000, Count, "nodes of a model, counted at each place where they occur",
+        "time", "more nodes than";
+    MODEL_NESTING: usize = 256, Count, "depth of nested nodes",
+        "the stack, against cycles of nodes", "within each other";
+    MODEL_CORNERS: usize = 1 << 20, Count, "vertices of all triangles of a model", "memory",
         "corners";
-    MODEL_TEXTURES: usize = 64, Count, "sets of textures of a model", "time",
-        "sets of textures";
+    MODEL_TEXTURES: usize = 64, Count, "sets of textures of a model", "time", "sets of textures";
     MODEL_PIXELS: u64 = 1 << 24, Count, "pixels of one of its images", "memory",
         "pixels are more than";
-    CACHE_BYTES: usize = 64 << 20, Bytes, "bytes of a cache record, packed or not", "memory",
-        "taken as absent";
+    CACHE_BYTES: usize = 64 << 20, Bytes, "bytes of a cache record, compressed or not", "memory",
+        "no error: the record counts as missing";
     CASE_ROWS: usize = 1 << 20, Count, "inputs of the numeric cases of a file", "memory, time",
         "`case-invalid`";
-    CASE_WORDS: usize = 1 << 24, Count, "scalars of those inputs, each law's included",
-        "memory",
-        "`case-invalid`";
+    CASE_WORDS: usize = 1 << 24, Count, "scalars of those inputs, including the inputs of laws",
+        "memory", "`case-invalid`";
     CASES: usize = 4096, Count, "numeric cases of a file", "time: each is compiled",
         "`case-invalid`";
     CASE_WORK: u64 = 1u64 << 31, Count,
-        "steps of all cases of a file, on `eval`: each may take its part of them", "time",
+        "steps of all cases of a file on `eval`, divided equally among the cases", "time",
         "`case-invalid`, `eval-loop-limit`";
-    FORMULA_PARTS: usize = 1024, Count, "signs and operands of a formula", "the stack",
+    FORMULA_PARTS: usize = 1024, Count, "operators and operands of a formula", "the stack",
         "`case-invalid`";
-    FORMULA_NESTING: usize = 100, Count, "parentheses of a formula", "the stack", "`case-invalid`";
-    LOOP_TRIPS: u64 = 1_000_000, Count, "rounds of all loops of one call, on `eval`",
-        "loops without end", "`eval-loop-limit`";
-    EVAL_STEPS: u64 = 1 << 26, Count, "steps of one call, on `eval`", "calls that multiply",
-        "`eval-loop-limit`";
+    FORMULA_NESTING: usize = 100, Count, "depth of nested parentheses in a formula", "the stack",
+        "`case-invalid`";
+    LOOP_TRIPS: u64 = 1_000_000, Count, "iterations of all loops of one call, on `eval`",
+        "time, against endless loops", "`eval-loop-limit`";
+    EVAL_STEPS: u64 = 1 << 26, Count, "steps of one call, on `eval`",
+        "time, against calls that multiply", "`eval-loop-limit`";
     EVAL_SLOTS: u32 = 1 << 21, Count, "scalars in memory, on `eval`", "memory", "`eval-too-large`";
 }

@@ -391,7 +391,7 @@ fn in_words(clip: &ClipSpace) -> [String; 6] {
             Rows::BottomFirst => "bottom",
         },
         match clip.front_face {
-            FrontFace::Same => "the same",
+            FrontFace::Same => "counter-clockwise",
             FrontFace::Reversed => "clockwise",
         },
     ];

@@ -25,33 +25,39 @@ pub struct Arguments {
         default_value = "docs/catalogue"
     )]
     output: PathBuf,
-    /// Write the modules that are made from data into the library's sources instead.
+    /// Instead, write the modules that are generated from data into this folder of the library's
+    /// sources.
     #[arg(long, value_name = "DIR", conflicts_with = "output")]
     modules: Option<PathBuf>,
-    /// Measure what functions and axes cost on GPUs, and write the record that the pages show.
+    /// Measure the cost of functions and axes on GPUs, and write it to this file, which the pages
+    /// read.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "modules", "check"])]
     pub costs: Option<PathBuf>,
-    /// Write nothing; fail if anything would change.
+    /// Write nothing; fail if a file would change.
     #[arg(long)]
     check: bool,
     #[command(flatten)]
     overwrite: Overwrite,
 }
 
-pub fn run(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
+pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
     if let Some(path) = &arguments.costs {
-        let text = cost::record(gpus)?.text();
+        let text = cost::record_costs(gpus)?.text();
         let replace = arguments.overwrite.replace();
         return Ok(output::write_file(path, text.as_bytes(), is_record, replace)?);
     }
     let (folder, files) = match &arguments.modules {
-        Some(folder) => (folder, catalogue::modules()),
-        None => (&arguments.output, catalogue::pages()),
+        Some(folder) => (folder, catalogue::made_modules()),
+        None => (&arguments.output, catalogue::catalogue_files()),
     };
     let files = files.map_err(|(sources, problems)| Failure::Input(sources, problems))?;
-    let changed = changed(folder, &files);
+    let changed = changed_files(folder, &files);
     if arguments.check {
-        return if changed.is_empty() { Ok(()) } else { Err(Failure::check(outdated(&changed))) };
+        return if changed.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::check(outdated_message(&changed)))
+        };
     }
     let files_as_bytes = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
     output::write_folder(folder, files_as_bytes, arguments.overwrite.replace())?;
@@ -64,14 +70,14 @@ pub fn run(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
     )?)
 }
 
-fn changed(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {
+fn changed_files(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {
     let differs = |(path, text): &(PathBuf, String)| {
-        input::read(path, text.len() as u64).ok().as_deref() != Some(text.as_bytes())
+        input::read_file(path, text.len() as u64).ok().as_deref() != Some(text.as_bytes())
     };
     files.iter().map(|(path, text)| (folder.join(path), text.clone())).filter(differs).collect()
 }
 
-fn outdated(changed: &[(PathBuf, String)]) -> String {
+fn outdated_message(changed: &[(PathBuf, String)]) -> String {
     let names: Vec<String> = changed.iter().map(|(path, _)| path.display().to_string()).collect();
     format!("not up to date: {}\nrun: cargo xtask docs", names.join(", "))
 }

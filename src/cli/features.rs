@@ -10,19 +10,19 @@ use crate::permute::constant;
 /// The option, for every command that composes.
 #[derive(Args, Clone, Default)]
 pub struct Arguments {
-    /// What a feature is that nothing chooses [default: the manifest's `features_default`, else
-    /// `error`].
+    /// The value of a feature that nothing chooses [default: the manifest's `features_default`,
+    /// else `error`].
     #[arg(long, value_name = "on|off|error", value_enum)]
     features_default: Option<Undeclared>,
     /// The value of `constants::NAME` where no axis has the name: a literal of WGSL, whose suffix
     /// is its type, such as `4u`, `0.5f` or `true`.
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', value_parser = named,
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', value_parser = parse_constant,
         allow_hyphen_values = true)]
     constant: Vec<(String, String)>,
 }
 
 /// A constant as the option has it.
-fn named(text: &str) -> Result<(String, String), String> {
+fn parse_constant(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     Ok((plain_name(name)?, constant::parse(value)?))
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::compile::{Wanted, clip, wanted, wanted_one};
+use super::compile::{Wanted, parse_clip, wanted_one, wanted_targets};
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
 use super::work::{Places, Work};
@@ -19,38 +19,38 @@ use crate::source::SourceSet;
 pub struct Arguments {
     #[command(flatten)]
     places: Places,
-    /// Only this program.
+    /// Compile only this program.
     #[arg(long, value_name = "P")]
     program: Option<String>,
-    /// Only this permutation.
+    /// Compile only this permutation.
     #[arg(long, value_name = "KEY")]
     only: Option<String>,
-    /// Only these targets.
+    /// Compile only for these targets.
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
     target: Vec<Wanted>,
     /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: the
     /// manifest's].
-    #[arg(long, value_name = "SPACE", value_parser = clip)]
+    #[arg(long, value_name = "SPACE", value_parser = parse_clip)]
     clip: Option<Clip>,
-    /// Only the k-th of n parts, for `lamplight merge`.
+    /// Compile only the k-th of n parts, which `lamplight merge` puts together.
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
-    /// Write nothing; compare with the bundle that is there.
+    /// Write nothing; compare with the existing bundle, and end with exit code 3 if they differ.
     #[arg(long)]
     check: bool,
-    /// Let the judges of all targets look at the outputs; the bundle that is there stays as it is
-    /// where they refuse one.
+    /// Check every output with an independent validator of its target before the bundle is
+    /// replaced.
     #[arg(long)]
     validate: bool,
-    /// The summary as JSON.
+    /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_generate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let start = Instant::now();
     let mut work = Work::open(&arguments.places)?;
-    let request = request(&arguments, &mut work.sources);
+    let request = make_request(&arguments, &mut work.sources);
     if arguments.validate {
         work.judge(&request)?;
     }
@@ -65,7 +65,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     Ok(write!(stdout(), "{summary}")?)
 }
 
-fn request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
+fn make_request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
     let only = arguments.only.as_ref().map(|key| {
         let id = sources.add("--only", key.as_str());
         Quoted::whole(sources, id)
@@ -73,7 +73,7 @@ fn request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
     Request {
         program: arguments.program.clone(),
         only,
-        targets: wanted(&arguments.target),
+        targets: wanted_targets(&arguments.target),
         clip: arguments.clip,
         shard: arguments.shard,
     }

@@ -3,7 +3,7 @@
 use crate::cache::{Folder, Storage};
 
 /// The help on addresses.
-pub const HELP: &str = "A cache that machines share, asked after the folder: `fs:/path`";
+pub const HELP: &str = "A cache that machines share: `fs:/path`; read after `--cache`";
 
 /// Opens the store at `fs:/path`.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {

@@ -15,7 +15,7 @@ use crate::cache::{MOST_RECORD_BYTES, Storage};
 
 /// The help on addresses.
 pub const HELP: &str =
-    "A cache that machines share, asked after the folder: `fs:/path` or `redis://host:port`";
+    "A cache that machines share: `fs:/path` or `redis://host:port`; read after `--cache`";
 
 /// How long a server may take for its first answer.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -29,7 +29,7 @@ const ROOT: &str = "/lamplight";
 
 /// Opens the store at `fs:/path` or `redis://host:port`, if it answers.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
-    let operator = operator(address)?;
+    let operator = open_operator(address)?;
     let runtime = Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()
@@ -51,7 +51,7 @@ pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     Ok(Box::new(Store { operator, runtime }))
 }
 
-fn operator(address: &str) -> Result<Operator, String> {
+fn open_operator(address: &str) -> Result<Operator, String> {
     let operator = match address.split_once(':') {
         Some(("fs", path)) => {
             Operator::new(Fs::default().root(path).atomic_write_dir(&format!("{path}/.tmp")))

@@ -6,17 +6,17 @@ use std::fmt::Write as _;
 
 use super::super::cost::{AxisCost, Costs, FIGURES, SHOWN, SORTED_BY};
 use super::super::{Item, Module};
-use super::markdown::cell;
+use super::markdown::table_cell;
 use super::page_of;
 
 const HEAD: &str = "\
 # Costs
 
-What each function adds to a fragment stage, compiled for GPUs by Mesa's driver for AMD, with
-nothing known of its arguments. Latency and inverse throughput are the compiler's estimates in
-cycles of a wave. They compare functions on one GPU; they do not foretell milliseconds.
-`lamplight cost` measures the same, and shaders of your own; the guide's page *Cost on GPUs* has the
-columns.
+The tables say what each function adds to a fragment stage. Mesa's driver for AMD GPUs compiles the
+stage. The arguments of the function are inputs, so the compiler knows nothing about them. Latency
+and inverse throughput are the compiler's estimates, in cycles of a wave. Use them to compare
+functions on one GPU; they do not predict milliseconds. `lamplight cost` measures the same figures,
+also for your own shaders. The page *Cost on GPUs* of the guide explains the columns.
 ";
 
 /// The table of one function: a column for each GPU.
@@ -26,7 +26,7 @@ pub fn of_function(text: &mut String, item: &Item, costs: &Costs) {
         costs.gpus.iter().map(|gpu| format!("{} ({})", gpu.name, gpu.generation)).collect();
     let _ = write!(
         text,
-        "\n**Cost.** What it adds, by GPU ({}):\n\n| | {} |\n|---|{}\n",
+        "\n**Cost.** What the function adds to a fragment stage, by GPU ({}):\n\n| | {} |\n|---|{}\n",
         costs.driver,
         headings.join(" | "),
         "---:|".repeat(headings.len())
@@ -38,7 +38,7 @@ pub fn of_function(text: &mut String, item: &Item, costs: &Costs) {
 }
 
 /// The page: the functions of each module, the most expensive first.
-pub fn page(modules: &[Module], costs: &Costs) -> String {
+pub fn cost_page(modules: &[Module], costs: &Costs) -> String {
     let mut text = HEAD.to_owned();
     let Some(shown) = costs.shown() else { return text };
     let generation = &costs.gpus[shown].generation;
@@ -61,7 +61,7 @@ pub fn page(modules: &[Module], costs: &Costs) -> String {
             text,
             "\n## {}\n\n{}\n\n| function | {} |\n|---|{}\n",
             module.path,
-            cell(module.summary()),
+            table_cell(module.summary()),
             FIGURES.join(" | "),
             "---:|".repeat(FIGURES.len())
         );
@@ -84,7 +84,7 @@ pub fn of_program(text: &mut String, program: &str, costs: &Costs) {
     }
     let _ = write!(
         text,
-        "\nWhat each value changes on `{SHOWN}`, against the default of its axis: the median over all\n\
+        "\nHow each value changes a stage on `{SHOWN}`, compared with the default of its axis: the median over all\n\
          pairs of permutations that differ in that axis alone, and the range of the instructions.\n\
          Values that change nothing are left out.\n\n\
          | axis and value | stage | pairs | instructions | range | VGPRs | waves | inverse throughput |\n\
